@@ -1,0 +1,19 @@
+# carom_flags: what every target of the project is compiled with.
+#
+# -ffp-contract=off: a fused multiply-add happens only where the source says std::fma or an intrinsic, so that
+# gcc and clang, debug and release, and every instruction set give the same bits (design: numbers).
+add_library(carom_flags INTERFACE)
+target_compile_features(carom_flags INTERFACE cxx_std_20)
+target_compile_options(carom_flags INTERFACE
+  -ffp-contract=off
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+if(CAROM_SANITIZE)
+  target_compile_options(carom_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  target_link_options(carom_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# Compiles SOURCE for one x86-64 level. Such files include no Eigen and no std templates with code: a weak symbol
+# built for the higher level could win at link time and crash an older machine.
+function(carom_compile_for_level source level)
+  set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-march=x86-64-${level}")
+endfunction()

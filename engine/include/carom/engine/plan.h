@@ -1,0 +1,44 @@
+// Plan: what must be computed for a scene. Constant during a run; the loop reads nothing else.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "carom/engine/scene.h"
+#include "carom/kernel/closed_forms.h"
+#include "carom/kernel/march.h"
+
+namespace carom {
+
+/// One effect of the design's table: in force or skipped, and why.
+struct EffectDecision {
+    std::string keyword;
+    bool in_force;
+    std::string reason;
+};
+
+/// A straight cushion in final form.
+struct CushionLine {
+    Vec2 from, to;
+    Vec2 direction;  ///< unit, from -> to
+    double length;
+    double height;
+};
+
+struct Plan {
+    Scene scene;  ///< ids, table and settings as read
+    BallParams balls{};
+    double gravity = 9.81;
+    std::vector<CushionLine> cushions;  ///< index as in scene.table.cushions
+    bool has_pockets = false;
+    std::vector<EffectDecision> effects;
+    kernel::Isa isa = kernel::Isa::kScalar;
+    kernel::MarchFunction march = nullptr;
+    std::vector<std::string> warnings;  ///< one sentence each, for stderr
+};
+
+/// Decides. @param isa must be available (kernel::isa_from_environment)
+Plan make_plan(const Scene& scene, kernel::Isa isa);
+
+}  // namespace carom

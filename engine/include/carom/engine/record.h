@@ -1,0 +1,113 @@
+// Record: what happened. Per ball a list of closed-form motion segments, plus the ordered events. Immutable once made.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <iosfwd>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "carom/engine/scene.h"
+#include "carom/engine/vec.h"
+
+namespace carom {
+
+enum class MotionState : std::uint8_t { kStationary, kSpinning, kSliding, kRolling, kPocketed };
+const char* name(MotionState state);
+
+/// One ball between two events that touch it. Times inside are relative to `start`.
+struct Segment {
+    double start = 0.0;  ///< s since the start of the shot
+    Vec3 r, v, w;        ///< centre, velocity, angular velocity at the start
+    Vec2 a;              ///< acceleration [m/s^2], constant
+    Vec2 dw;             ///< d(w_x, w_y)/dt [rad/s^2], constant
+    double spin_decay = 0.0;  ///< |dw_z/dt| [rad/s^2], >= 0; w_z never passes 0
+    double duration = 0.0;    ///< until the ball's own next transition [s]; infinite if none
+    MotionState state = MotionState::kStationary;
+};
+
+enum class EventType : std::uint8_t {
+    kCueStrike, kBallBall, kBallCluster, kBallCushion, kBallJaw, kBallPocket,
+    kSlideRoll, kRollSpin, kRollStop, kSpinStop,
+};
+inline constexpr int kEventTypes = 10;
+const char* name(EventType type);
+
+struct Event {
+    double time = 0.0;  ///< s since the start of the shot
+    EventType type = EventType::kCueStrike;
+    int a = -1;  ///< ball (index)
+    int b = -1;  ///< the other ball, or the index of the cushion, jaw or pocket; -1 if none
+};
+
+/// What one event cost; filled only by a profiled run.
+struct EventCost {
+    double detect_ns = 0.0;   ///< finding the next event and re-detection after this one
+    double resolve_ns = 0.0;  ///< advancing and resolving, kernel included
+    double kernel_ns = 0.0;   ///< inside the impact kernel
+    long steps = 0;           ///< of the kernel
+    const char* method = "";  ///< "march", "elastic", "han_2005", ...
+};
+
+enum class StopReason : std::uint8_t { kAtRest, kTime, kEvents };
+const char* name(StopReason reason);
+
+/// State of one ball at a time.
+struct BallState {
+    MotionState state = MotionState::kStationary;
+    Vec3 position, velocity, spin;
+    int pocket = -1;  ///< index of the pocket that holds it, or -1
+};
+
+struct BallTrack {
+    std::string id;
+    std::vector<Segment> segments;  ///< ordered by start; a later one with the same start replaces the earlier
+    int pocket = -1;
+};
+
+class Record {
+  public:
+    Table table;
+    BallParams balls{};
+    double gravity = 9.81;
+    RenderSettings render;
+    std::vector<BallTrack> tracks;
+    std::vector<Event> events;
+    std::vector<EventCost> costs;  ///< empty, or one per event
+    double setup_detect_ns = 0.0;  ///< profiled: first detection of all pairs
+    double duration = 0.0;         ///< s
+    StopReason stopped = StopReason::kAtRest;
+
+    /// State of a ball at time t: the last segment that starts at or before t, in closed form. t before 0 gives the start,
+    /// t past the duration the state at the duration.
+    BallState state_at(int ball, double t) const;
+
+    /// Orientation (body to table) at time t, starting from the identity, by the integral of the angular velocity; exact
+    /// where the axis is fixed, else by fourth-order Magnus steps of at most half a radian.
+    Eigen::Quaterniond orientation_at(int ball, double t) const;
+
+    /// 64-bit FNV-1a over all bits of segments and events, as 16 hex digits.
+    std::string hash() const;
+
+    /// Name of what an event's b is: a ball, cushion, jaw or pocket id, or "".
+    std::string partner_id(const Event& event) const;
+
+  private:
+    struct Orientations;
+    mutable std::shared_ptr<const Orientations> orientations_;  // made on first use
+};
+
+/// Position, velocity and spin of a segment `tau` seconds after its start (tau >= 0).
+Vec3 position_at(const Segment& segment, double tau);
+Vec3 velocity_at(const Segment& segment, double tau);
+Vec3 spin_at(const Segment& segment, double tau, double R);
+
+/// Writes a record as JSON to `path` by way of a temporary name. Doubles read back to the same bits.
+/// @throws std::runtime_error naming the file
+void write_record(const Record& record, const std::string& path);
+
+/// Reads what write_record wrote. @throws SceneError
+Record read_record(const std::string& path);
+
+}  // namespace carom

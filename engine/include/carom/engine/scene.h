@@ -1,0 +1,112 @@
+// Scene: what a scene file says, validated, with every default written out.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "carom/engine/table.h"
+
+namespace carom {
+
+/// A place in a scene file; line 0 stands for the file as a whole.
+struct SourceLocation {
+    int line = 0;
+    int column = 0;
+};
+
+/// Bad input. what() is "file:line:col: what is wrong and what to do".
+class SceneError : public std::runtime_error {
+  public:
+    SceneError(const std::string& file, SourceLocation where, const std::string& message);
+};
+
+/// Properties shared by all balls of a scene (SI; frictions and restitutions are numbers).
+struct BallParams {
+    double R;      ///< radius [m]
+    double m;      ///< mass [kg]
+    double mu_s;   ///< sliding friction, ball on cloth
+    double mu_r;   ///< rolling friction
+    double mu_sp;  ///< spinning friction: w_z decays at 5 mu_sp g / (2 R)
+    double mu_b;   ///< ball-ball friction
+    double e_b;    ///< ball-ball restitution
+    double e_c;    ///< cushion restitution
+    double f_c;    ///< cushion friction
+};
+
+/// A ball at the start.
+struct BallStart {
+    std::string id;
+    Vec3 position;                ///< centre [m], z = R
+    Vec3 velocity = Vec3::Zero();  ///< [m/s], z = 0
+    Vec3 spin = Vec3::Zero();      ///< [rad/s]
+    SourceLocation where;         ///< where the file puts it ([rack] for a racked ball)
+};
+
+struct Cue {
+    std::string ball = "cue";
+    double speed = 0.0;          ///< of the cue [m/s]
+    double aim_deg = 90.0;       ///< 0 = +x, 90 = +y
+    double elevation_deg = 0.0;
+    double side = 0.0, height = 0.0;  ///< offset in ball radii: left +, up +
+    double mass = 0.567;         ///< [kg]
+    double end_mass = 0.00567;   ///< [kg], for squirt
+    SourceLocation where;
+};
+
+enum class BallBallModel : std::uint8_t { kMathavan, kInelastic, kElastic };
+enum class CushionModel : std::uint8_t { kSmooth, kHan2005 };
+enum class ClusterModel : std::uint8_t { kSequential };
+enum class ClothSlipSign : std::uint8_t { kConsistent, kAsPublished };
+
+struct Physics {
+    double gravity = 9.81;  ///< [m/s^2]
+    BallBallModel ball_ball = BallBallModel::kMathavan;
+    CushionModel cushion = CushionModel::kHan2005;
+    ClothSlipSign cloth_slip = ClothSlipSign::kConsistent;
+    ClusterModel clusters = ClusterModel::kSequential;
+    int substeps = 1000;  ///< of the march, N
+};
+
+struct Stop {
+    std::optional<double> time;         ///< [s]
+    std::optional<std::int64_t> events;
+};
+
+struct RenderSettings {
+    double fps = 60.0;
+    int width = 1280, height = 720;
+    std::string camera = "top";
+};
+
+struct Scene {
+    std::string file;
+    Table table;
+    std::string ball_preset = "pool";
+    BallParams balls{};
+    std::vector<BallStart> ball;  ///< as written, then the racked ones
+    std::optional<Cue> cue;
+    Physics physics;
+    Stop stop;
+    RenderSettings render;
+};
+
+/// Reads and validates a scene file. @throws SceneError
+Scene read_scene(const std::string& path);
+
+/// The same from text; `name` stands for the file in messages.
+Scene parse_scene(std::string_view text, const std::string& name);
+
+/// A preset by name. @throws std::invalid_argument for an unknown one
+Table make_table(std::string_view preset);
+BallParams make_ball_params(std::string_view preset);
+
+const char* name(BallBallModel model);
+const char* name(CushionModel model);
+const char* name(ClusterModel model);
+const char* name(ClothSlipSign sign);
+
+}  // namespace carom

@@ -1,0 +1,29 @@
+// The event loop.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stdexcept>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/record.h"
+
+namespace carom {
+
+struct SimulateOptions {
+    bool profile = false;          ///< time every event (Record::costs); off costs nothing
+    std::optional<double> until;   ///< stop time [s], in addition to the scene's own
+    /// Called now and then with (events so far, simulated time); for a progress line.
+    std::function<void(std::size_t, double)> progress;
+};
+
+/// A run that cannot go on: too many events in one simulated microsecond, or a kernel that failed. what() holds a dump of the state.
+class SimulationError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Runs a plan to rest, to its stop time or to its number of events. @throws SimulationError
+Record simulate(const Plan& plan, const SimulateOptions& options = {});
+
+}  // namespace carom

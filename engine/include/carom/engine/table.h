@@ -1,0 +1,45 @@
+// The table: what balls bounce off and fall into. Lengths in m, heights above the cloth.
+//
+// Frame: right-handed, z up, x along the short side, y along the long side, origin where two nose lines meet.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "carom/engine/vec.h"
+
+namespace carom {
+
+/// A straight cushion nose from one point to the other. It acts on both sides, and its ends are round with radius 0:
+/// neighbouring cushions leave no gap.
+struct Cushion {
+    std::string id;
+    Vec2 from, to;
+    double height;
+};
+
+/// A rounded jaw: a full circle. A ball touches it at centre distance R + radius.
+struct Jaw {
+    std::string id;
+    Vec2 center;
+    double radius;
+    double height;
+};
+
+/// A ball is pocketed when its centre crosses the circle.
+struct Pocket {
+    std::string id;
+    Vec2 center;
+    double radius;
+    double depth;  ///< a pocketed ball rests at (center, -depth)
+};
+
+struct Table {
+    std::string preset;  ///< "seven_foot", ..., or "" for a custom outline
+    double width = 0.0, length = 0.0;  ///< playing surface between nose lines; the bounding box of a custom outline
+    std::vector<Cushion> cushions;
+    std::vector<Jaw> jaws;
+    std::vector<Pocket> pockets;
+};
+
+}  // namespace carom

@@ -1,0 +1,76 @@
+// Run-time choice of the instruction set, and the texts of the statuses.
+#include <cstdlib>
+#include <cstring>
+#include <initializer_list>
+
+#include "carom/kernel/isa.h"
+#include "carom/kernel/march.h"
+
+namespace carom::kernel {
+
+void march_scalar(const Ball&, const Ball&, const ImpactParams&, int, ImpactResult&) noexcept;
+void march_v3(const Ball&, const Ball&, const ImpactParams&, int, ImpactResult&) noexcept;
+
+const char* describe(ImpactStatus status) noexcept {
+    switch (status) {
+        case ImpactStatus::kOk:
+        case ImpactStatus::kNotApproaching: return "";
+        case ImpactStatus::kBadState:
+            return "a state is not finite, or the centres coincide or are not at one height";
+        case ImpactStatus::kBadParameter:
+            return "a parameter is out of range: R, m > 0, frictions >= 0, 0 <= e_b <= 1, substeps >= 1";
+        case ImpactStatus::kStepLimit: return "the march did not end within its bound on steps";
+    }
+    return "unknown status";
+}
+
+const char* name(Isa isa) noexcept {
+    switch (isa) {
+        case Isa::kScalar: return "scalar";
+        case Isa::kV3: return "v3";
+        case Isa::kV4: return "v4";
+    }
+    return "unknown";
+}
+
+bool parse_isa(const char* text, Isa& isa) noexcept {
+    for (Isa candidate : {Isa::kScalar, Isa::kV3, Isa::kV4}) {
+        if (std::strcmp(text, name(candidate)) == 0) {
+            isa = candidate;
+            return true;
+        }
+    }
+    return false;
+}
+
+bool available(Isa isa) noexcept {
+    switch (isa) {
+        case Isa::kScalar: return true;
+        case Isa::kV3: return __builtin_cpu_supports("x86-64-v3") != 0;
+        case Isa::kV4: return false;  // no kernel is built for it yet
+    }
+    return false;
+}
+
+Isa best_isa() noexcept {
+    for (Isa isa : {Isa::kV4, Isa::kV3}) {
+        if (available(isa)) return isa;
+    }
+    return Isa::kScalar;
+}
+
+IsaChoice isa_from_environment(Isa& isa) noexcept {
+    const char* text = std::getenv("CAROM_ISA");
+    if (text == nullptr || *text == '\0') {
+        isa = best_isa();
+        return IsaChoice::kOk;
+    }
+    if (!parse_isa(text, isa)) return IsaChoice::kUnknownName;
+    return available(isa) ? IsaChoice::kOk : IsaChoice::kUnavailable;
+}
+
+MarchFunction march_function(Isa isa) noexcept {
+    return isa == Isa::kScalar ? march_scalar : march_v3;
+}
+
+}  // namespace carom::kernel

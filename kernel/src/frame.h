@@ -1,0 +1,124 @@
+// The contact frame that all kernels share: validation, projection, back-projection.
+// Included by files built for one instruction set: no std templates here, everything inline in an anonymous namespace.
+#pragma once
+
+#include "carom/kernel/impact.h"
+
+namespace carom::kernel {
+namespace {
+
+// Velocities in the contact frame of the 2014 paper: y from centre 1 to centre 2, x = y x z, z up.
+struct FrameState {
+    double v1x, v1y, w1x, w1y, w1z;
+    double v2x, v2y, w2x, w2y, w2z;
+};
+
+struct Frame {
+    double yx, yy;  // the horizontal unit vector y in table coordinates; x is (yy, -yx)
+};
+
+// Heights that differ by more than this share of the distance are no planar impact.
+constexpr double kHeightTolerance = 1e-9;
+// An approach speed below this share of the largest velocity underflows in the work integral: no event (hard case H30).
+constexpr double kSlowestApproach = 1e-150;
+
+inline bool finite(double x) {
+    return x - x == 0.0;
+}
+
+inline bool finite(const double (&a)[3]) {
+    return finite(a[0]) && finite(a[1]) && finite(a[2]);
+}
+
+inline bool finite(const Ball& ball) {
+    return finite(ball.r) && finite(ball.v) && finite(ball.w);
+}
+
+inline double square_root(double x) {
+    return __builtin_sqrt(x);
+}
+
+inline double absolute(double x) {
+    return x < 0.0 ? -x : x;
+}
+
+// The result of "nothing happens": velocities as they came.
+inline void copy_input(const Ball& b1, const Ball& b2, ImpactStatus status, ImpactResult& out) {
+    for (int k = 0; k < 3; ++k) {
+        out.v1[k] = b1.v[k];
+        out.w1[k] = b1.w[k];
+        out.v2[k] = b2.v[k];
+        out.w2[k] = b2.w[k];
+    }
+    out.steps = 0;
+    out.status = status;
+}
+
+inline bool in_range(const ImpactParams& p) {
+    return finite(p.R) && p.R > 0.0 && finite(p.m) && p.m > 0.0 && finite(p.mu_s1) && p.mu_s1 >= 0.0 &&
+           finite(p.mu_s2) && p.mu_s2 >= 0.0 && finite(p.mu_b) && p.mu_b >= 0.0 && p.e_b >= 0.0 && p.e_b <= 1.0;
+}
+
+// Checks the input and projects it. Anything but kOk means that there is nothing to compute; `out` then holds the input.
+inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactParams& p, Frame& f, FrameState& s,
+                                ImpactResult& out) {
+    ImpactStatus status = ImpactStatus::kOk;
+    if (!in_range(p)) status = ImpactStatus::kBadParameter;
+    if (status == ImpactStatus::kOk && !(finite(b1) && finite(b2))) status = ImpactStatus::kBadState;
+    if (status == ImpactStatus::kOk) {
+        const double dx = b2.r[0] - b1.r[0], dy = b2.r[1] - b1.r[1], dz = b2.r[2] - b1.r[2];
+        const double d = square_root(dx * dx + dy * dy);
+        if (!(d > 0.0) || !finite(d) || absolute(dz) > kHeightTolerance * d) {
+            status = ImpactStatus::kBadState;
+        } else {
+            f.yx = dx / d;
+            f.yy = dy / d;
+        }
+    }
+    if (status != ImpactStatus::kOk) {
+        copy_input(b1, b2, status, out);
+        return status;
+    }
+    s.v1x = b1.v[0] * f.yy - b1.v[1] * f.yx;
+    s.v1y = b1.v[0] * f.yx + b1.v[1] * f.yy;
+    s.w1x = b1.w[0] * f.yy - b1.w[1] * f.yx;
+    s.w1y = b1.w[0] * f.yx + b1.w[1] * f.yy;
+    s.w1z = b1.w[2];
+    s.v2x = b2.v[0] * f.yy - b2.v[1] * f.yx;
+    s.v2y = b2.v[0] * f.yx + b2.v[1] * f.yy;
+    s.w2x = b2.w[0] * f.yy - b2.w[1] * f.yx;
+    s.w2y = b2.w[0] * f.yx + b2.w[1] * f.yy;
+    s.w2z = b2.w[2];
+    const double approach = s.v1y - s.v2y;
+    const double scale = absolute(s.v1x) + absolute(s.v1y) + absolute(s.v2x) + absolute(s.v2y) +
+                         p.R * (absolute(s.w1x) + absolute(s.w1y) + absolute(s.w1z) + absolute(s.w2x) +
+                                absolute(s.w2y) + absolute(s.w2z));
+    // Sums that overflow are as little a state as a NaN.
+    if (!finite(scale) || !finite(scale * scale)) status = ImpactStatus::kBadState;
+    else if (!(approach > 0.0) || approach < kSlowestApproach || approach < kSlowestApproach * scale)
+        status = ImpactStatus::kNotApproaching;
+    if (status != ImpactStatus::kOk) copy_input(b1, b2, status, out);
+    return status;
+}
+
+// Back to table coordinates; vertical velocities pass through.
+inline void leave_frame(const Ball& b1, const Ball& b2, const Frame& f, const FrameState& s, long steps,
+                        ImpactResult& out) {
+    out.v1[0] = s.v1x * f.yy + s.v1y * f.yx;
+    out.v1[1] = s.v1y * f.yy - s.v1x * f.yx;
+    out.v1[2] = b1.v[2];
+    out.w1[0] = s.w1x * f.yy + s.w1y * f.yx;
+    out.w1[1] = s.w1y * f.yy - s.w1x * f.yx;
+    out.w1[2] = s.w1z;
+    out.v2[0] = s.v2x * f.yy + s.v2y * f.yx;
+    out.v2[1] = s.v2y * f.yy - s.v2x * f.yx;
+    out.v2[2] = b2.v[2];
+    out.w2[0] = s.w2x * f.yy + s.w2y * f.yx;
+    out.w2[1] = s.w2y * f.yy - s.w2x * f.yx;
+    out.w2[2] = s.w2z;
+    out.steps = steps;
+    out.status = ImpactStatus::kOk;
+}
+
+}  // namespace
+}  // namespace carom::kernel
