@@ -1,0 +1,53 @@
+// Numbered PNG frames of a record, without a display.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "carom/engine/record.h"
+
+namespace carom::render {
+
+/// A renderer that cannot start, or a file that cannot be written. what() names the package or the file.
+class RenderError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+struct FrameSize {
+    int width = 1280, height = 720;
+};
+
+struct SequenceOptions {
+    std::string pattern = "frames/%05d.png";  ///< exactly one %d or %0Nd; empty: frames are encoded and thrown away
+    double fps = 60.0;
+    double from = 0.0;                ///< s
+    std::optional<double> to;         ///< s; default: the record's duration
+    std::optional<long> frame;        ///< only this k
+    FrameSize size;
+    std::string camera = "top";
+    int png_level = 1;                ///< zlib level 0..9
+    std::function<void(long done, long total)> progress;  ///< called after every frame
+};
+
+/// What one frame cost. Frame k shows the time from + k / fps, computed from the integer k.
+struct FrameTiming {
+    long frame = 0;
+    double time = 0.0;  ///< s of the shot
+    double draw_ms = 0.0, readback_ms = 0.0, encode_ms = 0.0, write_ms = 0.0;
+};
+
+/// Number of frames k with from + k / fps <= to.
+long frame_count(double from, double to, double fps);
+
+/// Renders and writes (temporary name, then renamed). Makes the folder of the pattern if its parent exists.
+/// @throws RenderError
+std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOptions& options);
+
+/// The file of frame k; @throws RenderError for a pattern without exactly one integer conversion.
+std::string frame_path(const std::string& pattern, long k);
+
+}  // namespace carom::render
