@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <iosfwd>
 #include <memory>
 #include <string>
 #include <vector>
@@ -68,6 +67,8 @@ struct BallTrack {
 
 class Record {
   public:
+    Record();
+
     Table table;
     BallParams balls{};
     double gravity = 9.81;
@@ -95,7 +96,7 @@ class Record {
 
   private:
     struct Orientations;
-    mutable std::shared_ptr<const Orientations> orientations_;  // made on first use
+    std::shared_ptr<Orientations> orientations_;  // made on first use, by any thread
 };
 
 /// Position, velocity and spin of a segment `tau` seconds after its start (tau >= 0).

@@ -17,4 +17,8 @@ inline constexpr int kEventCap = 10000;
 /// [m] Depth at which a pocketed ball comes to rest below the cloth; drawing only. pooltool 0.6.0's value.
 inline constexpr double kPocketDepth = 0.08;
 
+/// [share of the jaw radius] A cushion end this close to a jaw's circle is rounded off by it and needs no tip of its own. The
+/// jaw is a full circle, so nothing can slip between the two.
+inline constexpr double kJawJoinShare = 1e-9;
+
 }  // namespace carom
