@@ -102,7 +102,7 @@ Vec3 position_at(const Segment& s, double tau) {
 }
 
 Vec3 velocity_at(const Segment& s, double tau) {
-    if (s.state == MotionState::kRolling && s.duration < kInfinity) {
+    if (s.state == MotionState::kRolling && s.duration < kInfinity && !s.held) {
         // v + a tau, written so that the direction stays and the end is exactly 0.
         const double left = std::max(0.0, 1.0 - tau / s.duration);
         return {s.v.x() * left, s.v.y() * left, 0.0};

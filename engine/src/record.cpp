@@ -37,6 +37,12 @@ const char* name(EventType type) {
         case EventType::kRollSpin: return "roll_spin";
         case EventType::kRollStop: return "roll_stop";
         case EventType::kSpinStop: return "spin_stop";
+        case EventType::kBallBallHold: return "ball_ball_hold";
+        case EventType::kBallBallRelease: return "ball_ball_release";
+        case EventType::kBallCushionHold: return "ball_cushion_hold";
+        case EventType::kBallCushionRelease: return "ball_cushion_release";
+        case EventType::kBallJawHold: return "ball_jaw_hold";
+        case EventType::kBallJawRelease: return "ball_jaw_release";
     }
     return "unknown";
 }
@@ -165,7 +171,7 @@ std::string Record::hash() const {
             for (const double x : {s.start, s.r.x(), s.r.y(), s.r.z(), s.v.x(), s.v.y(), s.v.z(), s.w.x(), s.w.y(), s.w.z(),
                                    s.a.x(), s.a.y(), s.dw.x(), s.dw.y(), s.spin_decay, s.duration})
                 fnv.add(x);
-            fnv.add(static_cast<std::uint64_t>(s.state));
+            fnv.add(static_cast<std::uint64_t>(s.state) + (s.held ? 256u : 0u));
         }
     }
     for (const Event& e : events) {
@@ -183,9 +189,15 @@ std::string Record::partner_id(const Event& event) const {
     const auto index = static_cast<std::size_t>(event.b);
     switch (event.type) {
         case EventType::kBallBall:
-        case EventType::kBallCluster: return tracks[index].id;
-        case EventType::kBallCushion: return table.cushions[index].id;
-        case EventType::kBallJaw: return table.jaws[index].id;
+        case EventType::kBallCluster:
+        case EventType::kBallBallHold:
+        case EventType::kBallBallRelease: return tracks[index].id;
+        case EventType::kBallCushion:
+        case EventType::kBallCushionHold:
+        case EventType::kBallCushionRelease: return table.cushions[index].id;
+        case EventType::kBallJaw:
+        case EventType::kBallJawHold:
+        case EventType::kBallJawRelease: return table.jaws[index].id;
         case EventType::kBallPocket: return table.pockets[index].id;
         default: return "";
     }

@@ -24,13 +24,17 @@ struct Segment {
     double spin_decay = 0.0;  ///< |dw_z/dt| [rad/s^2], >= 0; w_z never passes 0
     double duration = 0.0;    ///< until the ball's own next transition [s]; infinite if none
     MotionState state = MotionState::kStationary;
+    bool held = false;  ///< in a sustained contact: `a` holds the contact forces too
+    bool ends = true;   ///< its own transition comes at the end of the duration (a held ball may only turn its forces)
 };
 
 enum class EventType : std::uint8_t {
     kCueStrike, kBallBall, kBallCluster, kBallCushion, kBallJaw, kBallPocket,
     kSlideRoll, kRollSpin, kRollStop, kSpinStop,
+    // Sustained contacts: from a hold to its release the two stay in touch and push each other.
+    kBallBallHold, kBallBallRelease, kBallCushionHold, kBallCushionRelease, kBallJawHold, kBallJawRelease,
 };
-inline constexpr int kEventTypes = 10;
+inline constexpr int kEventTypes = 16;
 const char* name(EventType type);
 
 struct Event {

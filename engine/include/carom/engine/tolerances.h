@@ -13,9 +13,24 @@ inline constexpr double kRollingUlp = 8.0;
 /// [s] and [-] More events than this within one such span is an error with a dump, never a silent stop.
 inline constexpr double kEventCapSpan = 1e-6;
 inline constexpr int kEventCap = 10000;
+/// [-] Rounds of the loop in a row that changed directions of sustained contacts but brought no event: as bad.
+inline constexpr int kQuietCap = 1000000;
 
 /// [m] Depth at which a pocketed ball comes to rest below the cloth; drawing only. pooltool 0.6.0's value.
 inline constexpr double kPocketDepth = 0.08;
+
+/// Below which approach a bounce is no bounce: one that would end before the contact itself has, 2 e v / a < t_c(v), with the
+/// Hertz contact time t_c = 2.6 (m / k)^0.4 v^-0.2 of two phenolic balls (E = 5.84 GPa, nu = 0.34: k/m = 3.094e9 m^-0.5 s^-2).
+/// Such a contact is held instead. About 1.5e-3 m/s at a = 2 m/s^2.
+inline constexpr double kContactTimeFactor = 2.6;
+inline constexpr double kContactStiffness = 3.094e9;  ///< [m^-0.5 s^-2] k/m
+inline constexpr double kLeastRestitution = 0.1;      ///< stands for a smaller e in that rule, where no bounce is left at all
+
+/// [s] Longest and shortest interval over which a sustained contact keeps the directions of its forces where they turn.
+inline constexpr double kHoldRefresh = 2e-3;
+inline constexpr double kHoldShortest = 1e-5;
+/// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the straight line.
+inline constexpr double kHoldStraight = 1e-9;
 
 /// [share of the jaw radius] A cushion end this close to a jaw's circle is rounded off by it and needs no tip of its own. The
 /// jaw is a full circle, so nothing can slip between the two.
