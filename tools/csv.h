@@ -1,0 +1,21 @@
+// Events and samples of a record as CSV (RFC 4180, '\n' line ends). Numbers read back to the same bits.
+#pragma once
+
+#include <string>
+
+#include "carom/engine/output_file.h"
+#include "carom/engine/record.h"
+
+namespace carom::tools {
+
+/// A field, quoted where it holds a comma, a quote or a line end.
+std::string csv_field(const std::string& text);
+
+/// `time,type,a,b`, and for a profiled record `detect_ns,resolve_ns,kernel_ns,steps,method` behind it.
+void write_events_csv(const Record& record, OutputFile& file);
+
+/// `time,ball,state,x,y,z,vx,vy,vz,wx,wy,wz`: every ball at k dt, k = 0, 1, ..., up to the duration.
+/// @throws UsageError if that is too many rows
+void write_samples_csv(const Record& record, double dt, OutputFile& file);
+
+}  // namespace carom::tools
