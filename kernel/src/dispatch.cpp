@@ -10,6 +10,7 @@ namespace carom::kernel {
 
 void march_scalar(const Ball&, const Ball&, const ImpactParams&, int, ImpactResult&) noexcept;
 void march_v3(const Ball&, const Ball&, const ImpactParams&, int, ImpactResult&) noexcept;
+void march_v4(const Ball&, const Ball&, const ImpactParams&, int, ImpactResult&) noexcept;
 
 const char* describe(ImpactStatus status) noexcept {
     switch (status) {
@@ -47,7 +48,7 @@ bool available(Isa isa) noexcept {
     switch (isa) {
         case Isa::kScalar: return true;
         case Isa::kV3: return __builtin_cpu_supports("x86-64-v3") != 0;
-        case Isa::kV4: return false;  // no kernel is built for it yet
+        case Isa::kV4: return __builtin_cpu_supports("x86-64-v4") != 0;
     }
     return false;
 }
@@ -70,7 +71,12 @@ IsaChoice isa_from_environment(Isa& isa) noexcept {
 }
 
 MarchFunction march_function(Isa isa) noexcept {
-    return isa == Isa::kScalar ? march_scalar : march_v3;
+    switch (isa) {
+        case Isa::kScalar: return march_scalar;
+        case Isa::kV3: return march_v3;
+        case Isa::kV4: return march_v4;
+    }
+    return march_scalar;
 }
 
 }  // namespace carom::kernel
