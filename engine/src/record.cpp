@@ -78,8 +78,8 @@ Eigen::Quaterniond rotation(const Vec3& turn) {
 Eigen::Quaterniond turned(const Vec3& w0, const Vec3& dw, double time) {
     const Vec3 swerve = w0.cross(dw);
     if (swerve == Vec3::Zero()) return rotation(w0 * time + 0.5 * time * time * dw);  // fixed axis
-    // Magnus expansion to fourth order: Omega = h w_mid - h^3/12 w_mid x dw, at most half a radian a step.
-    constexpr double kLargestStep = 0.5;
+    // Magnus expansion to fourth order: Omega = h w_mid - h^3/12 w_mid x dw, at most a fifth of a radian a step (1e-7 over a shot).
+    constexpr double kLargestStep = 0.2;
     const double fastest = std::max(w0.norm(), (w0 + time * dw).norm());
     const int steps = 1 + static_cast<int>(fastest * time / kLargestStep);
     const double h = time / steps;

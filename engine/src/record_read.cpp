@@ -184,6 +184,8 @@ Segment read_segment(const Node& node) {
     s.spin_decay = node.at("spin_decay").number_from(0.0);
     const Node duration = node.at("duration");
     s.duration = duration.is_null() ? std::numeric_limits<double>::infinity() : duration.number_from(0.0);
+    s.held = node.at("held").boolean();
+    s.ends = node.at("ends").boolean();
     return s;
 }
 
@@ -209,10 +211,16 @@ std::int64_t partners(EventType type, const Record& record) {
     switch (type) {
         case EventType::kBallBall:
         case EventType::kBallCluster:
+        case EventType::kBallBallHold:
+        case EventType::kBallBallRelease:
             return static_cast<std::int64_t>(record.tracks.size());
         case EventType::kBallCushion:
+        case EventType::kBallCushionHold:
+        case EventType::kBallCushionRelease:
             return static_cast<std::int64_t>(record.table.cushions.size());
         case EventType::kBallJaw:
+        case EventType::kBallJawHold:
+        case EventType::kBallJawRelease:
             return static_cast<std::int64_t>(record.table.jaws.size());
         case EventType::kBallPocket:
             return static_cast<std::int64_t>(record.table.pockets.size());

@@ -58,6 +58,11 @@ class Solver {
         // The normal turns while the balls move across each other; a margin keeps the third order from penetrating.
         if (turning()) solve_forces(kHoldRefresh);
         write_segments();
+        // Directions that turn are taken at the middle of the interval: second order.
+        if (take_middle_directions()) {
+            solve_forces(turning() ? kHoldRefresh : 0.0);
+            write_segments();
+        }
         release_open_contacts();
     }
 
@@ -144,6 +149,27 @@ class Solver {
             const double slip = length(Vec2(s_x, s_z));
             link.friction_z = slip > 0.0 ? -plan_.balls.mu_b * s_z / slip : 0.0;
         }
+    }
+
+    bool take_middle_directions() {
+        bool turned = false;
+        for (std::size_t k = 0; k < bodies_.size(); ++k) {
+            Body& b = bodies_[k];
+            const HeldBall& ball = group_.balls[k];
+            const Segment& s = ball.segment;
+            if (b.mode == Mode::kResting || !(s.duration < kNever)) continue;
+            const bool sliding = b.mode == Mode::kSliding;
+            const Vec2 x = sliding ? cloth_slip(ball.v, ball.w, motion_.R) : planar(ball.v);
+            const Vec2 dx = sliding ? Vec2(s.a.x() - motion_.R * s.dw.y(), s.a.y() + motion_.R * s.dw.x()) : s.a;
+            if (std::abs(cross(x, dx)) <= kHoldStraight * length(x) * length(dx)) continue;
+            const Vec2 middle = x + 0.5 * s.duration * dx;
+            const double size = length(middle);
+            // Near its end the direction may turn over: then the one at the start stays.
+            if (!(size > 0.0) || middle.dot(x) <= 0.0) continue;
+            b.direction = middle / size;
+            turned = true;
+        }
+        return turned;
     }
 
     // Relative motion across the normal, and the distance over which the normal turns (0: a straight cushion).

@@ -89,7 +89,8 @@ class Record {
     BallState state_at(int ball, double t) const;
 
     /// Orientation (body to table) at time t, starting from the identity, by the integral of the angular velocity; exact
-    /// where the axis is fixed, else by fourth-order Magnus steps of at most half a radian.
+    /// where the axis is fixed, else by fourth-order Magnus steps of at most 0.2 rad
+    /// (1e-7 rad over a shot).
     Eigen::Quaterniond orientation_at(int ball, double t) const;
 
     /// 64-bit FNV-1a over all bits of segments and events, as 16 hex digits.
