@@ -97,27 +97,28 @@ std::vector<Vec2> slots_of(const Rack& rack, const Vec2& apex, double R) {
     return out;
 }
 
-void add_jitter(std::vector<Vec2>& slots, const Rack& rack, double R, SplitMix64& random) {
-    constexpr int kDraws = 10000;
-    const double reach = 4.0 * R * R;
+/// Metropolis sampling of hard discs: valid from the first step (the rack without jitter) to the last.
+void add_jitter(std::vector<Vec2>& places, const Rack& rack, double R, SplitMix64& random) {
+    // With a gap of 0 only the rim is free at first; a hundred rounds let every ball of a rack move.
+    constexpr int kRounds = 100;
+    const std::vector<Vec2> slots = places;
+    const double contact = 4.0 * R * R;
+    const double reach = 2.0 * R + 3.0 * rack.jitter;  // two corners of two boxes, 2 sqrt(2) jitter
+    std::vector<std::vector<std::size_t>> near(slots.size());
     for (std::size_t i = 0; i < slots.size(); ++i) {
-        const Vec2 slot = slots[i];
-        int draws = 0;
-        bool overlaps = true;
-        while (overlaps) {
-            if (++draws > kDraws) {
-                throw RackError(
-                    fmt::format("jitter = {} leaves no place for the ball in slot {} of the rack; use a "
-                                "smaller jitter, a larger "
-                                "gap or another seed",
-                                rack.jitter, i + 1));
-            }
+        for (std::size_t j = 0; j < slots.size(); ++j) {
+            if (i != j && (slots[i] - slots[j]).squaredNorm() < reach * reach) near[i].push_back(j);
+        }
+    }
+    for (int round = 0; round < kRounds; ++round) {
+        for (std::size_t i = 0; i < slots.size(); ++i) {
             const double dx = rack.jitter * (2.0 * random.uniform() - 1.0);
             const double dy = rack.jitter * (2.0 * random.uniform() - 1.0);
-            slots[i] = slot + Vec2(dx, dy);
-            overlaps = false;
-            for (std::size_t j = 0; j < i && !overlaps; ++j)
-                overlaps = (slots[i] - slots[j]).squaredNorm() < reach;
+            const Vec2 place = slots[i] + Vec2(dx, dy);
+            const bool free = std::none_of(near[i].begin(), near[i].end(), [&](std::size_t j) {
+                return (place - places[j]).squaredNorm() < contact;
+            });
+            if (free) places[i] = place;
         }
     }
 }

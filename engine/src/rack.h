@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "carom/engine/vec.h"
@@ -25,21 +23,17 @@ struct RackedBall {
     Vec2 position;
 };
 
-/// No place is left for a jittered ball. what() tells the remedy.
-class RackError : public std::runtime_error {
-  public:
-    using std::runtime_error::runtime_error;
-};
-
 /// Places a rack with its apex at `apex`, rows towards +y, ordered by number.
 ///
 /// @param R  ball radius [m]
 ///
 /// Without jitter the rack is the exact mirror image of itself about x = apex.x, bit for bit, and neighbours
-/// are 2R + gap apart to within rounding. With jitter, balls are placed row by row from left to right, and a
-/// draw (x, then y) that would overlap a ball already placed is drawn again; the seed's draws go to the
-/// numbers first, then to the jitter.
-/// @throws RackError when a ball finds no place in 10 000 draws
+/// are 2R + gap apart to within rounding.
+///
+/// Jitter never makes balls overlap: in each of a hundred rounds every ball in turn, row by row from left to
+/// right, draws a place (x, then y) in the box of half-width `jitter` about its slot, and keeps its old one
+/// if the new one would overlap. Wide apart, that is a uniform draw; close together, a uniform draw among the
+/// racks that are possible. The seed's draws go to the numbers first, then to the jitter.
 std::vector<RackedBall> make_rack(const Rack& rack, const Vec2& apex, double R);
 
 }  // namespace carom

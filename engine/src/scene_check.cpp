@@ -81,10 +81,10 @@ void check_reach(const Section& top, const Scene& scene) {
 void check_noses(const Section& top, const Scene& scene) {
     const auto check = [&](const char* kind, const std::string& id, double height) {
         if (height < 2.0 * scene.balls.R) return;
-        top.fail("table", fmt::format("the nose of {} {} is {} m high, not below the top of a ball ({} m); "
-                                      "use larger balls or a lower "
-                                      "cushion",
-                                      kind, id, height, 2.0 * scene.balls.R));
+        top.fail(top.has("table") ? "table" : "balls",
+                 fmt::format("the nose of {} {} is {} m high, not below the top of a ball ({} m); "
+                             "use larger balls or a lower cushion",
+                             kind, id, height, 2.0 * scene.balls.R));
     };
     for (const Cushion& c : scene.table.cushions) check("cushion", c.id, c.height);
     for (const Jaw& j : scene.table.jaws) check("jaw", j.id, j.height);

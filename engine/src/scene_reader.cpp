@@ -80,7 +80,7 @@ Section::Section(const toml::table& table, const std::string& file, std::string 
     if (!unknown) return;
     if (path_.empty()) {
         fail(place(unknown->source()),
-             fmt::format("unknown section {}; the sections are {}", quoted(unknown->str()),
+             fmt::format("unknown section or key {}; the sections are {}", quoted(unknown->str()),
                          fmt::join(keys.begin(), keys.end(), ", ")));
     }
     fail(place(unknown->source()),

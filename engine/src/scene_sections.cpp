@@ -115,19 +115,15 @@ void read_rack(const Section& top, Scene& scene) {
         s.fail("count", "rack.count belongs to the game line; leave it out or set game = \"line\"");
     }
     rack.count = static_cast<int>(s.integer("count", rack.count, 1, kMaxBalls));
-    try {
-        const SourceLocation where = s.where();
-        for (const RackedBall& ball : make_rack(rack, foot_spot(scene.table), scene.balls.R)) {
-            if (scene.ball.size() == kMaxBalls)
-                s.fail(where, fmt::format("more than {} balls; leave some out", kMaxBalls));
-            BallStart start;
-            start.id = std::to_string(ball.number);
-            start.position = {ball.position.x(), ball.position.y(), scene.balls.R};
-            start.where = where;
-            scene.ball.push_back(start);
+    for (const RackedBall& ball : make_rack(rack, foot_spot(scene.table), scene.balls.R)) {
+        if (scene.ball.size() == kMaxBalls) {
+            s.fail(s.where(), fmt::format("more than {} balls; leave some out", kMaxBalls));
         }
-    } catch (const RackError& error) {
-        s.fail("jitter", error.what());
+        BallStart start;
+        start.id = std::to_string(ball.number);
+        start.position = {ball.position.x(), ball.position.y(), scene.balls.R};
+        start.where = s.where();
+        scene.ball.push_back(start);
     }
 }
 
