@@ -59,9 +59,9 @@ class Node {
         return value;
     }
 
-    double number_from(double least) const {
+    double non_negative() const {
         const double value = number();
-        if (value < least) fail("expected a number of at least " + Json(least).dump());
+        if (value < 0.0) fail("expected a number of at least 0");
         return value;
     }
 
@@ -126,8 +126,8 @@ class Node {
 Table read_table(const Node& node) {
     Table table;
     table.preset = node.at("preset").text();
-    table.width = node.at("width").number_from(0.0);
-    table.length = node.at("length").number_from(0.0);
+    table.width = node.at("width").non_negative();
+    table.length = node.at("length").non_negative();
     const Node cushions = node.at("cushions"), jaws = node.at("jaws"), pockets = node.at("pockets");
     for (std::size_t i = 0; i < cushions.size(); ++i) {
         const Node c = cushions.item(i);
@@ -136,7 +136,7 @@ Table read_table(const Node& node) {
     }
     for (std::size_t i = 0; i < jaws.size(); ++i) {
         const Node j = jaws.item(i);
-        table.jaws.push_back({j.at("id").text(), j.at("center").vector<2>(), j.at("radius").number_from(0.0),
+        table.jaws.push_back({j.at("id").text(), j.at("center").vector<2>(), j.at("radius").non_negative(),
                               j.at("height").number()});
     }
     for (std::size_t i = 0; i < pockets.size(); ++i) {
@@ -151,13 +151,13 @@ BallParams read_balls(const Node& node) {
     BallParams p{};
     p.R = node.at("R").positive();
     p.m = node.at("m").positive();
-    p.mu_s = node.at("mu_s").number_from(0.0);
-    p.mu_r = node.at("mu_r").number_from(0.0);
-    p.mu_sp = node.at("mu_sp").number_from(0.0);
-    p.mu_b = node.at("mu_b").number_from(0.0);
-    p.e_b = node.at("e_b").number_from(0.0);
-    p.e_c = node.at("e_c").number_from(0.0);
-    p.f_c = node.at("f_c").number_from(0.0);
+    p.mu_s = node.at("mu_s").non_negative();
+    p.mu_r = node.at("mu_r").non_negative();
+    p.mu_sp = node.at("mu_sp").non_negative();
+    p.mu_b = node.at("mu_b").non_negative();
+    p.e_b = node.at("e_b").non_negative();
+    p.e_c = node.at("e_c").non_negative();
+    p.f_c = node.at("f_c").non_negative();
     return p;
 }
 
@@ -174,16 +174,16 @@ RenderSettings read_render(const Node& node) {
 
 Segment read_segment(const Node& node) {
     Segment s;
-    s.start = node.at("start").number_from(0.0);
+    s.start = node.at("start").non_negative();
     s.state = node.at("state").one_of<MotionState>(5);
     s.r = node.at("r").vector<3>();
     s.v = node.at("v").vector<3>();
     s.w = node.at("w").vector<3>();
     s.a = node.at("a").vector<2>();
     s.dw = node.at("dw").vector<2>();
-    s.spin_decay = node.at("spin_decay").number_from(0.0);
+    s.spin_decay = node.at("spin_decay").non_negative();
     const Node duration = node.at("duration");
-    s.duration = duration.is_null() ? std::numeric_limits<double>::infinity() : duration.number_from(0.0);
+    s.duration = duration.is_null() ? std::numeric_limits<double>::infinity() : duration.non_negative();
     s.held = node.at("held").boolean();
     s.ends = node.at("ends").boolean();
     return s;
@@ -231,7 +231,7 @@ std::int64_t partners(EventType type, const Record& record) {
 
 Event read_event(const Node& node, const Record& record) {
     Event event;
-    event.time = node.at("time").number_from(0.0);
+    event.time = node.at("time").non_negative();
     event.type = node.at("type").one_of<EventType>(kEventTypes);
     event.a = static_cast<int>(node.at("a").integer(0, static_cast<std::int64_t>(record.tracks.size()) - 1));
     const std::int64_t count = partners(event.type, record);
@@ -249,9 +249,9 @@ const char* lasting(const std::string& text) {
 
 EventCost read_cost(const Node& node) {
     EventCost cost;
-    cost.detect_ns = node.at("detect_ns").number_from(0.0);
-    cost.resolve_ns = node.at("resolve_ns").number_from(0.0);
-    cost.kernel_ns = node.at("kernel_ns").number_from(0.0);
+    cost.detect_ns = node.at("detect_ns").non_negative();
+    cost.resolve_ns = node.at("resolve_ns").non_negative();
+    cost.kernel_ns = node.at("kernel_ns").non_negative();
     cost.steps = static_cast<long>(node.at("steps").integer(0, std::numeric_limits<std::int64_t>::max()));
     cost.method = lasting(node.at("method").text());
     return cost;
@@ -317,11 +317,11 @@ Record read_record(const std::string& path) {
         root.at("version").fail("this program reads version " + std::to_string(kRecordVersion) + " only");
     }
     Record record;
-    record.duration = root.at("duration").number_from(0.0);
+    record.duration = root.at("duration").non_negative();
     record.stopped = root.at("stopped").one_of<StopReason>(3);
     record.gravity = root.at("gravity").number();
     const bool profiled = root.at("profiled").boolean();
-    record.setup_detect_ns = root.at("setup_detect_ns").number_from(0.0);
+    record.setup_detect_ns = root.at("setup_detect_ns").non_negative();
     record.render = read_render(root.at("render"));
     record.table = read_table(root.at("table"));
     record.balls = read_balls(root.at("balls"));

@@ -263,7 +263,7 @@ TEST(RecordFile, AnyChangedByteIsReadOrRefused) {
     write_record(small, path);
     const std::string text = test::read_file(path);
     int refused = 0;
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 1000; ++i) {
         std::string bad = text;
         for (std::uint64_t n = rng.next() % 3; n-- > 0;)
             bad.erase(rng.next() % bad.size(), 1 + rng.next() % 20);
@@ -276,7 +276,7 @@ TEST(RecordFile, AnyChangedByteIsReadOrRefused) {
             ++refused;
         }
     }
-    EXPECT_GT(refused, 1500);
+    EXPECT_GT(refused, 500);
 }
 
 }  // namespace
