@@ -3,23 +3,15 @@
 
 #include <functional>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "carom/engine/record.h"
+#include "carom/render/backend.h"
+#include "carom/render/error.h"
+#include "carom/render/frame_size.h"
 
 namespace carom::render {
-
-/// A renderer that cannot start, or a file that cannot be written. what() names the package or the file.
-class RenderError : public std::runtime_error {
-  public:
-    using std::runtime_error::runtime_error;
-};
-
-struct FrameSize {
-    int width = 1280, height = 720;
-};
 
 struct SequenceOptions {
     std::string pattern = "frames/%05d.png";  ///< exactly one %d or %0Nd; empty: frames are encoded and thrown away
@@ -30,6 +22,7 @@ struct SequenceOptions {
     FrameSize size;
     std::string camera = "top";
     int png_level = 1;                ///< zlib level 0..9
+    Backend backend = Backend::kOsmesa;
     std::function<void(long done, long total)> progress;  ///< called after every frame
 };
 
@@ -40,7 +33,10 @@ struct FrameTiming {
     double draw_ms = 0.0, readback_ms = 0.0, encode_ms = 0.0, write_ms = 0.0;
 };
 
-/// Number of frames k with from + k / fps <= to.
+/// Time of frame k.
+double frame_time(double from, long k, double fps);
+
+/// Number of frames k with from + k / fps <= to; 0 when to < from. @throws RenderError unless fps > 0 and both times are finite
 long frame_count(double from, double to, double fps);
 
 /// Renders and writes (temporary name, then renamed). Makes the folder of the pattern if its parent exists.
