@@ -63,8 +63,9 @@ Handle display() {
     static const Handle shared = [] {
         Handle opened = egl().get_platform_display(kPlatformSurfaceless, nullptr, nullptr);
         if (opened == nullptr || egl().initialize(opened, nullptr, nullptr) == 0) {
-            throw RenderError("EGL has no surfaceless platform; install the Debian packages libegl-mesa0 and "
-                              "libgl1-mesa-dri, or use --gl osmesa");
+            throw RenderError(
+                "EGL has no surfaceless platform; install the Debian packages libegl-mesa0 and "
+                "libgl1-mesa-dri, or use --gl osmesa");
         }
         return opened;
     }();
@@ -76,11 +77,13 @@ class EglContext final : public Context {
     EglContext() {
         Handle shared = display();
         egl().bind_api(kOpenGlApi);
-        const std::array<EglInt, 7> attributes{kContextMajor, 3, kContextMinor, 3, kProfileMask, kCoreProfile, kNone};
+        const std::array<EglInt, 7> attributes{kContextMajor, 3,    kContextMinor, 3, kProfileMask,
+                                               kCoreProfile,  kNone};
         context_ = egl().create_context(shared, nullptr, nullptr, attributes.data());
         if (context_ == nullptr) {
-            throw RenderError("EGL gives no OpenGL 3.3 core context; install the Debian package libgl1-mesa-dri, or "
-                              "use --gl osmesa");
+            throw RenderError(
+                "EGL gives no OpenGL 3.3 core context; install the Debian package libgl1-mesa-dri, or "
+                "use --gl osmesa");
         }
     }
     ~EglContext() override { egl().destroy_context(display(), context_); }

@@ -1,5 +1,5 @@
-// OSMesa: Mesa's software renderer into memory. Only its header is needed to build; it pulls in <GL/gl.h>, whose names
-// collide with those of <GL/glcorearb.h>, so that nothing of it leaves this file.
+// OSMesa: Mesa's software renderer into memory. Only its header is needed to build; it pulls in <GL/gl.h>,
+// whose names collide with those of <GL/glcorearb.h>, so that nothing of it leaves this file.
 #include <GL/osmesa.h>
 
 #include <array>
@@ -46,9 +46,17 @@ void* lookup_osmesa(const char* function) {
 class OsmesaContext final : public Context {
   public:
     OsmesaContext() {
-        const std::array<int, 11> attributes{OSMESA_FORMAT, OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                                             OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 3,
-                                             OSMESA_DEPTH_BITS, 0, 0};
+        const std::array<int, 11> attributes{OSMESA_FORMAT,
+                                             OSMESA_RGBA,
+                                             OSMESA_PROFILE,
+                                             OSMESA_CORE_PROFILE,
+                                             OSMESA_CONTEXT_MAJOR_VERSION,
+                                             3,
+                                             OSMESA_CONTEXT_MINOR_VERSION,
+                                             3,
+                                             OSMESA_DEPTH_BITS,
+                                             0,
+                                             0};
         context_ = osmesa().create(attributes.data(), nullptr);
         if (context_ == nullptr) throw RenderError("OSMesa gives no OpenGL 3.3 core context; use --gl egl");
     }

@@ -49,7 +49,8 @@ bool is_covered(const Record& record, std::size_t ball, double t) {
 Stage::Stage(const Record& record, const std::string& camera, FrameSize size)
     : record_(record), camera_(camera), size_(size) {
     if (camera != "top") throw RenderError("unknown camera '" + camera + "'; use top");
-    table_ = std::make_shared<const TableMesh>(make_table_mesh(record.table, record.balls.R, visited_places(record)));
+    table_ = std::make_shared<const TableMesh>(
+        make_table_mesh(record.table, record.balls.R, visited_places(record)));
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         styles_.push_back(ball_style(record.tracks[i].id, record.table.preset, static_cast<int>(i)));
     }

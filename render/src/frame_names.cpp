@@ -13,7 +13,8 @@ double frame_time(double from, long k, double fps) {
 
 long frame_count(double from, double to, double fps) {
     if (!(fps > 0.0) || !std::isfinite(fps)) throw RenderError("fps must be a number above 0");
-    if (!std::isfinite(from) || !std::isfinite(to)) throw RenderError("the first and last time must be finite");
+    if (!std::isfinite(from) || !std::isfinite(to))
+        throw RenderError("the first and last time must be finite");
     if (to < from) return 0;
     const double frames = (to - from) * fps;
     if (frames > 1e9) throw RenderError("more than 1e9 frames; lower --fps or give --to");
@@ -37,7 +38,8 @@ std::optional<Conversion> read_conversion(const std::string& pattern, std::size_
     Conversion found{at, 0, 0};
     if (i < pattern.size() && pattern[i] == '0') {
         std::size_t digits = 0;
-        for (++i; i < pattern.size() && std::isdigit(static_cast<unsigned char>(pattern[i])) != 0; ++i, ++digits) {
+        for (++i; i < pattern.size() && std::isdigit(static_cast<unsigned char>(pattern[i])) != 0;
+             ++i, ++digits) {
             found.width = 10 * found.width + (pattern[i] - '0');
             if (digits == 2) return std::nullopt;
         }
@@ -52,7 +54,8 @@ std::optional<Conversion> read_conversion(const std::string& pattern, std::size_
 
 std::string frame_path(const std::string& pattern, long k) {
     const auto refuse = [&] {
-        throw RenderError("bad frame pattern '" + pattern + "'; give exactly one %d or %0Nd, like frames/%05d.png");
+        throw RenderError("bad frame pattern '" + pattern +
+                          "'; give exactly one %d or %0Nd, like frames/%05d.png");
     };
     std::string path;
     int conversions = 0;

@@ -1,5 +1,5 @@
-// An OpenGL 3.3 core context without a window. Three functions, so that any way of getting one fits behind it.
-// Includes no OpenGL header: those of OSMesa and of the loader do not go together.
+// An OpenGL 3.3 core context without a window. Three functions, so that any way of getting one fits behind
+// it. Includes no OpenGL header: those of OSMesa and of the loader do not go together.
 #pragma once
 
 #include <memory>

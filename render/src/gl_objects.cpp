@@ -31,7 +31,8 @@ GLuint compile(const Api& api, GLenum stage, const char* source) {
 
 GLuint make_program(const Api& api, const char* vertex, const char* fragment) {
     const GLuint program = api.CreateProgram();
-    const std::array<GLuint, 2> stages{compile(api, GL_VERTEX_SHADER, vertex), compile(api, GL_FRAGMENT_SHADER, fragment)};
+    const std::array<GLuint, 2> stages{compile(api, GL_VERTEX_SHADER, vertex),
+                                       compile(api, GL_FRAGMENT_SHADER, fragment)};
     for (GLuint stage : stages) api.AttachShader(program, stage);
     api.LinkProgram(program);
     for (GLuint stage : stages) api.DeleteShader(stage);
@@ -58,7 +59,8 @@ GLuint make_texture(const Api& api, int width, int height, GLenum internal_forma
     api.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     api.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     api.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    api.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal_format), width, height, 0, format, type, texels);
+    api.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal_format), width, height, 0, format, type,
+                   texels);
     return texture;
 }
 

@@ -7,10 +7,11 @@
 
 namespace carom::render {
 
-inline constexpr int kGlyphColumns = 8, kGlyphRows = 8;            ///< cells of the atlas
-inline constexpr int kGlyphWidth = 24, kGlyphHeight = 36;          ///< texels of a cell
-inline constexpr float kGlyphReach = 1.5F;                         ///< distance [units] at which the atlas saturates
-inline constexpr float kGlyphUnitsX = 6.0F, kGlyphUnitsY = 9.0F;   ///< units of a cell; letters are 4 x 6, margin 1 to 2
+inline constexpr int kGlyphColumns = 8, kGlyphRows = 8;    ///< cells of the atlas
+inline constexpr int kGlyphWidth = 24, kGlyphHeight = 36;  ///< texels of a cell
+inline constexpr float kGlyphReach = 1.5F;                 ///< distance [units] at which the atlas saturates
+inline constexpr float kGlyphUnitsX = 6.0F,
+                       kGlyphUnitsY = 9.0F;  ///< units of a cell; letters are 4 x 6, margin 1 to 2
 
 /// Characters in the order of the cells.
 inline constexpr std::string_view kGlyphs = "0123456789.:-%/+=()ABCDEFGHIJKLMNOPQRSTUVWXYZ";

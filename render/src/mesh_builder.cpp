@@ -25,20 +25,30 @@ Vec3 lift(const Vec2& p, double z) {
 
 MeshVertex MeshBuilder::vertex(const Vec3& p, const Vec3& n, double u, double v, Material material) const {
     const auto f = [](double value) { return static_cast<float>(value); };
-    return {f(p.x() - mesh_.origin.x()), f(p.y() - mesh_.origin.y()), f(p.z()), f(n.x()), f(n.y()), f(n.z()),
-            f(u), f(v), static_cast<float>(material)};
+    return {f(p.x() - mesh_.origin.x()),
+            f(p.y() - mesh_.origin.y()),
+            f(p.z()),
+            f(n.x()),
+            f(n.y()),
+            f(n.z()),
+            f(u),
+            f(v),
+            static_cast<float>(material)};
 }
 
 void MeshBuilder::triangle(const MeshVertex& a, const MeshVertex& b, const MeshVertex& c) {
-    auto& list = is_blended(static_cast<Material>(static_cast<int>(a.material))) ? mesh_.blended : mesh_.solid;
+    auto& list =
+        is_blended(static_cast<Material>(static_cast<int>(a.material))) ? mesh_.blended : mesh_.solid;
     list.insert(list.end(), {a, b, c});
 }
 
-void MeshBuilder::quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, Material material, double u) {
+void MeshBuilder::quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, Material material,
+                       double u) {
     const Vec3 normal = (c - a).cross(d - b).normalized();
     const double length = (b - a).norm(), width = (d - a).norm();
     const bool blend = is_blended(material);
-    const MeshVertex va = vertex(a, normal, u, 0.0, material), vb = vertex(b, normal, blend ? u : length, 0.0, material);
+    const MeshVertex va = vertex(a, normal, u, 0.0, material),
+                     vb = vertex(b, normal, blend ? u : length, 0.0, material);
     const MeshVertex vc = vertex(c, normal, blend ? u : length, width, material);
     const MeshVertex vd = vertex(d, normal, u, width, material);
     triangle(va, vb, vc);
@@ -56,10 +66,12 @@ void MeshBuilder::polygon(const std::vector<Vec2>& outline, double z, Material m
     }
 }
 
-void MeshBuilder::sweep(const Chain& outline, const std::vector<ProfileRow>& rows, Material material, bool smooth) {
+void MeshBuilder::sweep(const Chain& outline, const std::vector<ProfileRow>& rows, Material material,
+                        bool smooth) {
     const std::size_t n = outline.points.size(), pieces = outline.closed ? n : n - 1;
     std::vector<std::vector<Vec2>> lines;
-    for (const ProfileRow& row : rows) lines.push_back(offset_left(outline.points, outline.closed, row.offset));
+    for (const ProfileRow& row : rows)
+        lines.push_back(offset_left(outline.points, outline.closed, row.offset));
     // Angle of the profile's normal from the vertical, towards the right-hand (playing) side, of each row.
     const auto slope = [&](std::size_t row) {
         const double along = rows[row + 1].offset - rows[row].offset, up = rows[row + 1].z - rows[row].z;
@@ -83,7 +95,8 @@ void MeshBuilder::sweep(const Chain& outline, const std::vector<ProfileRow>& row
                 const Vec3 normal = lift(right * std::sin(t), std::cos(t));
                 const Vec3 p = lift(lines[row][point], outline.heights[point] + rows[row].z);
                 const bool blend = is_blended(material);
-                return vertex(p, normal, blend ? rows[row].opacity : where, blend ? 0.0 : rows[row].offset, material);
+                return vertex(p, normal, blend ? rows[row].opacity : where, blend ? 0.0 : rows[row].offset,
+                              material);
             };
             const MeshVertex a = corner(strip, i, along), b = corner(strip, j, along + length);
             const MeshVertex c = corner(strip + 1, j, along + length), d = corner(strip + 1, i, along);
@@ -94,7 +107,8 @@ void MeshBuilder::sweep(const Chain& outline, const std::vector<ProfileRow>& row
     }
 }
 
-void MeshBuilder::disc(const Vec2& center, double inner, double outer, double z, Material material, double u) {
+void MeshBuilder::disc(const Vec2& center, double inner, double outer, double z, Material material,
+                       double u) {
     for (int i = 0; i < kCirclePieces; ++i) {
         quad(lift(on_circle(center, inner, i), z), lift(on_circle(center, outer, i), z),
              lift(on_circle(center, outer, i + 1), z), lift(on_circle(center, inner, i + 1), z), material, u);

@@ -9,10 +9,12 @@ namespace carom::render {
 
 namespace {
 
-// [m] Ends closer than this are drawn as joined: far below a pixel, far above the rounding of typed coordinates.
+// [m] Ends closer than this are drawn as joined: far below a pixel, far above the rounding of typed
+// coordinates.
 constexpr double kJoin = 1e-5;
 
-// [m] An end lies on a jaw when it is this close to its circle: tangent points typed with four decimals count.
+// [m] An end lies on a jaw when it is this close to its circle: tangent points typed with four decimals
+// count.
 constexpr double kOnJaw = 2e-4;
 
 // [rad] Length of one straight piece of a drawn arc.
@@ -30,7 +32,8 @@ const Vec2& point_of(const Table& table, int end) {
 
 int jaw_at(const Table& table, const Vec2& point) {
     for (std::size_t j = 0; j < table.jaws.size(); ++j) {
-        if (std::abs((point - table.jaws[j].center).norm() - table.jaws[j].radius) < kOnJaw) return static_cast<int>(j);
+        if (std::abs((point - table.jaws[j].center).norm() - table.jaws[j].radius) < kOnJaw)
+            return static_cast<int>(j);
     }
     return -1;
 }
@@ -45,7 +48,8 @@ std::vector<Link> link_ends(const Table& table) {
     const auto free = [&](int a) { return links[static_cast<std::size_t>(a)].end < 0; };
     for (int a = 0; a < ends; ++a) {
         for (int b = a + 1; b < ends && free(a); ++b) {
-            if (free(b) && b / 2 != a / 2 && (point_of(table, a) - point_of(table, b)).norm() < kJoin) join(a, b, -1);
+            if (free(b) && b / 2 != a / 2 && (point_of(table, a) - point_of(table, b)).norm() < kJoin)
+                join(a, b, -1);
         }
     }
     for (int a = 0; a < ends; ++a) {
@@ -64,7 +68,8 @@ void append_arc(Chain& chain, const Jaw& jaw, const Vec2& a, const Vec2& b) {
     const int pieces = std::max(2, static_cast<int>(std::ceil(std::abs(angle) / kArcStep)));
     for (int i = 1; i < pieces; ++i) {
         const double turn = angle * i / pieces, c = std::cos(turn), s = std::sin(turn);
-        chain.points.push_back(jaw.center + Vec2(c * start.x() - s * start.y(), s * start.x() + c * start.y()));
+        chain.points.push_back(jaw.center +
+                               Vec2(c * start.x() - s * start.y(), s * start.x() + c * start.y()));
         chain.heights.push_back(jaw.height);
     }
     chain.has_jaw = true;
@@ -120,7 +125,8 @@ std::vector<Chain> join_outline(const Table& table) {
 
 double signed_area(const std::vector<Vec2>& polygon) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < polygon.size(); ++i) sum += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        sum += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
     return 0.5 * sum;
 }
 

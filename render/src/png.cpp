@@ -37,15 +37,17 @@ void flush_nothing(png_structp) {}
 // Plain data only between setjmp and longjmp: no destructor may be skipped.
 bool encode_rows(png_structp png, png_infop info, const Image& image, int level) {
     if (setjmp(png_jmpbuf(png))) return false;
-    const auto width = static_cast<png_uint_32>(image.size.width), height = static_cast<png_uint_32>(image.size.height);
-    png_set_IHDR(png, info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
+    const auto width = static_cast<png_uint_32>(image.size.width),
+               height = static_cast<png_uint_32>(image.size.height);
+    png_set_IHDR(png, info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
     png_set_compression_level(png, level);
     png_set_compression_buffer_size(png, 256 * 1024);
     png_write_info(png, info);
     png_set_filler(png, 0, PNG_FILLER_AFTER);  // drops the fourth channel; libpng wants it after the info
-    for (png_uint_32 y = 0; y < height; ++y) png_write_row(png, image.rgbx.data() + std::size_t{4} * y * width);
+    for (png_uint_32 y = 0; y < height; ++y)
+        png_write_row(png, image.rgbx.data() + std::size_t{4} * y * width);
     png_write_end(png, info);
     return true;
 }
@@ -62,7 +64,8 @@ bool decode_rows(png_structp png, png_infop info, std::FILE* file, Image& image)
     png_read_update_info(png, info);
     const png_uint_32 width = png_get_image_width(png, info), height = png_get_image_height(png, info);
     image.resize({static_cast<int>(width), static_cast<int>(height)});
-    for (png_uint_32 y = 0; y < height; ++y) png_read_row(png, image.rgbx.data() + std::size_t{4} * y * width, nullptr);
+    for (png_uint_32 y = 0; y < height; ++y)
+        png_read_row(png, image.rgbx.data() + std::size_t{4} * y * width, nullptr);
     return true;
 }
 
@@ -75,7 +78,8 @@ void encode_png(const Image& image, int level, std::vector<std::uint8_t>& bytes)
     png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
     if (info == nullptr) {
         png_destroy_write_struct(&png, nullptr);
-        throw RenderError("libpng cannot start: out of memory, or another version than the one carom was built with");
+        throw RenderError(
+            "libpng cannot start: out of memory, or another version than the one carom was built with");
     }
     png_set_write_fn(png, &bytes, append_bytes, flush_nothing);
     const bool good = encode_rows(png, info, image, level);

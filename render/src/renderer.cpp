@@ -35,7 +35,8 @@ BallInstance make_instance(const DrawBall& ball, const Vec3& origin, double dist
     const BallStyle& style = ball.style;
     return {{f(center.x()), f(center.y()), f(center.z()), f(ball.radius)},
             {f(q.x()), f(q.y()), f(q.z()), f(q.w())},
-            {linear(style.color[0]), linear(style.color[1]), linear(style.color[2]), static_cast<float>(style.number)},
+            {linear(style.color[0]), linear(style.color[1]), linear(style.color[2]),
+             static_cast<float>(style.number)},
             {static_cast<float>(style.pattern), ball.in_pocket ? 1.0F : 0.0F, f(distance)}};
 }
 
@@ -89,7 +90,8 @@ struct Renderer::Impl {
             api.DeleteFramebuffers(1, &framebuffer);
             api.DeleteTextures(1, &color);
         }
-        color = gl::make_texture(api, wanted.width, wanted.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+        color =
+            gl::make_texture(api, wanted.width, wanted.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
         framebuffer = gl::make_framebuffer(api, color, 0);
         size = wanted;
     }
@@ -105,8 +107,9 @@ struct Renderer::Impl {
                 instances.push_back(make_instance(ball, origin, distance));
             }
         }
-        std::stable_sort(instances.begin(), instances.end(),
-                         [](const BallInstance& a, const BallInstance& b) { return a.pattern[2] > b.pattern[2]; });
+        std::stable_sort(
+            instances.begin(), instances.end(),
+            [](const BallInstance& a, const BallInstance& b) { return a.pattern[2] > b.pattern[2]; });
         api.BindBuffer(GL_ARRAY_BUFFER, ball_buffer);
         api.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(instances.size() * sizeof(BallInstance)),
                        instances.data(), GL_STREAM_DRAW);
@@ -126,7 +129,8 @@ struct Renderer::Impl {
         api.Viewport(0, 0, size.width, size.height);
         api.BindFramebuffer(GL_READ_FRAMEBUFFER, table_layer->framebuffer());
         api.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-        api.BlitFramebuffer(0, 0, size.width, size.height, 0, 0, size.width, size.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        api.BlitFramebuffer(0, 0, size.width, size.height, 0, 0, size.width, size.height, GL_COLOR_BUFFER_BIT,
+                            GL_NEAREST);
         api.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
         api.Disable(GL_DEPTH_TEST);
         api.Enable(GL_BLEND);

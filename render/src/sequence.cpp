@@ -40,8 +40,8 @@ FrameRange frames_of(const Record& record, const SequenceOptions& options) {
     const long count = frame_count(options.from, options.to.value_or(record.duration), options.fps);
     if (!options.frame) return {0, count};
     if (*options.frame < 0 || *options.frame >= count) {
-        throw RenderError("no frame " + std::to_string(*options.frame) + ": there are " + std::to_string(count) +
-                          ", counted from 0");
+        throw RenderError("no frame " + std::to_string(*options.frame) + ": there are " +
+                          std::to_string(count) + ", counted from 0");
     }
     return {*options.frame, 1};
 }
@@ -62,7 +62,9 @@ std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOpt
         timing.frame = range.first + i;
         timing.time = frame_time(options.from, timing.frame, options.fps);
         Clock::time_point mark = Clock::now();
-        renderer.draw(stage.at(timing.time));
+        DrawList list = stage.at(timing.time);
+        list.table_samples = options.table_samples;
+        renderer.draw(list);
         timing.draw_ms = ms_since(mark);
         renderer.read(image);
         timing.readback_ms = ms_since(mark);

@@ -3,7 +3,7 @@
 
 namespace carom::render::shaders {
 
-extern const char* const kCommon;          ///< version line, camera, lamp, noise: put before every other source
+extern const char* const kCommon;  ///< version line, camera, lamp, noise: put before every other source
 extern const char* const kTableVertex;
 extern const char* const kTableFragment;
 extern const char* const kFullscreenVertex;

@@ -106,7 +106,7 @@ vec3 albedo(vec3 b, float w) {
         float from_axis = length(a.x > a.y && a.x > a.z ? a.yz : (a.y > a.z ? a.xz : a.xy));
         float luminance = dot(base, vec3(0.3, 0.6, 0.1));
         vec3 dot_color = luminance > 0.3 ? from_srgb(vec3(0.72, 0.05, 0.07)) : from_srgb(vec3(0.93, 0.90, 0.82));
-        base = mix(base, dot_color, inside(from_axis - 0.16, w));
+        base = mix(base, dot_color, inside(from_axis - 0.20, w));
     }
     if (pattern == 3) base = mix(base, mix(base, vec3(1.0), 0.65), inside(b.x, w));
     int number = int(v_color.a + 0.5);

@@ -2,7 +2,8 @@
 
 namespace carom::render::shaders {
 
-// All positions are relative to the origin of the table mesh: floats then keep a tenth of a micrometre on any table.
+// All positions are relative to the origin of the table mesh: floats then keep a tenth of a micrometre on any
+// table.
 const char* const kCommon = R"(#version 330 core
 uniform mat4 u_view_projection;
 uniform vec3 u_eye;

@@ -12,8 +12,8 @@ void* open_library(const char* const* names, int count, const std::string& packa
         if (void* library = dlopen(names[i], RTLD_NOW | RTLD_LOCAL)) return library;
         if (reason.empty()) reason = dlerror();
     }
-    throw RenderError(std::string("cannot load ") + names[0] + " (" + reason + "); install the Debian package " +
-                      package);
+    throw RenderError(std::string("cannot load ") + names[0] + " (" + reason +
+                      "); install the Debian package " + package);
 }
 
 void* find_symbol(void* library, const char* symbol, const std::string& package) {

@@ -29,7 +29,8 @@ struct StaticLayer::Scratch {
     Scratch(const gl::Api& a, int width, int height) : api(a) {
         pass = gl::make_texture(api, width, height, GL_RGBA16F, GL_RGBA, GL_FLOAT, nullptr);
         sum = gl::make_texture(api, width, height, GL_RGBA16F, GL_RGBA, GL_FLOAT, nullptr);
-        depth = gl::make_texture(api, width, height, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
+        depth = gl::make_texture(api, width, height, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT,
+                                 nullptr);
         pass_framebuffer = gl::make_framebuffer(api, pass, depth);
         sum_framebuffer = gl::make_framebuffer(api, sum, 0);
     }
@@ -60,10 +61,12 @@ void StaticLayer::upload(const TableMesh& table) {
     blended_count_ = static_cast<GLsizei>(table.blended.size());
     api_.BindVertexArray(vertex_array_);
     api_.BindBuffer(GL_ARRAY_BUFFER, buffer_);
-    api_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(all.size() * sizeof(MeshVertex)), all.data(), GL_STATIC_DRAW);
+    api_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(all.size() * sizeof(MeshVertex)), all.data(),
+                    GL_STATIC_DRAW);
     const auto attribute = [&](GLuint index, std::size_t offset) {
         api_.EnableVertexAttribArray(index);
-        api_.VertexAttribPointer(index, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), reinterpret_cast<const void*>(offset));
+        api_.VertexAttribPointer(index, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex),
+                                 reinterpret_cast<const void*>(offset));
     };
     attribute(0, offsetof(MeshVertex, x));
     attribute(1, offsetof(MeshVertex, nx));
@@ -74,7 +77,8 @@ void StaticLayer::upload(const TableMesh& table) {
 void StaticLayer::resize(int width, int height) {
     if (width == width_ && height == height_) return;
     if (color_ != 0) {
-        const GLuint textures[] = {color_, occluders_}, framebuffers[] = {color_framebuffer_, occluders_framebuffer_};
+        const GLuint textures[] = {color_, occluders_},
+                     framebuffers[] = {color_framebuffer_, occluders_framebuffer_};
         api_.DeleteFramebuffers(2, framebuffers);
         api_.DeleteTextures(2, textures);
     }
@@ -86,7 +90,8 @@ void StaticLayer::resize(int width, int height) {
     height_ = height;
 }
 
-void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, double jx, double jy) {
+void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, double jx,
+                            double jy) {
     api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.pass_framebuffer);
     api_.DepthMask(GL_TRUE);
     api_.ClearColor(0.004F, 0.004F, 0.004F, 0.0F);
@@ -96,7 +101,8 @@ void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scra
     api_.Disable(GL_BLEND);
     view.set(api_, table_program_);
     const auto at = [&](const char* uniform) { return api_.GetUniformLocation(table_program_, uniform); };
-    api_.Uniform2f(at("u_jitter"), static_cast<float>(2.0 * jx / width_), static_cast<float>(2.0 * jy / height_));
+    api_.Uniform2f(at("u_jitter"), static_cast<float>(2.0 * jx / width_),
+                   static_cast<float>(2.0 * jy / height_));
     std::vector<float> holes;
     for (const Hole& hole : table.holes) {
         if (holes.size() == 4 * kMaxHoles) break;
@@ -131,7 +137,8 @@ void StaticLayer::add_pass(const View& view, const Scratch& scratch, int pass, i
     api_.DrawArrays(GL_TRIANGLES, 0, 3);
     api_.Disable(GL_BLEND);
 
-    // The first four passes also leave their depths, one channel each; with fewer passes the last fills the rest.
+    // The first four passes also leave their depths, one channel each; with fewer passes the last fills the
+    // rest.
     if (pass >= 4) return;
     const auto mask = [&](int channel) {
         return static_cast<GLboolean>(channel == pass || (pass == samples - 1 && channel > pass));

@@ -13,8 +13,10 @@ class StaticLayer {
     /// Draws the table: `samples` jittered passes, averaged in linear light.
     void draw(const TableMesh& table, const View& view, int samples);
 
-    GLuint color() const { return color_; }              ///< RGBA8; alpha: how much of the pixel is cloth
-    GLuint occluders() const { return occluders_; }      ///< RGBA32F: four distances along the view, over the pixel
+    GLuint color() const { return color_; }  ///< RGBA8; alpha: how much of the pixel is cloth
+    GLuint occluders() const {
+        return occluders_;
+    }  ///< RGBA32F: four distances along the view, over the pixel
     GLuint framebuffer() const { return color_framebuffer_; }
 
   private:

@@ -40,8 +40,8 @@ void add_diamonds(const Table& table, const TableMesh& mesh, MeshBuilder& builde
     }
 }
 
-// Baulk line and D of an English table, and its six spots (World Snooker rules, section 1; baulk line 29 in from the
-// bottom cushion face, D of 11 1/2 in; black spot 12 3/4 in from the top cushion).
+// Baulk line and D of an English table, and its six spots (World Snooker rules, section 1; baulk line 29 in
+// from the bottom cushion face, D of 11 1/2 in; black spot 12 3/4 in from the top cushion).
 void add_snooker_marks(const Table& table, MeshBuilder& builder) {
     const double w = table.width, l = table.length, baulk = 0.737, d = 0.292;
     line(builder, {0.0, baulk}, {w, baulk}, 0.003, 0.6);
@@ -72,7 +72,7 @@ void add_table_marks(const Table& table, TableMesh& mesh, MeshBuilder& builder, 
         return;
     }
     line(builder, {0.0, 0.25 * l}, {w, 0.25 * l}, 0.003, 0.30);
-    spot(builder, {0.5 * w, 0.75 * l}, 0.007);
+    spot(builder, foot_spot(table), 0.007);
 }
 
 }  // namespace carom::render

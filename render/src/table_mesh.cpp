@@ -11,11 +11,11 @@ namespace carom::render {
 namespace {
 
 // Proportions of what the engine does not know because no ball feels it [m].
-constexpr double kCushionWidth = 0.05;   // of a cushion without facings to tell its depth
-constexpr double kRailWidth = 0.095;     // of the wooden rail outside the cushion
+constexpr double kCushionWidth = 0.05;    // of a cushion without facings to tell its depth
+constexpr double kRailWidth = 0.095;      // of the wooden rail outside the cushion
 constexpr double kWallHalfWidth = 0.004;  // of a cushion that balls meet on both sides
-constexpr double kShadeWidth = 0.045;    // of the dark seam along a cushion
-constexpr double kApron = 0.22;          // how far the frame reaches down
+constexpr double kShadeWidth = 0.045;     // of the dark seam along a cushion
+constexpr double kApron = 0.22;           // how far the frame reaches down
 
 struct Box {
     Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
@@ -50,8 +50,10 @@ class TableMaker {
         for (Chain& chain : chains) add_chain(chain);
         for (const Jaw& jaw : table_.jaws) add_jaw(jaw);
         if (!framed_) {
-            if (is_railed(chains)) add_frame();
-            else add_endless_cloth();
+            if (is_railed(chains))
+                add_frame();
+            else
+                add_endless_cloth();
         }
         for (const Pocket& pocket : table_.pockets) add_pocket(pocket);
         add_table_marks(table_, mesh_, builder_, kCushionWidth + 0.5 * kRailWidth);
@@ -100,16 +102,19 @@ class TableMaker {
     }
 
     bool holds_balls(const Chain& chain) const {
-        return visited_.empty() || std::any_of(visited_.begin(), visited_.end(),
-                                               [&](const Vec2& ball) { return contains(chain.points, ball); });
+        return visited_.empty() || std::any_of(visited_.begin(), visited_.end(), [&](const Vec2& ball) {
+                   return contains(chain.points, ball);
+               });
     }
 
     void add_chain(Chain& chain) {
         if (chain.closed) {
             const bool around_balls = holds_balls(chain) && !framed_;
             if ((signed_area(chain.points) > 0.0) == around_balls) reverse(chain);
-            if (around_balls) add_surrounding(chain);
-            else add_body(chain);
+            if (around_balls)
+                add_surrounding(chain);
+            else
+                add_body(chain);
         } else if (chain.has_jaw && chain.points.size() > 2) {
             if (signed_area(chain.points) < 0.0) reverse(chain);
             add_body(chain);
@@ -127,8 +132,10 @@ class TableMaker {
     void shade_cloth(const Chain& chain) {
         Chain ground = chain;
         std::fill(ground.heights.begin(), ground.heights.end(), 0.0004);
-        builder_.sweep(ground, {{-kShadeWidth, 0.0, 0.0}, {-0.4 * kShadeWidth, 0.0, 0.10}, {0.0, 0.0, 0.42},
-                                {0.012, 0.0, 0.6}}, Material::kShade, false);
+        builder_.sweep(
+            ground,
+            {{-kShadeWidth, 0.0, 0.0}, {-0.4 * kShadeWidth, 0.0, 0.10}, {0.0, 0.0, 0.42}, {0.012, 0.0, 0.6}},
+            Material::kShade, false);
     }
 
     // The side that balls meet: from under the nose, over the nose, to where the flat top begins.
@@ -138,7 +145,9 @@ class TableMaker {
         const double height = chain.heights.front();
         builder_.sweep(ground, {{inset, 0.0, 0.0}, {0.0, height - 0.003, 0.0}}, Material::kCushion, true);
         builder_.sweep(ground,
-                       {{0.0, height - 0.003, 0.0}, {0.0003, height, 0.0}, {0.4 * inset, height + 0.0022, 0.0},
+                       {{0.0, height - 0.003, 0.0},
+                        {0.0003, height, 0.0},
+                        {0.4 * inset, height + 0.0022, 0.0},
                         {inset, height + 0.003, 0.0}},
                        Material::kCushion, true);
         shade_cloth(chain);
@@ -177,10 +186,14 @@ class TableMaker {
         const double top = mesh_.wood_top;
         builder_.sweep(inner, {{0.0, top - 0.012, 0.0}, {0.0, top - 0.002, 0.0}}, Material::kWood, false);
         builder_.sweep(inner,
-                       {{0.0, top - 0.002, 0.0}, {0.002, top, 0.0}, {kRailWidth - 0.010, top, 0.0},
-                        {kRailWidth - 0.003, top - 0.003, 0.0}, {kRailWidth, top - 0.010, 0.0}},
+                       {{0.0, top - 0.002, 0.0},
+                        {0.002, top, 0.0},
+                        {kRailWidth - 0.010, top, 0.0},
+                        {kRailWidth - 0.003, top - 0.003, 0.0},
+                        {kRailWidth, top - 0.010, 0.0}},
                        Material::kWood, false);
-        builder_.sweep(inner, {{kRailWidth, top - 0.010, 0.0}, {kRailWidth, -kApron, 0.0}}, Material::kWood, false);
+        builder_.sweep(inner, {{kRailWidth, top - 0.010, 0.0}, {kRailWidth, -kApron, 0.0}}, Material::kWood,
+                       false);
         Box box, outer;
         for (const Vec2& p : inner.points) box.add(p);
         for (const Vec2& p : offset_left(inner.points, true, kRailWidth)) outer.add(p);
@@ -192,7 +205,9 @@ class TableMaker {
     }
 
     void add_frame() {
-        builder_.polygon({outline_.low, {outline_.high.x(), outline_.low.y()}, outline_.high,
+        builder_.polygon({outline_.low,
+                          {outline_.high.x(), outline_.low.y()},
+                          outline_.high,
                           {outline_.low.x(), outline_.high.y()}},
                          0.0, Material::kCloth);
         add_wood(rectangle(outline_.low, outline_.high, 0.0));
@@ -200,7 +215,8 @@ class TableMaker {
 
     void add_endless_cloth() {
         Box shown = played_;
-        if (!outline_.empty() && (outline_.high - outline_.low).norm() < 20.0 * (played_.high - played_.low).norm()) {
+        if (!outline_.empty() &&
+            (outline_.high - outline_.low).norm() < 20.0 * (played_.high - played_.low).norm()) {
             shown.add(outline_.low);
             shown.add(outline_.high);
         }
@@ -217,8 +233,8 @@ class TableMaker {
     void add_floor() {
         const double reach = 6.0 * (mesh_.bounds.high - mesh_.bounds.low).maxCoeff(), z = -0.75;
         const Vec2 low = mesh_.origin - Vec2(reach, reach), high = mesh_.origin + Vec2(reach, reach);
-        builder_.quad({low.x(), low.y(), z}, {high.x(), low.y(), z}, {high.x(), high.y(), z}, {low.x(), high.y(), z},
-                      Material::kFloor);
+        builder_.quad({low.x(), low.y(), z}, {high.x(), low.y(), z}, {high.x(), high.y(), z},
+                      {low.x(), high.y(), z}, Material::kFloor);
     }
 
     void finish_bounds(const Box& box, double room) {
@@ -230,10 +246,11 @@ class TableMaker {
 
     void add_jaw(const Jaw& jaw) {
         // Joined jaws lie inside their cushion; only a free-standing post shows.
-        const bool joined = std::any_of(table_.cushions.begin(), table_.cushions.end(), [&](const Cushion& cushion) {
-            return std::abs((cushion.from - jaw.center).norm() - jaw.radius) < 2e-4 ||
-                   std::abs((cushion.to - jaw.center).norm() - jaw.radius) < 2e-4;
-        });
+        const bool joined =
+            std::any_of(table_.cushions.begin(), table_.cushions.end(), [&](const Cushion& cushion) {
+                return std::abs((cushion.from - jaw.center).norm() - jaw.radius) < 2e-4 ||
+                       std::abs((cushion.to - jaw.center).norm() - jaw.radius) < 2e-4;
+            });
         if (joined) return;
         std::vector<Vec2> circle;
         for (int i = 0; i < 64; ++i) {
@@ -248,7 +265,8 @@ class TableMaker {
         mesh_.holes.push_back({pocket.center, pocket.radius});
         builder_.well(pocket.center, pocket.radius, mesh_.wood_top, bottom, Material::kPocket);
         builder_.disc(pocket.center, 0.0, pocket.radius, bottom, Material::kPocket, 1.0);
-        builder_.disc(pocket.center, pocket.radius, pocket.radius + 0.011, mesh_.wood_top + 0.0015, Material::kTrim);
+        builder_.disc(pocket.center, pocket.radius, pocket.radius + 0.011, mesh_.wood_top + 0.0015,
+                      Material::kTrim);
         builder_.disc(pocket.center, pocket.radius, pocket.radius + 0.006, 0.0006, Material::kShade, 0.55);
     }
 

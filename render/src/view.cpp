@@ -11,14 +11,16 @@ std::array<float, 3> to_float(const Vec3& v) {
     return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-// Near and far planes around everything that can be seen, as tight as the eye's distance from the table allows.
+// Near and far planes around everything that can be seen, as tight as the eye's distance from the table
+// allows.
 std::array<double, 2> clip_planes(const Camera& camera, const TableMesh& table) {
     const Vec3 low(table.bounds.low.x(), table.bounds.low.y(), -0.3);
     const Vec3 high(table.bounds.high.x(), table.bounds.high.y(), table.bounds.top + 0.1);
     const double nearest = (camera.eye - camera.eye.cwiseMax(low).cwiseMin(high)).norm();
     double farthest = 0.0;
     for (int i = 0; i < 8; ++i) {
-        const Vec3 corner((i & 1) ? high.x() : low.x(), (i & 2) ? high.y() : low.y(), (i & 4) ? high.z() : low.z());
+        const Vec3 corner((i & 1) ? high.x() : low.x(), (i & 2) ? high.y() : low.y(),
+                          (i & 4) ? high.z() : low.z());
         farthest = std::max(farthest, (corner - camera.eye).norm());
     }
     const double near = std::max(0.02, 0.4 * nearest);
@@ -29,7 +31,8 @@ std::array<double, 2> clip_planes(const Camera& camera, const TableMesh& table) 
 
 View make_view(const Camera& camera, const TableMesh& table) {
     const Vec3 origin(table.origin.x(), table.origin.y(), 0.0);
-    const Vec3 eye = camera.eye - origin, forward = camera.forward(), right = camera.right(), up = camera.image_up();
+    const Vec3 eye = camera.eye - origin, forward = camera.forward(), right = camera.right(),
+               up = camera.image_up();
     const double tan_x = camera.tan_half_x(), tan_y = camera.tan_half_y();
     const auto [near, far] = clip_planes(camera, table);
 
@@ -46,7 +49,8 @@ View make_view(const Camera& camera, const TableMesh& table) {
 
     View view;
     for (int c = 0; c < 4; ++c) {
-        for (int r = 0; r < 4; ++r) view.view_projection[static_cast<std::size_t>(4 * c + r)] = static_cast<float>(m(r, c));
+        for (int r = 0; r < 4; ++r)
+            view.view_projection[static_cast<std::size_t>(4 * c + r)] = static_cast<float>(m(r, c));
     }
     view.eye = to_float(eye);
     view.forward = to_float(forward);

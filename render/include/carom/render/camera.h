@@ -1,4 +1,5 @@
-// A perspective camera. Lengths in m, table frame (z up). Pixels: x to the right, y down, pixel centres at +0.5.
+// A perspective camera. Lengths in m, table frame (z up). Pixels: x to the right, y down, pixel centres at
+// +0.5.
 #pragma once
 
 #include <optional>
@@ -11,13 +12,13 @@ namespace carom::render {
 struct Camera {
     Vec3 eye{0.0, 0.0, 1.0};
     Vec3 target{0.0, 0.0, 0.0};
-    Vec3 up{0.0, 1.0, 0.0};    ///< any direction that is not along the view
-    double fov_y_deg = 40.0;   ///< full angle over the height of the image
+    Vec3 up{0.0, 1.0, 0.0};   ///< any direction that is not along the view
+    double fov_y_deg = 40.0;  ///< full angle over the height of the image
     FrameSize size;
 
-    Vec3 forward() const;      ///< unit
-    Vec3 right() const;        ///< unit
-    Vec3 image_up() const;     ///< unit
+    Vec3 forward() const;   ///< unit
+    Vec3 right() const;     ///< unit
+    Vec3 image_up() const;  ///< unit
     double tan_half_y() const;
     double tan_half_x() const;
 

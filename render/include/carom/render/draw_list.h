@@ -27,7 +27,8 @@ struct BallStyle {
     int number = 0;  ///< 1..99, or 0 for none
 };
 
-/// How a ball looks, by its id and the table it is on ("3" is a numbered ball, but a red one on a snooker table).
+/// How a ball looks, by its id and the table it is on ("3" is a numbered ball, but a red one on a snooker
+/// table).
 BallStyle ball_style(const std::string& id, const std::string& table_preset, int index);
 
 struct DrawBall {
@@ -42,7 +43,8 @@ struct DrawList {
     std::shared_ptr<const TableMesh> table;
     Camera camera;
     std::vector<DrawBall> balls;
-    int table_samples = 16;  ///< per pixel of the table; it is drawn anew only when the camera or the table changes
+    int table_samples =
+        16;  ///< per pixel of the table; it is drawn anew only when the camera or the table changes
 };
 
 /// Turns a record into draw lists: what does not change with time is made once.

@@ -19,7 +19,8 @@ struct Image {
         rgbx.resize(static_cast<std::size_t>(wanted.width) * static_cast<std::size_t>(wanted.height) * 4);
     }
     const std::uint8_t* pixel(int x, int y) const {
-        return rgbx.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x));
+        return rgbx.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) +
+                                  static_cast<std::size_t>(x));
     }
 };
 

@@ -14,14 +14,16 @@
 namespace carom::render {
 
 struct SequenceOptions {
-    std::string pattern = "frames/%05d.png";  ///< exactly one %d or %0Nd; empty: frames are encoded and thrown away
+    std::string pattern =
+        "frames/%05d.png";  ///< exactly one %d or %0Nd; empty: frames are encoded and thrown away
     double fps = 60.0;
-    double from = 0.0;                ///< s
-    std::optional<double> to;         ///< s; default: the record's duration
-    std::optional<long> frame;        ///< only this k
+    double from = 0.0;          ///< s
+    std::optional<double> to;   ///< s; default: the record's duration
+    std::optional<long> frame;  ///< only this k
     FrameSize size;
     std::string camera = "top";
-    int png_level = 1;                ///< zlib level 0..9
+    int table_samples = 16;  ///< per pixel of the table, which is drawn once per camera
+    int png_level = 1;       ///< zlib level 0..9
     Backend backend = Backend::kOsmesa;
     std::function<void(long done, long total)> progress;  ///< called after every frame
 };
@@ -36,7 +38,8 @@ struct FrameTiming {
 /// Time of frame k.
 double frame_time(double from, long k, double fps);
 
-/// Number of frames k with from + k / fps <= to; 0 when to < from. @throws RenderError unless fps > 0 and both times are finite
+/// Number of frames k with from + k / fps <= to; 0 when to < from. @throws RenderError unless fps > 0 and
+/// both times are finite
 long frame_count(double from, double to, double fps);
 
 /// Renders and writes (temporary name, then renamed). Makes the folder of the pattern if its parent exists.

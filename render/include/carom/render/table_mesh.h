@@ -1,4 +1,5 @@
-// The table as triangles, made from the cushions, jaws and pockets that balls really bounce off and fall into.
+// The table as triangles, made from the cushions, jaws and pockets that balls really bounce off and fall
+// into.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +18,8 @@ enum class Material : std::uint8_t {
     kTrim,     ///< the rim of a pocket
     kInlay,    ///< diamonds
     kFloor,
-    kShade,    ///< blended over the cloth: black, u = opacity
-    kChalk,    ///< blended over the cloth: white, u = opacity
+    kShade,  ///< blended over the cloth: black, u = opacity
+    kChalk,  ///< blended over the cloth: white, u = opacity
 };
 
 struct MeshVertex {
@@ -50,8 +51,8 @@ struct TableMesh {
     Lamp lamp;
 };
 
-/// Makes the table. `visited`: places that balls come to; they decide on which side of an open cushion its body lies,
-/// and what of an endless cloth is shown. R: ball radius.
+/// Makes the table. `visited`: places that balls come to; they decide on which side of an open cushion its
+/// body lies, and what of an endless cloth is shown. R: ball radius.
 TableMesh make_table_mesh(const Table& table, double R, const std::vector<Vec2>& visited);
 
 }  // namespace carom::render
