@@ -178,7 +178,7 @@ std::string margin_text(const Margin& margin, const Record& record, const Margin
                    events.size());
     for (const std::size_t i : events) {
         const Event& event = record.events[i];
-        fmt::format_to(line, "  {:.6f} s  {:<13} {} {}\n", event.time, name(event.type),
+        fmt::format_to(line, "  {:.6f} s  {:<21} {} {}\n", event.time, name(event.type),
                        record.tracks.at(static_cast<std::size_t>(event.a)).id, record.partner_id(event));
     }
     return fmt::to_string(out);
