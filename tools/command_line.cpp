@@ -133,7 +133,7 @@ void add_commands(CLI::App& app, Action& action) {
 int run(int argc, char** argv) {
     CLI::App app("carom, a billiards table simulator", "carom");
     app.set_version_flag("--version", "carom " CAROM_VERSION);
-    app.require_subcommand(1);
+    app.require_subcommand(0, 1);  // none is an error too, but one with a better message than CLI11's
     app.footer(
         "CAROM_ISA=scalar|v3|v4 in the environment forces the instruction set (default: the widest "
         "available).\n"
@@ -153,6 +153,8 @@ int run(int argc, char** argv) {
         const std::string command = named.empty() ? "" : " " + named.front()->get_name();
         throw UsageError(std::string(error.what()) + "; see carom" + command + " --help");
     }
+    if (!action)
+        throw UsageError("a command is missing: simulate, render, margin, check or impact; see carom --help");
     return action();
 }
 

@@ -15,24 +15,14 @@ constexpr double kMostRows = 1e9;
 
 }  // namespace
 
-std::string csv_field(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) {
-        if (c == '"') quoted += '"';
-        quoted += c;
-    }
-    return quoted + '"';
-}
-
 void write_events_csv(const Record& record, OutputFile& file) {
     const bool profiled = !record.costs.empty();
     file.write(profiled ? "time,type,a,b,detect_ns,resolve_ns,kernel_ns,steps,method\n" : "time,type,a,b\n");
     for (std::size_t i = 0; i < record.events.size(); ++i) {
         const Event& event = record.events[i];
         const std::string& ball = record.tracks.at(static_cast<std::size_t>(event.a)).id;
-        std::string row = fmt::format("{},{},{},{}", event.time, name(event.type), csv_field(ball),
-                                      csv_field(record.partner_id(event)));
+        std::string row =
+            fmt::format("{},{},{},{}", event.time, name(event.type), ball, record.partner_id(event));
         if (profiled) {
             const EventCost& cost = record.costs.at(i);
             row += fmt::format(",{},{},{},{},{}", cost.detect_ns, cost.resolve_ns, cost.kernel_ns, cost.steps,
@@ -55,9 +45,9 @@ void write_samples_csv(const Record& record, double dt, OutputFile& file) {
         for (std::size_t i = 0; i < record.tracks.size(); ++i) {
             const BallState s = record.state_at(static_cast<int>(i), time);
             fmt::format_to(std::back_inserter(block), "{},{},{},{},{},{},{},{},{},{},{},{}\n", time,
-                           csv_field(record.tracks[i].id), name(s.state), s.position.x(), s.position.y(),
-                           s.position.z(), s.velocity.x(), s.velocity.y(), s.velocity.z(), s.spin.x(),
-                           s.spin.y(), s.spin.z());
+                           record.tracks[i].id, name(s.state), s.position.x(), s.position.y(), s.position.z(),
+                           s.velocity.x(), s.velocity.y(), s.velocity.z(), s.spin.x(), s.spin.y(),
+                           s.spin.z());
         }
         file.write({block.data(), block.size()});
     }

@@ -1,4 +1,5 @@
-// Events and samples of a record as CSV (RFC 4180, '\n' line ends). Numbers read back to the same bits.
+// Events and samples of a record as CSV. Numbers read back to the same bits. Names need no quotes: the scene
+// reader refuses a ball's id that holds a comma, a quote or a control character.
 #pragma once
 
 #include <string>
@@ -7,9 +8,6 @@
 #include "carom/engine/record.h"
 
 namespace carom::tools {
-
-/// A field, quoted where it holds a comma, a quote or a line end.
-std::string csv_field(const std::string& text);
 
 /// `time,type,a,b`, and for a profiled record `detect_ns,resolve_ns,kernel_ns,steps,method` behind it.
 void write_events_csv(const Record& record, OutputFile& file);

@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace carom::tools {
+#include "carom/render/sequence.h"
 
-double frame_time(double from, double fps, long k) {
-    return from + static_cast<double>(k) / fps;
-}
+namespace carom::tools {
 
 long frame_of(double t, double from, double fps, long frames) {
     if (frames <= 1 || !(t > from)) return 0;
@@ -16,8 +14,8 @@ long frame_of(double t, double from, double fps, long frames) {
     const double guess = std::floor((t - from) * fps);
     long k = guess >= static_cast<double>(last) ? last : static_cast<long>(guess);
     // The guess is rounded; the frames' own times decide.
-    while (k > 0 && frame_time(from, fps, k) > t) --k;
-    while (k < last && frame_time(from, fps, k + 1) <= t) ++k;
+    while (k > 0 && render::frame_time(from, k, fps) > t) --k;
+    while (k < last && render::frame_time(from, k + 1, fps) <= t) ++k;
     return k;
 }
 

@@ -8,13 +8,9 @@
 
 namespace carom::tools {
 
-/// Time of frame k: from + k / fps, from the integer k. The same expression as the renderer's, so the same
-/// bits.
-double frame_time(double from, double fps, long k);
-
-/// The frame k in 0..frames-1 with frame_time(k) <= t < frame_time(k + 1): an event at a frame's own time
-/// belongs to that frame and to no other. What is before the first frame or after the last belongs to the
-/// first or last.
+/// The frame k in 0..frames-1 with t_k <= t < t_(k+1), t_k being render::frame_time: an event at a frame's
+/// own time belongs to that frame and to no other. What is before the first frame or after the last belongs
+/// to the first or last.
 long frame_of(double t, double from, double fps, long frames);
 
 /// What the simulation cost during one frame.

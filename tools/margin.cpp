@@ -144,7 +144,7 @@ std::string margin_json(const Margin& margin, const Record& record) {
                       {"stages", stages},
                       {"worst",
                        {{"frame", margin.worst},
-                        {"time", frame_time(0.0, margin.fps, static_cast<long>(margin.worst))},
+                        {"time", render::frame_time(0.0, static_cast<long>(margin.worst), margin.fps)},
                         {"ms", margin.total[margin.worst]},
                         {"events", events}}}};
     return all.dump() + "\n";
@@ -174,11 +174,11 @@ std::string margin_text(const Margin& margin, const Record& record, const Margin
         100.0 * p99 / margin.budget_ms, margin.budget_ms - p99);
     const std::vector<std::size_t>& events = margin.frames[margin.worst].events;
     fmt::format_to(line, "worst frame: {} at {:.4f} s, {:.3f} ms, {} events\n", margin.worst,
-                   frame_time(0.0, margin.fps, static_cast<long>(margin.worst)), margin.total[margin.worst],
-                   events.size());
+                   render::frame_time(0.0, static_cast<long>(margin.worst), margin.fps),
+                   margin.total[margin.worst], events.size());
     for (const std::size_t i : events) {
         const Event& event = record.events[i];
-        fmt::format_to(line, "  {:.6f} s  {:<13} {} {}\n", event.time, name(event.type),
+        fmt::format_to(line, "  {:.6f} s  {:<21} {} {}\n", event.time, name(event.type),
                        record.tracks.at(static_cast<std::size_t>(event.a)).id, record.partner_id(event));
     }
     return fmt::to_string(out);
@@ -190,8 +190,9 @@ void write_margin_csv(const Margin& margin, const std::string& path) {
                    ? "frame,time,events,simulate_ms,kernel_ms,draw_ms,readback_ms,encode_ms,total_ms,missed\n"
                    : "frame,time,events,simulate_ms,kernel_ms,total_ms,missed\n");
     for (std::size_t k = 0; k < margin.total.size(); ++k) {
-        std::string row = fmt::format("{},{},{}", k, frame_time(0.0, margin.fps, static_cast<long>(k)),
-                                      margin.frames[k].events.size());
+        std::string row =
+            fmt::format("{},{},{}", k, render::frame_time(0.0, static_cast<long>(k), margin.fps),
+                        margin.frames[k].events.size());
         for (std::size_t s = 0; s < kStages; ++s) {
             if (margin.has(s)) row += fmt::format(",{}", margin.stage[s][k]);
         }

@@ -90,7 +90,7 @@ std::string summary(const Record& record, const std::string& scene) {
     for (const Event& event : record.events) ++counts[static_cast<std::size_t>(event.type)];
     for (int type = 0; type < kEventTypes; ++type) {
         const long count = counts[static_cast<std::size_t>(type)];
-        if (count > 0) fmt::format_to(line, "  {:<14}{:>6}\n", name(static_cast<EventType>(type)), count);
+        if (count > 0) fmt::format_to(line, "  {:<22}{:>6}\n", name(static_cast<EventType>(type)), count);
     }
     fmt::format_to(line, "\npocketed\n");
     long pocketed = 0;
@@ -117,14 +117,14 @@ std::string profile_report(const Record& record) {
     const auto line = std::back_inserter(out);
     const std::array<CostSum, kEventTypes> sums = costs_by_kind(record);
     fmt::format_to(line, "\ncost by kind of event (mean ns; kernel is a part of resolve)\n");
-    fmt::format_to(line, "  {:<14}{:>6}{:>12}{:>12}{:>12}\n", "", "count", "detect", "resolve", "kernel");
+    fmt::format_to(line, "  {:<22}{:>6}{:>12}{:>12}{:>12}\n", "", "count", "detect", "resolve", "kernel");
     double total = record.setup_detect_ns;
     for (int type = 0; type < kEventTypes; ++type) {
         const CostSum& sum = sums[static_cast<std::size_t>(type)];
         if (sum.count == 0) continue;
         const auto n = static_cast<double>(sum.count);
         total += sum.detect + sum.resolve;
-        fmt::format_to(line, "  {:<14}{:>6}{:>12.0f}{:>12.0f}{:>12.0f}\n", name(static_cast<EventType>(type)),
+        fmt::format_to(line, "  {:<22}{:>6}{:>12.0f}{:>12.0f}{:>12.0f}\n", name(static_cast<EventType>(type)),
                        sum.count, sum.detect / n, sum.resolve / n, sum.kernel / n);
     }
     fmt::format_to(line, "  first detection of all pairs: {:.0f} ns; all together: {:.3f} ms\n",

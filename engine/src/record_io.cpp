@@ -50,10 +50,17 @@ Json balls_json(const BallParams& p) {
 }
 
 Json segment_json(const Segment& s) {
-    return {{"start", s.start},    {"state", name(s.state)},     {"r", numbers(s.r)},
-            {"v", numbers(s.v)},   {"w", numbers(s.w)},          {"a", numbers(s.a)},
-            {"dw", numbers(s.dw)}, {"spin_decay", s.spin_decay}, {"duration", duration_or_null(s.duration)},
-            {"held", s.held},      {"ends", s.ends}};
+    return {{"start", s.start},
+            {"state", name(s.state)},
+            {"r", numbers(s.r)},
+            {"v", numbers(s.v)},
+            {"w", numbers(s.w)},
+            {"a", numbers(s.a)},
+            {"dw", numbers(s.dw)},
+            {"spin_decay", s.spin_decay},
+            {"duration", duration_or_null(s.duration)},
+            {"held", s.held},
+            {"ends", s.ends}};
 }
 
 Json event_json(const Event& event, const EventCost* cost) {

@@ -224,9 +224,14 @@ std::int64_t partners(EventType type, const Record& record) {
             return static_cast<std::int64_t>(record.table.jaws.size());
         case EventType::kBallPocket:
             return static_cast<std::int64_t>(record.table.pockets.size());
-        default:
-            return 0;
+        case EventType::kCueStrike:
+        case EventType::kSlideRoll:
+        case EventType::kRollSpin:
+        case EventType::kRollStop:
+        case EventType::kSpinStop:
+            break;
     }
+    return 0;
 }
 
 Event read_event(const Node& node, const Record& record) {

@@ -25,7 +25,7 @@ TEST(FrameOf, AnEventAtAFrameBelongsToThatFrame) {
     for (const double fps : {24.0, 29.97, 59.94, 60.0, 90.0, 120.0, 144.0, 1000.0, 0.3}) {
         constexpr long kFrames = 5000;
         for (long k = 0; k < kFrames; ++k) {
-            const double t = frame_time(0.0, fps, k);
+            const double t = render::frame_time(0.0, k, fps);
             ASSERT_EQ(frame_of(t, 0.0, fps, kFrames), k) << fps;
             if (k > 0) {
                 ASSERT_EQ(frame_of(std::nextafter(t, 0.0), 0.0, fps, kFrames), k - 1) << fps;
@@ -42,8 +42,8 @@ TEST(FrameOf, HoldsItsDefinitionForAnyTime) {
                      t = from + rng.uniform(0.0, 20.0);
         constexpr long kFrames = 10000;
         const long k = frame_of(t, from, fps, kFrames);
-        ASSERT_LE(frame_time(from, fps, k), t);
-        ASSERT_LT(t, frame_time(from, fps, k + 1));
+        ASSERT_LE(render::frame_time(from, k, fps), t);
+        ASSERT_LT(t, render::frame_time(from, k + 1, fps));
     }
 }
 

@@ -46,6 +46,8 @@ Segment any_segment(test::SplitMix64& rng, double start) {
     s.spin_decay = std::abs(any_double(rng));
     s.duration = rng.next() % 3 == 0 ? kInfinity : std::abs(any_double(rng));
     s.state = static_cast<MotionState>(rng.next() % 5);
+    s.held = rng.next() % 2 == 0;
+    s.ends = rng.next() % 2 == 0;
     return s;
 }
 
@@ -97,6 +99,8 @@ void expect_same_segment(const Segment& a, const Segment& b) {
     EXPECT_TRUE(same_bits(a.spin_decay, b.spin_decay));
     EXPECT_TRUE(same_bits(a.duration, b.duration));
     EXPECT_EQ(a.state, b.state);
+    EXPECT_EQ(a.held, b.held);
+    EXPECT_EQ(a.ends, b.ends);
 }
 
 TEST(RecordFile, ReadsBackToTheSameBits) {
@@ -220,6 +224,7 @@ TEST(RecordFile, SaysWhatIsWrong) {
          " tracks[0].segments[3]: starts before the segment in front of it"},
         {"/tracks/0/segments/3/duration", -1.0,
          " tracks[0].segments[3].duration: expected a number of at least 0"},
+        {"/tracks/0/segments/3/held", 1, " tracks[0].segments[3].held: expected true or false"},
         {"/tracks/0/pocket", 1, " tracks[0].pocket: expected an integer from -1 to 0"},
         {"/events/0/a", 3, " events[0].a: expected an integer from 0 to 2"},
         {"/events/0/a", 0.5, " events[0].a: expected an integer from 0 to 2"},
