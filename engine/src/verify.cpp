@@ -142,11 +142,11 @@ class Checker {
             const Vec3 n3 = (after2->r - after1->r).normalized();
             const double scale = v1.norm() + v2.norm() + R_ * (w1.norm() + w2.norm());
             const Vec3 change = after1->v + after2->v - v1 - v2;
-            // Sum over both balls of R dw across n: twice the vertical friction impulse, which bounds the cloth's.
             const Vec3 dw1 = after1->w - w1, dw2 = after2->w - w2;
-            const double J_z = 0.4 * R_ * std::max(dw1.norm(), dw2.norm());
+            // The cloth gives at most mu_s of the vertical friction, which is at most mu_b of the normal impulse, all the way.
+            const double J_n = std::max(std::abs((after1->v - v1).dot(n3)), std::abs((after2->v - v2).dot(n3)));
             const bool cloth = plan_.balls.mu_s > 0.0 && plan_.scene.physics.ball_ball == BallBallModel::kMathavan;
-            const double limit = cloth ? plan_.balls.mu_s * J_z / std::max(1.0 - plan_.balls.mu_s, 0.1) : 0.0;
+            const double limit = cloth ? plan_.balls.mu_s * plan_.balls.mu_b * J_n : 0.0;
             if (change.norm() > limit + 64.0 * kUlp * scale)
                 report("U5", fmt::format("the impact changes the pair's momentum by {:.3g} m/s", change.norm()));
             const double rounding = 1e-12 * scale / R_;
