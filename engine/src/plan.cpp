@@ -82,7 +82,11 @@ void decide_effects(const Scene& scene, Plan& plan) {
         scene.table.pockets.empty() ? "the table has none" : fmt::format("{} pockets", scene.table.pockets.size()));
     const bool squirt = scene.cue && scene.cue->side != 0.0 && scene.cue->end_mass != 0.0;
     add("squirt", squirt, squirt ? "the cue strikes off centre" : (scene.cue ? "no side offset, or end mass 0" : "no cue"));
-    add("clusters", false, scene.ball.size() < 3 ? "fewer than three balls" : "clusters = \"sequential\": pair by pair");
+    if (scene.ball.size() < 3) add("clusters", false, "fewer than three balls");
+    else if (scene.physics.clusters == ClusterModel::kSequential) add("clusters", false, "clusters = \"sequential\": pair by pair");
+    else add("clusters", true, fmt::format("clusters = \"{}\"; decided per impact: no third ball within reach means the pair alone",
+                                           name(scene.physics.clusters)));
+    plan.clusters = scene.ball.size() < 3 ? ClusterModel::kSequential : scene.physics.clusters;
     add("airborne", false, "not simulated: the model is planar");
 }
 

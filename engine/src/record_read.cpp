@@ -128,6 +128,7 @@ Table read_table(const Node& node) {
     table.preset = node.at("preset").text();
     table.width = node.at("width").non_negative();
     table.length = node.at("length").non_negative();
+    table.corner = node.at("corner").vector<2>();
     const Node cushions = node.at("cushions"), jaws = node.at("jaws"), pockets = node.at("pockets");
     for (std::size_t i = 0; i < cushions.size(); ++i) {
         const Node c = cushions.item(i);
@@ -234,13 +235,24 @@ std::int64_t partners(EventType type, const Record& record) {
     return 0;
 }
 
-Event read_event(const Node& node, const Record& record) {
+Event read_event(const Node& node, Record& record) {
     Event event;
     event.time = node.at("time").non_negative();
     event.type = node.at("type").one_of<EventType>(kEventTypes);
     event.a = static_cast<int>(node.at("a").integer(0, static_cast<std::int64_t>(record.tracks.size()) - 1));
     const std::int64_t count = partners(event.type, record);
     event.b = static_cast<int>(node.at("b").integer(count > 0 ? 0 : -1, count > 0 ? count - 1 : -1));
+    if (event.type == EventType::kBallCluster) {
+        std::vector<int> balls;
+        const Node list = node.at("balls");
+        for (std::size_t i = 0; i < list.size(); ++i)
+            balls.push_back(static_cast<int>(list.item(i).integer(0, static_cast<std::int64_t>(record.tracks.size()) - 1)));
+        event.detail = static_cast<int>(record.clusters.size());
+        record.clusters.push_back(std::move(balls));
+    } else if (node.has("nose")) {
+        const auto noses = 2 * record.table.cushions.size() + record.table.jaws.size();
+        event.detail = static_cast<int>(node.at("nose").integer(0, static_cast<std::int64_t>(noses) - 1));
+    }
     return event;
 }
 
@@ -324,6 +336,7 @@ Record read_record(const std::string& path) {
     Record record;
     record.duration = root.at("duration").non_negative();
     record.stopped = root.at("stopped").one_of<StopReason>(3);
+    record.start_time = root.at("start_time").number();
     record.gravity = root.at("gravity").number();
     const bool profiled = root.at("profiled").boolean();
     record.setup_detect_ns = root.at("setup_detect_ns").non_negative();

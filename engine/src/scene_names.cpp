@@ -33,6 +33,10 @@ const char* name(CushionModel model) {
 
 const char* name(ClusterModel model) {
     switch (model) {
+        case ClusterModel::kCompliant:
+            return "compliant";
+        case ClusterModel::kRigid:
+            return "rigid";
         case ClusterModel::kSequential:
             return "sequential";
     }

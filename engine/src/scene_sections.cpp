@@ -29,7 +29,7 @@ constexpr Choice<CushionModel> kCushionModels[] = {{"han_2005", CushionModel::kH
 constexpr Choice<ClothSlipSign> kClothSlipSigns[] = {{"consistent", ClothSlipSign::kConsistent},
                                                      {"as_published", ClothSlipSign::kAsPublished}};
 constexpr Choice<ClusterModel> kClusterModels[] = {
-    {"sequential", ClusterModel::kSequential}, {"compliant", std::nullopt}, {"rigid", std::nullopt}};
+    {"compliant", ClusterModel::kCompliant}, {"sequential", ClusterModel::kSequential}, {"rigid", ClusterModel::kRigid}};
 constexpr Choice<bool> kCameras[] = {{"top", true}, {"rail", std::nullopt}, {"follow", std::nullopt}};
 
 constexpr Interval kCoordinate = at_least(-kMaxCoordinate, kMaxCoordinate, "m");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "carom/engine/simulate.h"
+#include "cluster.h"
 #include "detect.h"
 #include "motion.h"
 #include "roots.h"
@@ -30,11 +31,15 @@ class Shot {
 
     /// Balls, cue strike, first candidates.
     void set_up(bool profile);
+    /// Goes on from where a record stopped; its bits are those of a run that did not stop.
+    void take_up(const Record& record);
     /// The loop. kProfile = false has no clock in it.
     template <bool kProfile>
-    Record run();
+    Record run(const Record* so_far);
 
   private:
+    void first_candidates();
+
     // shot_detect.cpp
     Candidate next() const;
     bool before(const Candidate& x, const Candidate& y) const;
@@ -44,7 +49,7 @@ class Shot {
     void rescan(int ball);
     void detect_features(int ball);
     void redetect();
-    Path path(int ball) const;
+    Path path(int ball, double from) const;
 
     // shot_resolve.cpp
     template <bool kProfile>
@@ -55,10 +60,15 @@ class Shot {
     void resolve_nose(const Candidate& c);
     void resolve_pocket(const Candidate& c);
     void resolve_transition(const Candidate& c);
-    void record_event(EventType type, int a, int b);
+    void record_event(EventType type, int a, int b, int detail = -1);
     void begin(int ball, const Segment& segment);
     void guard_cap() const;
     [[noreturn]] void fail(const std::string& why) const;
+
+    // shot_cluster.cpp
+    template <bool kProfile>
+    bool resolve_cluster(const Candidate& c, double v_n);
+    void collect_cluster(int a, int b, double v_n);
 
     // shot_held.cpp
     bool is_held(int ball) const { return now_of(ball).held; }
@@ -68,6 +78,8 @@ class Shot {
     void free_ball(int ball);
     void solve_group(int ball, bool transitions);
     void refresh_normal(HeldContact& contact) const;
+    void sort_by_place(std::vector<HeldContact>& contacts) const;
+    void restore_held();
 
     const Segment& now_of(int ball) const { return record_.tracks[static_cast<std::size_t>(ball)].segments.back(); }
     Vec3 position_now(int ball) const { return position_at(now_of(ball), now_ - now_of(ball).start); }
@@ -87,6 +99,9 @@ class Shot {
     EventCost cost_;
     std::vector<int> touched_;  // balls whose motion the present event changed
     std::vector<HeldContact> held_;
+    ClusterMap cluster_map_;
+    std::vector<ClusterBall> cluster_balls_;
+    std::vector<ClusterContact> cluster_contacts_;
     // Per ball: its transition, its first contact with the table, its first contact with another ball.
     std::vector<Candidate> own_, feature_, pair_;
 };

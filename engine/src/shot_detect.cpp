@@ -26,9 +26,11 @@ bool in_play(const Segment& segment) {
 
 }  // namespace
 
-Path Shot::path(int ball) const {
+// Motion of a ball from the time `from` on. Contacts are sought from the start of the segments concerned, not from now: the
+// answer is then a function of the segments alone, whenever it is computed.
+Path Shot::path(int ball, double from) const {
     const Segment& s = now_of(ball);
-    const double tau = now_ - s.start;
+    const double tau = from - s.start;
     const Vec3 r = position_at(s, tau), v = velocity_at(s, tau);
     const bool moves = translates(s.state);
     const bool straight = s.state == MotionState::kRolling ||
@@ -87,8 +89,9 @@ Candidate Shot::next() const {
 }
 
 Candidate Shot::pair(int a, int b) const {
-    const double t = time_to_ball(path(a), path(b), 2.0 * plan_.balls.R);
-    return {now_ + t, EventType::kBallBall, std::min(a, b), std::max(a, b), -1};
+    const double from = std::max(now_of(a).start, now_of(b).start);
+    const double t = time_to_ball(path(a, from), path(b, from), 2.0 * plan_.balls.R);
+    return {from + t, EventType::kBallBall, std::min(a, b), std::max(a, b), -1};
 }
 
 void Shot::rescan(int ball) {
@@ -104,11 +107,12 @@ void Shot::rescan(int ball) {
 void Shot::detect_features(int ball) {
     Candidate first;
     if (translates(now_of(ball).state)) {
-        const Path p = path(ball);
+        const double from = now_of(ball).start;
+        const Path p = path(ball, from);
         const double R = plan_.balls.R;
         const auto offer = [&](double t, EventType type, int index, int nose) {
             if (t == kNever) return;
-            const Candidate c{now_ + t, type, ball, index, nose};
+            const Candidate c{from + t, type, ball, index, nose};
             if (before(c, first)) first = c;
         };
         for (std::size_t i = 0; i < plan_.cushions.size(); ++i) {
@@ -128,7 +132,7 @@ void Shot::detect_features(int ball) {
         const Vec3& r = now_of(ball).r;
         for (std::size_t i = 0; i < plan_.pockets.size(); ++i) {
             if (length(Vec2(r.x(), r.y()) - plan_.pockets[i].center) < plan_.pockets[i].radius)
-                first = {now_, EventType::kBallPocket, ball, static_cast<int>(i), -1};
+                first = {now_of(ball).start, EventType::kBallPocket, ball, static_cast<int>(i), -1};
         }
     }
     feature_[static_cast<std::size_t>(ball)] = first;

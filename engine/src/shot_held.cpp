@@ -23,7 +23,7 @@ bool Shot::held_to(int ball, int cushion, int nose) const {
 bool Shot::hold_instead(const HeldContact& contact, double v_n, double a_c, double restitution) {
     if (!holds(v_n, a_c, restitution)) return false;
     held_.push_back(contact);
-    record_event(contact.hold_type(), contact.i, contact.partner);
+    record_event(contact.hold_type(), contact.i, contact.partner, contact.nose);
     solve_group(contact.i, false);
     return true;
 }
@@ -31,13 +31,17 @@ bool Shot::hold_instead(const HeldContact& contact, double v_n, double a_c, doub
 // Ends all sustained contacts of a ball that something else happens to; its partners go on without it.
 void Shot::free_ball(int ball) {
     if (!is_held(ball)) return;
-    std::vector<int> partners;
+    std::vector<HeldContact> ended;
     for (const HeldContact& c : held_) {
-        if (c.i != ball && c.j != ball) continue;
-        record_event(c.release_type(), c.i, c.partner);
-        if (c.j >= 0) partners.push_back(c.i == ball ? c.j : c.i);
+        if (c.i == ball || c.j == ball) ended.push_back(c);
     }
     std::erase_if(held_, [ball](const HeldContact& c) { return c.i == ball || c.j == ball; });
+    sort_by_place(ended);
+    std::vector<int> partners;
+    for (const HeldContact& c : ended) {
+        record_event(c.release_type(), c.i, c.partner, c.nose);
+        if (c.j >= 0) partners.push_back(c.i == ball ? c.j : c.i);
+    }
     // From here the ball's own segment counts as free; the caller replaces it.
     begin(ball, start_segment(now_, position_now(ball), velocity_now(ball), spin_now(ball), motion_));
     for (const int partner : partners) {
@@ -75,14 +79,7 @@ void Shot::solve_group(int ball, bool transitions) {
         group.contacts.push_back(c);
     }
     std::erase_if(held_, [&](const HeldContact& c) { return is_member(c.i); });
-    const auto place_of = [this](const HeldContact& c) {
-        const Vec3 r = position_now(c.i);
-        return Vec2(r.x() + plan_.balls.R * c.n.x(), r.y() + plan_.balls.R * c.n.y());
-    };
-    std::sort(group.contacts.begin(), group.contacts.end(), [&](const HeldContact& p, const HeldContact& q) {
-        const Vec2 a = place_of(p), b = place_of(q);
-        return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-    });
+    sort_by_place(group.contacts);
     if (transitions) {
         for (const HeldBall& member : group.balls) {
             const Segment& s = now_of(member.ball);
@@ -95,7 +92,7 @@ void Shot::solve_group(int ball, bool transitions) {
     bool any_released = false;
     for (const HeldContact& c : group.contacts) {
         if (c.released) {
-            record_event(c.release_type(), c.i, c.partner);
+            record_event(c.release_type(), c.i, c.partner, c.nose);
             any_released = true;
         } else {
             held_.push_back(c);
@@ -113,11 +110,28 @@ void Shot::solve_group(int ball, bool transitions) {
     }
 }
 
+// Contacts in the order of their places on the table: never by id, never by when they began.
+void Shot::sort_by_place(std::vector<HeldContact>& contacts) const {
+    const auto place_of = [this](const HeldContact& c) {
+        const Vec3 r = position_now(c.i);
+        return Vec2(r.x() + plan_.balls.R * c.n.x(), r.y() + plan_.balls.R * c.n.y());
+    };
+    std::sort(contacts.begin(), contacts.end(), [&](const HeldContact& p, const HeldContact& q) {
+        const Vec2 a = place_of(p), b = place_of(q);
+        return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+    });
+}
+
 void Shot::refresh_normal(HeldContact& c) const {
     const Vec3 r = position_now(c.i);
     const Vec2 here(r.x(), r.y());
-    if (c.cushion >= 0) return;  // straight
     Vec2 toward;
+    if (c.cushion >= 0) {
+        const CushionLine& line = plan_.cushions[static_cast<std::size_t>(c.cushion)];
+        c.n = Vec2(-line.direction.y(), line.direction.x());
+        if (c.n.dot(here - line.from) > 0.0) c.n = -c.n;
+        return;
+    }
     if (c.j >= 0) {
         const Vec3 q = position_now(c.j);
         toward = Vec2(q.x(), q.y()) - here;
@@ -125,6 +139,28 @@ void Shot::refresh_normal(HeldContact& c) const {
         toward = plan_.noses[static_cast<std::size_t>(c.nose)].center - here;
     }
     c.n = toward / length(toward);
+}
+
+// Sustained contacts of a record that stopped: held and not released since.
+void Shot::restore_held() {
+    for (const Event& e : record_.events) {
+        HeldContact c;
+        c.i = e.a;
+        c.partner = e.b;
+        c.nose = e.detail;
+        switch (e.type) {
+            case EventType::kBallBallHold:
+            case EventType::kBallBallRelease: c.j = e.b; break;
+            case EventType::kBallCushionHold:
+            case EventType::kBallCushionRelease: c.cushion = e.detail >= 0 ? -1 : e.b; break;
+            case EventType::kBallJawHold:
+            case EventType::kBallJawRelease: c.jaw = true; break;
+            default: continue;
+        }
+        if (e.type == c.hold_type()) held_.push_back(c);
+        else std::erase_if(held_, [&c](const HeldContact& h) { return h.i == c.i && h.j == c.j && h.cushion == c.cushion && h.nose == c.nose; });
+    }
+    for (HeldContact& c : held_) refresh_normal(c);
 }
 
 }  // namespace carom

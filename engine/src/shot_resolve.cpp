@@ -14,8 +14,8 @@ void Shot::begin(int ball, const Segment& segment) {
     touched_.push_back(ball);
 }
 
-void Shot::record_event(EventType type, int a, int b) {
-    record_.events.push_back({now_, type, a, b});
+void Shot::record_event(EventType type, int a, int b, int detail) {
+    record_.events.push_back({now_, type, a, b, detail});
     quiet_ = 0;
 }
 
@@ -40,6 +40,7 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     const double v_t = cross(contact.n, Vec2(v1.x() - v2.x(), v1.y() - v2.y()));
     const double a_c = contact.n.x() * pull.x() + contact.n.y() * pull.y() - v_t * v_t / (2.0 * R);
     if (hold_instead(contact, v_n, a_c, plan_.balls.e_b)) return;
+    if (plan_.clusters != ClusterModel::kSequential && resolve_cluster<kProfile>(c, v_n)) return;
 
     const kernel::Ball b1{{r1.x(), r1.y(), r1.z()}, {v1.x(), v1.y(), v1.z()}, {w1.x(), w1.y(), w1.z()}};
     const kernel::Ball b2{{r2.x(), r2.y(), r2.z()}, {v2.x(), v2.y(), v2.z()}, {w2.x(), w2.y(), w2.z()}};
@@ -107,7 +108,7 @@ void Shot::resolve_nose(const Candidate& c) {
     if constexpr (kProfile) cost_.method = name(plan_.scene.physics.cushion);
     free_ball(c.a);
     begin(c.a, start_segment(now_, r, v, w, motion_));
-    record_event(c.type, c.a, c.b);
+    record_event(c.type, c.a, c.b, c.nose);
 }
 
 void Shot::resolve_pocket(const Candidate& c) {

@@ -32,10 +32,14 @@ void Shot::set_up(bool profile) {
             if (scene.ball[static_cast<std::size_t>(i)].id != scene.cue->ball) continue;
             const StruckBall struck = strike(*scene.cue, plan_.balls);
             begin(i, start_segment(0.0, now_of(i).r, struck.v, struck.w, motion_));
-            record_.events.push_back({0.0, EventType::kCueStrike, i, -1});
+            record_.events.push_back({0.0, EventType::kCueStrike, i, -1, -1});
             if (profile) record_.costs.push_back({0.0, 0.0, 0.0, 0, "point"});
         }
     }
+    first_candidates();
+}
+
+void Shot::first_candidates() {
     for (int i = 0; i < balls_; ++i) {
         own_[static_cast<std::size_t>(i)] = {now_of(i).start + now_of(i).duration, EventType::kSlideRoll, i, -1, -1};
         detect_features(i);
@@ -43,10 +47,23 @@ void Shot::set_up(bool profile) {
     }
 }
 
+void Shot::take_up(const Record& record) {
+    record_ = record;
+    record_.costs.clear();
+    balls_ = static_cast<int>(record_.tracks.size());
+    now_ = record_.duration;
+    for (std::vector<Candidate>* list : {&own_, &feature_, &pair_}) list->resize(record_.tracks.size());
+    restore_held();
+    first_candidates();
+}
+
 template <bool kProfile>
-Record Shot::run() {
+Record Shot::run(const Record* so_far) {
     const auto set_up_start = kProfile ? Clock::now() : Clock::time_point{};
-    set_up(kProfile);
+    if (so_far != nullptr) take_up(*so_far);
+    else set_up(kProfile);
+    if constexpr (kProfile) record_.costs.resize(record_.events.size());
+    record_.start_time = options_.start_time;
     if constexpr (kProfile) record_.setup_detect_ns = nanoseconds(set_up_start, Clock::now());
     double stop = plan_.scene.stop.time.value_or(kNever);
     if (options_.until) stop = std::min(stop, *options_.until);
@@ -85,7 +102,12 @@ Record Shot::run() {
 
 Record simulate(const Plan& plan, const SimulateOptions& options) {
     Shot shot(plan, options);
-    return options.profile ? shot.run<true>() : shot.run<false>();
+    return options.profile ? shot.run<true>(nullptr) : shot.run<false>(nullptr);
+}
+
+Record resume(const Plan& plan, const Record& so_far, const SimulateOptions& options) {
+    Shot shot(plan, options);
+    return options.profile ? shot.run<true>(&so_far) : shot.run<false>(&so_far);
 }
 
 }  // namespace carom

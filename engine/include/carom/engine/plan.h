@@ -46,6 +46,7 @@ struct Plan {
     std::vector<EffectDecision> effects;
     kernel::Isa isa = kernel::Isa::kScalar;
     kernel::MarchFunction march = nullptr;
+    ClusterModel clusters = ClusterModel::kSequential;  ///< kSequential where fewer than three balls leave nothing to decide
     std::vector<std::string> warnings;  ///< one sentence each, for stderr
 };
 

@@ -42,6 +42,7 @@ struct Event {
     EventType type = EventType::kCueStrike;
     int a = -1;  ///< ball (index)
     int b = -1;  ///< the other ball, or the index of the cushion, jaw or pocket; -1 if none
+    int detail = -1;  ///< kBallCluster: index into Record::clusters; cushions and jaws: of the round nose in Plan::noses, or -1
 };
 
 /// What one event cost; filled only by a profiled run.
@@ -79,9 +80,11 @@ class Record {
     RenderSettings render;
     std::vector<BallTrack> tracks;
     std::vector<Event> events;
+    std::vector<std::vector<int>> clusters;  ///< balls of every ball_cluster event, by position; a and b are the pair that met
     std::vector<EventCost> costs;  ///< empty, or one per event
     double setup_detect_ns = 0.0;  ///< profiled: first detection of all pairs
     double duration = 0.0;         ///< s
+    double start_time = 0.0;       ///< s: what SimulateOptions::start_time said; all times here are relative to it
     StopReason stopped = StopReason::kAtRest;
 
     /// State of a ball at time t: the last segment that starts at or before t, in closed form. t before 0 gives the start,

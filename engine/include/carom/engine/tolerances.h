@@ -35,6 +35,20 @@ inline constexpr double kContactTimeFactor = 2.6;
 inline constexpr double kContactStiffness = 3.094e9;  ///< [m^-0.5 s^-2] k/m
 inline constexpr double kLeastRestitution = 0.1;      ///< stands for a smaller e in that rule, where no bounce is left at all
 
+/// [V] and [L/V] Regularisation of the friction in the compliant cluster map, and its step: errs by about 2e-3 V in stick
+/// (docs/hard_cases.md), 4e-7 V of it from the step. [L/V] The map goes on while a listed pair would touch within this time.
+inline constexpr double kClusterEpsilon = 2e-3;
+inline constexpr double kClusterStep = 1.0 / 80.0;
+inline constexpr double kClusterLookAhead = 2.0;
+/// [L/V] A cluster that has not parted after this many contact times is reported; the slowest of 16 balls takes a few dozen.
+inline constexpr double kClusterTimeLimit = 2000.0;
+/// [-] Largest exponent of the unloading law; restitutions below 0.05 are taken as 0.05 inside a cluster.
+inline constexpr int kLargestLawExponent = 1024;
+/// [share of R] Gaps up to this are rounding of the positions: the balls touch.
+inline constexpr double kTouchUlp = 64.0 * 2.220446049250313e-16;
+/// [-] Sweeps of the rigid projection; a rack of 15 takes about 500.
+inline constexpr long kRigidSweeps = 100000;
+
 /// [s] Longest and shortest interval over which a sustained contact keeps the directions of its forces where they turn.
 inline constexpr double kHoldRefresh = 2e-3;
 inline constexpr double kHoldShortest = 1e-5;
