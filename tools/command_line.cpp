@@ -43,6 +43,13 @@ void add_simulate(CLI::App& app, Action& action) {
     sub->callback([args, &action] { action = [args] { return run_simulate(*args); }; });
 }
 
+void add_gl(CLI::App& sub, std::string& gl) {
+    sub.add_option("--gl", gl, "OpenGL without a display: osmesa, or egl (surfaceless)")
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"osmesa", "egl"}))
+        ->capture_default_str();
+}
+
 void add_render(CLI::App& app, Action& action) {
     auto args = std::make_shared<RenderArgs>();
     CLI::App* sub = app.add_subcommand(
@@ -65,7 +72,9 @@ void add_render(CLI::App& app, Action& action) {
     sub->add_option("--at", args->at, "Only this instant in s, as frame 0 (default: all)")->type_name("S");
     sub->add_option("--camera", args->camera,
                     "Camera (default: the scene's, which is top unless it says otherwise)")
-        ->type_name("NAME");
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"top"}));
+    add_gl(*sub, args->gl);
     sub->add_option("--png-level", args->png_level, "Compression, 0 (large, fast) to 9 (small, slow)")
         ->type_name("L")
         ->check(CLI::Range(0, 9))
@@ -88,6 +97,7 @@ void add_margin(CLI::App& app, Action& action) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     sub->add_flag("--no-render", args->no_render, "Measure the simulation only (default: off)");
+    add_gl(*sub, args->gl);
     sub->add_option("--csv", args->csv, "Write the costs of every frame (default: not written)")
         ->type_name("FILE.csv");
     sub->add_flag("--json", args->json, "Print JSON (default: off)");

@@ -33,6 +33,7 @@ struct RenderArgs {
     std::optional<long> frame;
     std::optional<double> at;
     std::string camera;  ///< empty: the scene's
+    std::string gl = "osmesa";
     int png_level = 1;
 };
 int run_render(const RenderArgs& args);
@@ -43,6 +44,7 @@ struct MarginArgs {
     std::string size;
     int repeat = 1;
     bool no_render = false;
+    std::string gl = "osmesa";
     std::string csv;
     bool json = false;
 };

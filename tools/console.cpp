@@ -14,6 +14,9 @@
 namespace carom::tools {
 namespace {
 
+/// What is done sooner than this shows no progress: a line that flashes by is noise.
+constexpr std::chrono::milliseconds kPatience(300);
+
 volatile std::sig_atomic_t g_interrupts = 0;
 
 void on_interrupt(int) {
@@ -69,7 +72,10 @@ void throw_if_interrupted() {
     if (interrupted()) throw Interrupted();
 }
 
-ProgressLine::ProgressLine(std::string title) : title_(std::move(title)), terminal_(::isatty(2) == 1) {}
+ProgressLine::ProgressLine(std::string title)
+    : title_(std::move(title)),
+      terminal_(::isatty(2) == 1),
+      next_(std::chrono::steady_clock::now() + kPatience) {}
 
 ProgressLine::~ProgressLine() {
     if (drawn_) std::fputs("\r\033[K", stderr);
@@ -83,7 +89,7 @@ bool ProgressLine::due() {
     return true;
 }
 
-void ProgressLine::draw(std::string_view text) {
+void ProgressLine::show_text(std::string_view text) {
     const std::string line = fmt::format("\r\033[K{} {}", title_, text);
     std::fwrite(line.data(), 1, line.size(), stderr);
     std::fflush(stderr);
@@ -96,12 +102,8 @@ void ProgressLine::show_bar(long done, long total) {
     const double part =
         total > 0 ? std::clamp(static_cast<double>(done) / static_cast<double>(total), 0.0, 1.0) : 1.0;
     const auto filled = static_cast<std::size_t>(part * kWidth);
-    draw(fmt::format("[{}{}] {} of {}", std::string(filled, '#'), std::string(kWidth - filled, '.'), done,
-                     total));
-}
-
-void ProgressLine::show_text(std::string_view text) {
-    if (due()) draw(text);
+    show_text(fmt::format("[{}{}] {} of {}", std::string(filled, '#'), std::string(kWidth - filled, '.'),
+                          done, total));
 }
 
 }  // namespace carom::tools

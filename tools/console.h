@@ -49,17 +49,17 @@ class ProgressLine {
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    void show_bar(long done, long total);
+    /// Whether it is time to renew the line. Cheap, so that callers build their text only then.
+    bool due();
     void show_text(std::string_view text);
 
-  private:
-    bool due();
-    void draw(std::string_view text);
+    void show_bar(long done, long total);  ///< when due
 
+  private:
     std::string title_;
     bool terminal_;
     bool drawn_ = false;
-    std::chrono::steady_clock::time_point next_{};
+    std::chrono::steady_clock::time_point next_;
 };
 
 }  // namespace carom::tools

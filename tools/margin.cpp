@@ -63,6 +63,7 @@ std::vector<render::FrameTiming> draw(const Record& record, const MarginArgs& ar
     options.size =
         args.size.empty() ? render::FrameSize{settings.width, settings.height} : parse_size(args.size);
     options.camera = settings.camera;
+    options.backend = render::backend_from_name(args.gl);
     ProgressLine line(title);
     options.progress = [&line](long done, long total) {
         throw_if_interrupted();

@@ -4,13 +4,9 @@
 carom_packages=(
     cmake g++ ninja-build
     libeigen3-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev libcli11-dev
-    libgl-dev libpng-dev zlib1g-dev
+    libosmesa6-dev libosmesa6 libgl-dev libpng-dev
     libgtest-dev libbenchmark-dev
 )
-# OpenGL without a display. Mesa 25.1 dropped OSMesa; where it is gone, EGL without a surface takes its place.
-carom_osmesa=(libosmesa6-dev libosmesa6)
-carom_egl=(libegl1 libegl-mesa0 libgl1-mesa-dri)
-
 carom_say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
 carom_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
@@ -41,46 +37,27 @@ carom_can_install() {
     sudo -n true 2>/dev/null
 }
 
-carom_install_or_exit() {
-    carom_apt install -y --no-install-recommends "$@" && return 0
-    carom_say "apt-get could not install: $*"
-    exit 2
-}
-
 carom_ensure_packages() {
-    local missing gl
+    local missing
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
         carom_say "this is no Debian or Ubuntu; install what these packages hold, then follow CONTRIBUTING.md:"
-        carom_say "${carom_packages[*]} ${carom_osmesa[*]}"
+        carom_say "${carom_packages[*]}"
         exit 2
     fi
     missing=$(carom_missing "${carom_packages[@]}")
-    gl=$(carom_missing "${carom_osmesa[@]}")
-    if [ -n "$gl" ] && [ -z "$(carom_missing "${carom_egl[@]}")" ] && ! carom_offers "${carom_osmesa[@]}"; then
-        gl=
-    fi
-    [ -z "$missing$gl" ] && return 0
+    [ -n "$missing" ] || return 0
     if ! carom_can_install; then
         carom_say "packages are missing, and installing them needs root or sudo. As root:"
-        carom_say "apt-get install --no-install-recommends $missing$gl"
+        carom_say "apt-get install --no-install-recommends $missing"
         exit 2
     fi
-    carom_say "installing: $missing$gl"
+    carom_say "installing: $missing"
     carom_apt update || carom_say "apt-get update failed; going on with the package lists that are there"
-    # Lists of packages are split into words on purpose.
+    # The list is split into words on purpose.
     # shellcheck disable=SC2086
-    [ -z "$missing" ] || carom_install_or_exit $missing
-    [ -n "$gl" ] || return 0
-    # shellcheck disable=SC2086
-    if carom_offers "${carom_osmesa[@]}" && carom_apt install -y --no-install-recommends $gl; then return 0; fi
-    carom_say "this release has no OSMesa; using EGL"
-    carom_install_or_exit "${carom_egl[@]}"
-}
-
-# Whether apt knows a version of every package.
-carom_offers() {
-    local package
-    for package in "$@"; do
-        [ -n "$(apt-cache show --no-all-versions "$package" 2>/dev/null)" ] || return 1
-    done
+    carom_apt install -y --no-install-recommends $missing && return 0
+    carom_say "apt-get could not install: $missing"
+    # Mesa dropped OSMesa with 25.1; the releases named above have it.
+    [ -n "$(apt-cache show libosmesa6-dev 2>/dev/null)" ] || carom_say "this release has no libosmesa6-dev"
+    exit 2
 }

@@ -50,6 +50,7 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
         args.size.empty() ? render::FrameSize{settings.width, settings.height} : parse_size(args.size);
     options.camera = args.camera.empty() ? settings.camera : args.camera;
     options.png_level = args.png_level;
+    options.backend = render::backend_from_name(args.gl);
     const long frames = checked_frame_count(options.from, options.to.value_or(record.duration), options.fps);
     if (frames < 1) {
         throw UsageError(

@@ -58,7 +58,7 @@ Record simulate_plan(const Plan& plan, SimulateOptions options) {
     ProgressLine line("simulating:");
     options.progress = [&line](std::size_t events, double time) {
         throw_if_interrupted();
-        line.show_text(fmt::format("{} events, {:.3f} s", events, time));
+        if (line.due()) line.show_text(fmt::format("{} events, {:.3f} s", events, time));
     };
     Record record = simulate(plan, options);
     throw_if_interrupted();
