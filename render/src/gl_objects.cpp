@@ -10,10 +10,10 @@ namespace carom::render::gl {
 
 namespace {
 
-GLuint compile(const Api& api, GLenum stage, const char* source) {
+GLuint compile(const Api& api, GLenum stage, const char* defines, const char* source) {
     const GLuint shader = api.CreateShader(stage);
-    const std::array<const char*, 2> sources{shaders::kCommon, source};
-    api.ShaderSource(shader, 2, sources.data(), nullptr);
+    const std::array<const char*, 4> sources{shaders::kVersion, defines, shaders::kCommon, source};
+    api.ShaderSource(shader, 4, sources.data(), nullptr);
     api.CompileShader(shader);
     GLint compiled = 0;
     api.GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
@@ -29,10 +29,10 @@ GLuint compile(const Api& api, GLenum stage, const char* source) {
 
 }  // namespace
 
-GLuint make_program(const Api& api, const char* vertex, const char* fragment) {
+GLuint make_program(const Api& api, const char* vertex, const char* fragment, const char* defines) {
     const GLuint program = api.CreateProgram();
-    const std::array<GLuint, 2> stages{compile(api, GL_VERTEX_SHADER, vertex),
-                                       compile(api, GL_FRAGMENT_SHADER, fragment)};
+    const std::array<GLuint, 2> stages{compile(api, GL_VERTEX_SHADER, defines, vertex),
+                                       compile(api, GL_FRAGMENT_SHADER, defines, fragment)};
     for (GLuint stage : stages) api.AttachShader(program, stage);
     api.LinkProgram(program);
     for (GLuint stage : stages) api.DeleteShader(stage);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "carom/render/error.h"
@@ -24,8 +25,11 @@ struct BallInstance {
     float pattern[3];
 };
 
+// How far a shadow's quad reaches, in radii; the shader has the same number.
+constexpr double kShadowReach = 2.5;
+
 float linear(float srgb) {
-    return std::pow(srgb, 2.2F);
+    return srgb * srgb;  // the shaders' gamma
 }
 
 BallInstance make_instance(const DrawBall& ball, const Vec3& origin, double distance) {
@@ -38,6 +42,38 @@ BallInstance make_instance(const DrawBall& ball, const Vec3& origin, double dist
             {linear(style.color[0]), linear(style.color[1]), linear(style.color[2]),
              static_cast<float>(style.number)},
             {static_cast<float>(style.pattern), ball.in_pocket ? 1.0F : 0.0F, f(distance)}};
+}
+
+/// Columns x0..x1-1 and rows y0..y1-1.
+struct PixelBox {
+    int x0, y0, x1, y1;
+};
+
+// Pixels that a ball and its shadow may touch; the whole image if part of them is behind the eye.
+PixelBox box_of(const DrawBall& ball, const Camera& camera) {
+    const double reach = (ball.in_pocket ? 1.0 : kShadowReach) * ball.radius;
+    const PixelBox all{0, 0, camera.size.width, camera.size.height};
+    Vec2 low(1e9, 1e9), high(-1e9, -1e9);
+    for (int i = 0; i < 8; ++i) {
+        const Vec3 corner = ball.center + Vec3((i & 1) ? reach : -reach, (i & 2) ? reach : -reach,
+                                               (i & 4) ? ball.radius : -ball.radius);
+        const std::optional<Vec2> pixel = camera.project(corner);
+        if (!pixel) return all;
+        low = low.cwiseMin(*pixel);
+        high = high.cwiseMax(*pixel);
+    }
+    const auto inside = [](double value, int limit) { return static_cast<int>(std::clamp(value, 0.0, double(limit))); };
+    return {inside(low.x() - 2.0, all.x1), inside(low.y() - 2.0, all.y1), inside(high.x() + 3.0, all.x1),
+            inside(high.y() + 3.0, all.y1)};
+}
+
+std::vector<PixelBox> touched_boxes(const DrawList& list) {
+    std::vector<PixelBox> boxes;
+    for (const DrawBall& ball : list.balls) {
+        const PixelBox box = box_of(ball, list.camera);
+        if (box.x1 > box.x0 && box.y1 > box.y0) boxes.push_back(box);
+    }
+    return boxes;
 }
 
 }  // namespace
@@ -53,6 +89,7 @@ struct Renderer::Impl {
     std::shared_ptr<const TableMesh> table;  // of the static layer
     Camera camera;
     int table_samples = 0;
+    std::vector<PixelBox> drawn;  // what the last frame put over the table
 
     explicit Impl(Backend backend) : context(gl::make_context(backend)) {
         context->make_current();
@@ -116,6 +153,17 @@ struct Renderer::Impl {
         return static_cast<GLsizei>(instances.size());
     }
 
+    // Puts the table back where the last frame drew something, and notes where this one will.
+    void restore_table(const DrawList& list) {
+        api.BindFramebuffer(GL_READ_FRAMEBUFFER, table_layer->framebuffer());
+        api.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+        for (const PixelBox& box : drawn) {
+            api.BlitFramebuffer(box.x0, box.y0, box.x1, box.y1, box.x0, box.y0, box.x1, box.y1, GL_COLOR_BUFFER_BIT,
+                                GL_NEAREST);
+        }
+        drawn = touched_boxes(list);
+    }
+
     void draw(const DrawList& list) {
         context->make_current();
         const View view = make_view(list.camera, *list.table);
@@ -124,13 +172,11 @@ struct Renderer::Impl {
             table = list.table;
             camera = list.camera;
             table_samples = list.table_samples;
+            drawn.assign(1, PixelBox{0, 0, list.camera.size.width, list.camera.size.height});
         }
         resize(list.camera.size);
         api.Viewport(0, 0, size.width, size.height);
-        api.BindFramebuffer(GL_READ_FRAMEBUFFER, table_layer->framebuffer());
-        api.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-        api.BlitFramebuffer(0, 0, size.width, size.height, 0, 0, size.width, size.height, GL_COLOR_BUFFER_BIT,
-                            GL_NEAREST);
+        restore_table(list);
         api.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
         api.Disable(GL_DEPTH_TEST);
         api.Enable(GL_BLEND);
@@ -140,11 +186,11 @@ struct Renderer::Impl {
         if (balls == 0) return;
         view.set(api, shadow_program);
         gl::bind_texture(api, shadow_program, 0, "u_background", table_layer->color());
-        api.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, balls);
+        api.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 8, balls);
         view.set(api, ball_program);
         gl::bind_texture(api, ball_program, 0, "u_occluders", table_layer->occluders());
         gl::bind_texture(api, ball_program, 1, "u_glyphs", glyphs);
-        api.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, balls);
+        api.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 8, balls);
     }
 
     void read(Image& image) {

@@ -3,7 +3,12 @@
 
 namespace carom::render::shaders {
 
-extern const char* const kCommon;  ///< version line, camera, lamp, noise: put before every other source
+extern const char* const kVersion;
+extern const char* const kCommon;     ///< camera and lamp: put before every other source
+extern const char* const kClothOnly;  ///< a line before kTableFragment that leaves its other materials out
+extern const char* const kWoodOnly;
+extern const char* const kFloorOnly;
+extern const char* const kTheRest;
 extern const char* const kTableVertex;
 extern const char* const kTableFragment;
 extern const char* const kFullscreenVertex;

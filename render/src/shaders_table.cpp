@@ -21,6 +21,13 @@ void main() {
 }
 )";
 
+// A software renderer runs both sides of every branch: so there is one program per kind of surface. The floor's has no
+// discard, so that what the table hides of it costs nothing.
+const char* const kClothOnly = "#define CLOTH\n";
+const char* const kWoodOnly = "#define WOOD\n";
+const char* const kFloorOnly = "#define FLOOR\n";
+const char* const kTheRest = "#define REST\n";
+
 const char* const kTableFragment = R"(
 in vec3 v_position;
 in vec3 v_normal;
@@ -56,7 +63,7 @@ bool in_hole(vec2 p) {
 bool in_inner(vec2 p) { return all(greaterThan(p, u_inner.xy)) && all(lessThan(p, u_inner.zw)); }
 
 vec3 cloth_albedo(vec2 p) {
-    vec3 base = from_srgb(vec3(0.055, 0.50, 0.345));
+    vec3 base = from_screen(vec3(0.055, 0.50, 0.345));
     // Threads of half a millimetre, seen only from near: they fade before a pixel holds more than one.
     float pixel = length(fwidth(p));
     float fine = 1.0 - smoothstep(0.00015, 0.0005, pixel);
@@ -68,7 +75,7 @@ vec3 cloth_albedo(vec2 p) {
 
 vec3 wood_albedo(vec2 uv) {
     float rings = noise(vec2(uv.x * 2.2, uv.y * 38.0)) * 0.65 + noise(vec2(uv.x * 9.0, uv.y * 160.0)) * 0.35;
-    vec3 dark = from_srgb(vec3(0.23, 0.105, 0.055)), light = from_srgb(vec3(0.44, 0.225, 0.115));
+    vec3 dark = from_screen(vec3(0.23, 0.105, 0.055)), light = from_screen(vec3(0.44, 0.225, 0.115));
     return mix(dark, light, smoothstep(0.15, 0.85, rings));
 }
 
@@ -87,41 +94,43 @@ vec3 glossy(vec3 base, vec3 n, float strength, float blur) {
 vec3 pocket_wall(vec3 p, vec3 n, float bottom) {
     // Leather, lit through the mouth only: the light fades with depth.
     float fade = exp(min(p.z, 0.0) / 0.035);
-    vec3 leather = from_srgb(vec3(0.17, 0.13, 0.11));
+    vec3 leather = from_screen(vec3(0.17, 0.13, 0.11));
     return leather * mix(0.06, 0.75, fade) * (bottom > 0.5 ? 0.5 : 0.6 + 0.4 * lamp_light(p, n));
 }
 
 vec3 floor_color(vec3 p) {
     vec2 half_size = 0.5 * (u_inner.zw - u_inner.xy), e = abs(p.xy - 0.5 * (u_inner.xy + u_inner.zw)) - half_size;
     float away = length(max(e, 0.0));
-    return from_srgb(vec3(0.16, 0.145, 0.135)) * (0.10 + 0.9 * smoothstep(0.0, 1.0, away)) / (1.0 + 0.25 * away * away);
+    return from_screen(vec3(0.16, 0.145, 0.135)) * (0.10 + 0.9 * smoothstep(0.0, 1.0, away)) / (1.0 + 0.25 * away * away);
 }
 
 void main() {
     vec2 p = v_position.xy;
     vec3 n = normalize(v_normal);
-    if (v_material == 0) {
-        if (in_hole(p)) discard;
-        color = vec4(lit(cloth_albedo(p), n), 1.0);
-    } else if (v_material == 1) {
-        color = vec4(lit(cloth_albedo(p) * 0.93, n), 0.0);
-    } else if (v_material == 2) {
-        if (in_hole(p)) discard;
-        color = vec4(glossy(lit(wood_albedo(v_uv), n), n, 5.0, 0.25), 0.0);
-    } else if (v_material == 3) {
+#if defined(CLOTH)
+    // Cushions reach over the rims of the holes; the playing surface ends there.
+    bool playing = v_material == 0;
+    if (playing && in_hole(p)) discard;
+    color = vec4(lit(cloth_albedo(p) * (playing ? 1.0 : 0.93), n), playing ? 1.0 : 0.0);
+#elif defined(WOOD)
+    if (in_hole(p)) discard;
+    color = vec4(glossy(lit(wood_albedo(v_uv), n), n, 5.0, 0.25), 0.0);
+#elif defined(FLOOR)
+    color = vec4(floor_color(v_position), 0.0);
+#else
+    if (v_material == 3) {
         if (v_position.z > 0.0 && in_inner(p)) discard;
         color = vec4(pocket_wall(v_position, n, v_uv.x), 0.0);
     } else if (v_material == 4) {
         if (in_inner(p)) discard;
-        color = vec4(glossy(lit(from_srgb(vec3(0.13, 0.12, 0.115)), n), n, 6.0, 0.5), 0.0);
+        color = vec4(glossy(lit(from_screen(vec3(0.13, 0.12, 0.115)), n), n, 6.0, 0.5), 0.0);
     } else if (v_material == 5) {
-        color = vec4(glossy(lit(from_srgb(vec3(0.88, 0.85, 0.76)), n), n, 3.0, 0.2), 0.0);
-    } else if (v_material == 6) {
-        color = vec4(floor_color(v_position), 0.0);
+        color = vec4(glossy(lit(from_screen(vec3(0.88, 0.85, 0.76)), n), n, 3.0, 0.2), 0.0);
     } else {
         if (in_hole(p) || !in_inner(p)) discard;
         color = v_material == 7 ? vec4(0.0, 0.0, 0.0, v_uv.x) : vec4(lit(vec3(0.75), n), v_uv.x);
     }
+#endif
 }
 )";
 

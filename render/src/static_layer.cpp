@@ -45,7 +45,13 @@ struct StaticLayer::Scratch {
 };
 
 StaticLayer::StaticLayer(const gl::Api& api) : api_(api) {
-    table_program_ = gl::make_program(api, shaders::kTableVertex, shaders::kTableFragment);
+    const auto table_program = [&](const char* kind) {
+        return gl::make_program(api, shaders::kTableVertex, shaders::kTableFragment, kind);
+    };
+    groups_[0].program = table_program(shaders::kClothOnly);
+    groups_[1].program = table_program(shaders::kWoodOnly);
+    groups_[2].program = groups_[4].program = table_program(shaders::kTheRest);
+    groups_[3].program = table_program(shaders::kFloorOnly);
     add_program_ = gl::make_program(api, shaders::kFullscreenVertex, shaders::kAddFragment);
     depth_program_ = gl::make_program(api, shaders::kFullscreenVertex, shaders::kDepthFragment);
     resolve_program_ = gl::make_program(api, shaders::kFullscreenVertex, shaders::kResolveFragment);
@@ -55,10 +61,21 @@ StaticLayer::StaticLayer(const gl::Api& api) : api_(api) {
 }
 
 void StaticLayer::upload(const TableMesh& table) {
-    std::vector<MeshVertex> all = table.solid;
-    all.insert(all.end(), table.blended.begin(), table.blended.end());
-    solid_count_ = static_cast<GLsizei>(table.solid.size());
-    blended_count_ = static_cast<GLsizei>(table.blended.size());
+    const auto group_of = [](const MeshVertex& vertex) {
+        const auto material = static_cast<Material>(static_cast<int>(vertex.material));
+        if (material == Material::kCloth || material == Material::kCushion) return 0;
+        if (material == Material::kFloor) return 3;
+        return material == Material::kWood ? 1 : 2;
+    };
+    std::vector<MeshVertex> all;
+    for (int group = 0; group < 5; ++group) {
+        const auto first = static_cast<GLint>(all.size());
+        for (const MeshVertex& vertex : group == 4 ? table.blended : table.solid) {
+            if (group == 4 || group_of(vertex) == group) all.push_back(vertex);
+        }
+        groups_[static_cast<std::size_t>(group)].first = first;
+        groups_[static_cast<std::size_t>(group)].count = static_cast<GLsizei>(all.size()) - first;
+    }
     api_.BindVertexArray(vertex_array_);
     api_.BindBuffer(GL_ARRAY_BUFFER, buffer_);
     api_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(all.size() * sizeof(MeshVertex)), all.data(),
@@ -90,19 +107,10 @@ void StaticLayer::resize(int width, int height) {
     height_ = height;
 }
 
-void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, double jx,
-                            double jy) {
-    api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.pass_framebuffer);
-    api_.DepthMask(GL_TRUE);
-    api_.ClearColor(0.004F, 0.004F, 0.004F, 0.0F);
-    api_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    api_.Enable(GL_DEPTH_TEST);
-    api_.DepthFunc(GL_LEQUAL);
-    api_.Disable(GL_BLEND);
-    view.set(api_, table_program_);
-    const auto at = [&](const char* uniform) { return api_.GetUniformLocation(table_program_, uniform); };
-    api_.Uniform2f(at("u_jitter"), static_cast<float>(2.0 * jx / width_),
-                   static_cast<float>(2.0 * jy / height_));
+void StaticLayer::set_table_uniforms(const TableMesh& table, const View& view, GLuint program, double jx, double jy) {
+    view.set(api_, program);
+    const auto at = [&](const char* uniform) { return api_.GetUniformLocation(program, uniform); };
+    api_.Uniform2f(at("u_jitter"), static_cast<float>(2.0 * jx / width_), static_cast<float>(2.0 * jy / height_));
     std::vector<float> holes;
     for (const Hole& hole : table.holes) {
         if (holes.size() == 4 * kMaxHoles) break;
@@ -116,13 +124,27 @@ void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scra
     const Vec2 low = table.inner_low - table.origin, high = table.inner_high - table.origin;
     api_.Uniform4f(at("u_inner"), static_cast<float>(low.x()), static_cast<float>(low.y()),
                    static_cast<float>(high.x()), static_cast<float>(high.y()));
-    api_.BindVertexArray(vertex_array_);
-    api_.DrawArrays(GL_TRIANGLES, 0, solid_count_);
-    // Paint and seams lie on the cloth: blended, and its alpha, which says "cloth", stays.
-    api_.Enable(GL_BLEND);
+}
+
+void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, double jx, double jy) {
+    api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.pass_framebuffer);
+    api_.DepthMask(GL_TRUE);
+    api_.ClearColor(0.004F, 0.004F, 0.004F, 0.0F);
+    api_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    api_.Enable(GL_DEPTH_TEST);
+    api_.DepthFunc(GL_LEQUAL);
+    api_.Disable(GL_BLEND);
     api_.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
-    api_.DepthMask(GL_FALSE);
-    api_.DrawArrays(GL_TRIANGLES, solid_count_, blended_count_);
+    api_.BindVertexArray(vertex_array_);
+    for (const Group& group : groups_) {
+        // Paint and seams lie on the cloth: blended, and its alpha, which says "cloth", stays.
+        if (&group == &groups_.back()) {
+            api_.Enable(GL_BLEND);
+            api_.DepthMask(GL_FALSE);
+        }
+        set_table_uniforms(table, view, group.program, jx, jy);
+        api_.DrawArrays(GL_TRIANGLES, group.first, group.count);
+    }
 }
 
 void StaticLayer::add_pass(const View& view, const Scratch& scratch, int pass, int samples) {

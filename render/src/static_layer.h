@@ -1,6 +1,8 @@
 // The table seen by one camera, drawn once with many samples a pixel and kept as textures.
 #pragma once
 
+#include <array>
+
 #include "gl_api.h"
 #include "view.h"
 
@@ -23,14 +25,21 @@ class StaticLayer {
     struct Scratch;
     void upload(const TableMesh& table);
     void resize(int width, int height);
+    void set_table_uniforms(const TableMesh& table, const View& view, GLuint program, double jx, double jy);
     void draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, double jx, double jy);
     void add_pass(const View& view, const Scratch& scratch, int pass, int samples);
 
     const gl::Api& api_;
-    GLuint table_program_, add_program_, depth_program_, resolve_program_;
+    /// Vertices that one program draws.
+    struct Group {
+        GLuint program = 0;
+        GLint first = 0;
+        GLsizei count = 0;
+    };
+    std::array<Group, 5> groups_;  ///< cloth, wood, small things, floor, and what is blended over the cloth
+    GLuint add_program_, depth_program_, resolve_program_;
     GLuint vertex_array_ = 0, buffer_ = 0, empty_array_ = 0;
     const TableMesh* uploaded_ = nullptr;
-    GLsizei solid_count_ = 0, blended_count_ = 0;
     int width_ = 0, height_ = 0;
     GLuint color_ = 0, occluders_ = 0, color_framebuffer_ = 0, occluders_framebuffer_ = 0;
 };
