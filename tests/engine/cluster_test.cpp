@@ -246,7 +246,8 @@ TEST(Cluster, FifthRoot) {
     }
     EXPECT_EQ(fifth_root(32.0), 2.0);
     EXPECT_EQ(fifth_root(1.0), 1.0);
-    EXPECT_NEAR(fifth_root(5e-324) / static_cast<double>(std::pow(5e-324L, 0.2L)), 1.0, 1e-12);
+    const double least = std::numeric_limits<double>::denorm_min();
+    EXPECT_NEAR(fifth_root(least) / static_cast<double>(std::pow(static_cast<long double>(least), 0.2L)), 1.0, 1e-15);
 }
 
 }  // namespace

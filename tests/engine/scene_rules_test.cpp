@@ -138,7 +138,7 @@ TEST(Scenes, DefaultsAreWrittenOut) {
     EXPECT_STREQ(name(s.physics.ball_ball), "mathavan");
     EXPECT_STREQ(name(s.physics.cushion), "han_2005");
     EXPECT_STREQ(name(s.physics.cloth_slip), "consistent");
-    EXPECT_STREQ(name(s.physics.clusters), "sequential");
+    EXPECT_STREQ(name(s.physics.clusters), "compliant");
     EXPECT_EQ(s.physics.substeps, 1000);
     EXPECT_FALSE(s.stop.time);
     EXPECT_FALSE(s.stop.events);

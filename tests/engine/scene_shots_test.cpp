@@ -82,7 +82,7 @@ TEST(SceneShots, ThreeCushionScores) {
 TEST(SceneShots, NineBallBreakHitsTheOneFirst) {
     const Record r = run("nine_ball_break");
     for (const carom::Event& e : r.events) {
-        if (e.type != EventType::kBallBall) continue;
+        if (e.type != EventType::kBallBall && e.type != EventType::kBallCluster) continue;
         EXPECT_EQ(r.tracks[static_cast<std::size_t>(e.a + e.b)].id, "1");
         EXPECT_EQ(std::min(e.a, e.b), 0);
         break;
