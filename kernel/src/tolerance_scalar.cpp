@@ -1,0 +1,3 @@
+// The impact by tolerance for scalar.
+#define CAROM_TOLERANCE_NAME tolerance_scalar
+#include "tolerance_impl.h"
