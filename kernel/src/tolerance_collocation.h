@@ -227,17 +227,24 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
     }
     forces<K, true>(m, n);
     const double reach = 7.0 * m.mu_b * stretch.h;
-    // error^2 = reach^2 change * contraction^2, the contraction of sweep k being about reach/|s| / (k + 1)
-    V4 tight = n.root_s.v[0] * n.root_s.v[0];
-    if constexpr (K == 2) tight += n.root_s.v[1] * n.root_s.v[1];
-    const double slope = reach * reach * (reach * reach) * (sum(tight) / (16.0 * K * K));
+    // A change of the slips leaves an error of contraction * change behind the next forces, and those act over `reach`.
+    V4 tight = n.root_s.v[0] * n.root_s.v[0] + all(m.mu_s * m.mu_s) * (n.root_u.v[0] * n.root_u.v[0]);
+    if constexpr (K == 2) {
+        tight += n.root_s.v[1] * n.root_s.v[1] + all(m.mu_s * m.mu_s) * (n.root_u.v[1] * n.root_u.v[1]);
+    }
+    const double steep = sum(tight), slope = (reach * reach) * (reach * reach) * (steep * (1.0 / (16.0 * K * K)));
+    const double end_slope = (m.mu_b * m.mu_b) * (m.mu_s * m.mu_s);
     bool converged = false;
     int k = 1;
     for (; k < T::sweeps && !converged; ++k) {
-        const V4 change = slips<K>(m, start, stretch.h, n);
+        const double h = stretch.h;
+        const V4 change = slips<K>(m, start, h, n);
         find_end<K, kEnd>(m, start, n.g_b, stretch);
         const V4 root = forces<K, kExact>(m, n);
-        converged = sum(change) * slope <= stretch.sweep_goal * ((k + 1.0) * (k + 1.0)) && sum(root) <= stretch.root_goal;
+        const double dh = stretch.h - h;
+        // The end, too, is a fixed point, with a contraction of about mu_s mu_b.
+        converged = (sum(change) + dh * dh * steep) * slope + (dh * dh) * end_slope <= stretch.sweep_goal &&
+                    sum(root) <= stretch.root_goal;
     }
     stretch.sweeps += k;
     if (!converged) return false;

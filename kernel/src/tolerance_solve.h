@@ -109,7 +109,7 @@ struct Goals {
 
 CAROM_INLINE Goals goals(double tolerance) {
     Goals g;
-    g.sweep = 0.01 * tolerance * tolerance;
+    g.sweep = 1 * tolerance * tolerance;
     // (5/16) r^3 is what a carried root keeps of its error r; r^2 <= tolerance^(2/3) needs no cube root when bounded so.
     g.root = tolerance < 1e-7 ? 1e-8 : 1e-5;
     return g;
