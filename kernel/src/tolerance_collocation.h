@@ -1,12 +1,15 @@
 // One Gauss collocation of the impact over one stretch of normal impulse, by Picard sweeps.
 //
-// Legend (docs/kernel_tolerance.md): everything is per mass and scaled by the approach speed. s = (x, z) slip between
-// the balls, z >= 0; u = (a, b) slip of the active ball on the cloth; p normal impulse; v normal velocity, -1 at the
-// start; xi = mu_b x/|s|, zeta = mu_b z/|s|, g_a = mu_s zeta a/|u|, g_b = mu_s zeta b/|u|;
+// Legend (docs/kernel_tolerance.md): everything is per mass and scaled by the approach speed. s = (x, z) slip
+// between the balls, z >= 0; u = (a, b) slip of the active ball on the cloth; p normal impulse; v normal
+// velocity, -1 at the start; xi = mu_b x/|s|, zeta = mu_b z/|s|, g_a = mu_s zeta a/|u|, g_b = mu_s zeta
+// b/|u|;
 //
-//     x' = -7 xi + g_a   z' = -5 zeta + 5/2 g_b   a' = xi - kappa g_a   b' = 1 - sigma zeta - kappa g_b   v' = 2 - g_b
+//     x' = -7 xi + g_a   z' = -5 zeta + 5/2 g_b   a' = xi - kappa g_a   b' = 1 - sigma zeta - kappa g_b   v'
+//     = 2 - g_b
 //
-// with sigma and kappa = 1 - sigma: (-5/2, 7/2) for the consistent sign of the cloth slip, (5/2, -3/2) as published.
+// with sigma and kappa = 1 - sigma: (-5/2, 7/2) for the consistent sign of the cloth slip, (5/2, -3/2) as
+// published.
 #pragma once
 
 #include "frame.h"
@@ -30,7 +33,9 @@ struct Tables<1> {
     static constexpr const double* nodes = kNodes4;
     static constexpr const double* weights = kWeights4;
     static constexpr const double* integral = kIntegral4[0];
-    static constexpr const double* monomials = kMonomials4[0];
+    static constexpr const double* before = kBefore4[0];
+    static constexpr const double* before_late = kBeforeLate4[0];
+    static constexpr const double* after_late = kAfterLate4[0];
     static constexpr const double* top = kTop4;
     static constexpr int sweeps = 12;
 };
@@ -40,7 +45,9 @@ struct Tables<2> {
     static constexpr const double* nodes = kNodes8;
     static constexpr const double* weights = kWeights8;
     static constexpr const double* integral = kIntegral8[0];
-    static constexpr const double* monomials = kMonomials8[0];
+    static constexpr const double* before = kBefore8[0];
+    static constexpr const double* before_late = kBeforeLate8[0];
+    static constexpr const double* after_late = kAfterLate8[0];
     static constexpr const double* top = kTop8;
     static constexpr int sweeps = 24;
 };
@@ -73,7 +80,7 @@ struct Stretch {
     double p_c;           // kWhole: impulse at the end of compression, a first guess and then the one found
     double done;          // the other kinds: work of the normal impulse over the stretch
     double sweep_goal;    // square of the error that the iteration may leave
-    double root_goal;     // square of the relative error of a carried root before its last correction
+    double root_goal;     // sixth power of the relative error of a carried root before its last correction
     double s_top, g_top;  // sizes of the highest Legendre coefficients: how well the nodes resolve the forces
     int sweeps;
 };
@@ -98,20 +105,42 @@ CAROM_INLINE double dot(const double* weights, const Lanes<K>& f) {
     return sum(total);
 }
 
-// Values of the polynomial through the nodes at four places t = 2 tau - 1.
+// Rows that integrate a force over compression and restitution, for an end of compression at t_c = 2 p_c/p
+// - 1.
 template <int K>
-CAROM_INLINE V4 polynomial(const V4 (&m)[K], V4 t) {
-    V4 value = broadcast<3>(m[K - 1]);
-    value = value * t + broadcast<2>(m[K - 1]);
-    value = value * t + broadcast<1>(m[K - 1]);
-    value = value * t + broadcast<0>(m[K - 1]);
-    if constexpr (K == 2) {
-        value = value * t + broadcast<3>(m[0]);
-        value = value * t + broadcast<2>(m[0]);
-        value = value * t + broadcast<1>(m[0]);
-        value = value * t + broadcast<0>(m[0]);
+struct EndRows {
+    Lanes<K> before, before_late, after_late;
+};
+
+template <int K>
+CAROM_INLINE Lanes<K> row_at(const double* table, double t) {
+    Lanes<K> row;
+    const V4 T = all(t);
+    for (int k = 0; k < K; ++k) {
+        const auto coefficient = [&](int power) { return load4(table + 4 * K * power + 4 * k); };
+        const V4 T2 = T * T;
+        V4 value = (coefficient(0) + coefficient(1) * T) + (coefficient(2) + coefficient(3) * T) * T2;
+        if constexpr (K == 2) {
+            value += ((coefficient(4) + coefficient(5) * T) + (coefficient(6) + coefficient(7) * T) * T2) *
+                     (T2 * T2);
+        }
+        row.v[k] = value;
     }
-    return value;
+    return row;
+}
+
+template <int K>
+CAROM_INLINE void set_rows(double t, EndRows<K>& rows) {
+    rows.before = row_at<K>(Tables<K>::before, t);
+    rows.before_late = row_at<K>(Tables<K>::before_late, t);
+    rows.after_late = row_at<K>(Tables<K>::after_late, t);
+}
+
+template <int K>
+CAROM_INLINE double dot(const Lanes<K>& weights, const Lanes<K>& f) {
+    V4 total = weights.v[0] * f.v[0];
+    if constexpr (K == 2) total += weights.v[1] * f.v[1];
+    return sum(total);
 }
 
 // Int_0^1 (1 - tau) f dtau
@@ -122,45 +151,43 @@ CAROM_INLINE double late_share(const Lanes<K>& f) {
     return dot<K>(Tables<K>::weights, late);
 }
 
-// The impulse at which the stretch ends, from the cloth force at its nodes. Compression ends where v = 0, restitution
-// where the work of the normal impulse is e_b^2 times that of compression; both by quadrature of g_b.
+// The impulse at which the stretch ends, from the cloth force at its nodes. Compression ends where v = 0,
+// restitution where the work of the normal impulse is e_b^2 times that of compression; both by quadrature of
+// g_b.
 template <int K, End kEnd>
-CAROM_INLINE void find_end(const Model& m, const State& start, const Lanes<K>& g_b, Stretch& stretch) {
+CAROM_INLINE void find_end(const Model& m, const State& start, const Lanes<K>& g_b, const EndRows<K>& rows,
+                           Stretch& stretch) {
     using T = Tables<K>;
     if constexpr (kEnd == End::kWhole) {
-        V4 c[K];
-        for (int k = 0; k < K; ++k) c[k] = combine<K>(T::monomials, k, g_b);
-        const V4 gauss = load4(kNodes4), weight = load4(kWeights4), late = weight * (all(1.0) - gauss);
-        const double scale = 2.0 / stretch.h;
-        const V4 before = polynomial<K>(c, all(scale * stretch.p_c) * gauss - all(1.0));
-        const double q_old = stretch.h - stretch.p_c;
-        const V4 after = polynomial<K>(c, (all(scale * q_old) * gauss + all(scale * stretch.p_c)) - all(1.0));
-        const double p_c = 1.0 / (2.0 - sum(weight * before));
-        const double work = p_c - p_c * p_c * (1.0 - sum(late * before));
-        const double q = m.e_b * square_root(work / (1.0 - sum(late * after)));
+        const double p_c = 1.0 / (2.0 - dot<K>(rows.before, g_b));
+        const double gain = 1.0 / (1.0 - dot<K>(rows.after_late, g_b));
+        const double work = p_c * (1.0 - p_c * (1.0 - dot<K>(rows.before_late, g_b)));
         stretch.p_c = p_c;
-        stretch.h = p_c + q;
+        stretch.h = p_c + m.e_b * square_root(work * gain);
     } else if constexpr (kEnd == End::kToZero) {
         stretch.h = -start.v / (2.0 - dot<K>(T::weights, g_b));
     } else if constexpr (kEnd == End::kToWork) {
         const double lost = 1.0 - late_share<K>(g_b);
-        stretch.h = 2.0 * stretch.work / (start.v + square_root(start.v * start.v + 4.0 * lost * stretch.work));
+        stretch.h =
+            2.0 * stretch.work / (start.v + square_root(start.v * start.v + 4.0 * lost * stretch.work));
     }
 }
 
 template <int K>
 struct Nodes {
-    Lanes<K> x, z, a, b;              // the slips
-    Lanes<K> root_s, root_u;          // 1/|s|, 1/|u|
-    Lanes<K> xi, zeta, g_a, g_b;      // the forces
+    Lanes<K> x, z, a, b;          // the slips
+    Lanes<K> root_s, root_u;      // 1/|s|, 1/|u|
+    Lanes<K> xi, zeta, g_a, g_b;  // the forces
 };
 
-// Forces at the nodes. `exact`: fresh reciprocal roots; otherwise the old ones are corrected by one cubic Newton step.
+// Forces at the nodes. `exact`: fresh reciprocal roots; otherwise the old ones are corrected by one cubic
+// Newton step.
 template <int K, bool kExact>
 CAROM_INLINE V4 forces(const Model& m, Nodes<K>& n) {
     V4 worst = all(0.0);
     for (int k = 0; k < K; ++k) {
-        const V4 ss = n.x.v[k] * n.x.v[k] + n.z.v[k] * n.z.v[k], uu = n.a.v[k] * n.a.v[k] + n.b.v[k] * n.b.v[k];
+        const V4 ss = n.x.v[k] * n.x.v[k] + n.z.v[k] * n.z.v[k],
+                 uu = n.a.v[k] * n.a.v[k] + n.b.v[k] * n.b.v[k];
         if constexpr (kExact) {
             n.root_s.v[k] = all(1.0) / square_root(ss);
             n.root_u.v[k] = all(1.0) / square_root(uu);
@@ -180,8 +207,8 @@ CAROM_INLINE V4 forces(const Model& m, Nodes<K>& n) {
     return worst;
 }
 
-// The slips at the nodes from the forces there. Returns the squares of their changes, as shares of |s| and, weighted by
-// what it can do, of |u|.
+// The slips at the nodes from the forces there. Returns the squares of their changes, as shares of |s| and,
+// weighted by what it can do, of |u|.
 template <int K>
 CAROM_INLINE V4 slips(const Model& m, const State& start, double h, Nodes<K>& n) {
     V4 change = all(0.0);
@@ -227,32 +254,46 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
     }
     forces<K, true>(m, n);
     const double reach = 7.0 * m.mu_b * stretch.h;
-    // A change of the slips leaves an error of contraction * change behind the next forces, and those act over `reach`.
+    // A change of the slips leaves an error of contraction * change behind the next forces, and those act
+    // over `reach`.
     V4 tight = n.root_s.v[0] * n.root_s.v[0] + all(m.mu_s * m.mu_s) * (n.root_u.v[0] * n.root_u.v[0]);
     if constexpr (K == 2) {
         tight += n.root_s.v[1] * n.root_s.v[1] + all(m.mu_s * m.mu_s) * (n.root_u.v[1] * n.root_u.v[1]);
     }
-    const double steep = sum(tight), slope = (reach * reach) * (reach * reach) * (steep * (1.0 / (16.0 * K * K)));
+    const double steep = sum(tight),
+                 slope = (reach * reach) * (reach * reach) * (steep * (1.0 / (16.0 * K * K)));
     const double end_slope = (m.mu_b * m.mu_b) * (m.mu_s * m.mu_s);
     bool converged = false;
+    double dh_before = 0.0, t_c = 2.0 / (1.0 + m.e_b) - 1.0;
+    EndRows<K> rows;
+    if constexpr (kEnd == End::kWhole) set_rows<K>(t_c, rows);
     int k = 1;
     for (; k < T::sweeps && !converged; ++k) {
         const double h = stretch.h;
         const V4 change = slips<K>(m, start, h, n);
-        find_end<K, kEnd>(m, start, n.g_b, stretch);
+        find_end<K, kEnd>(m, start, n.g_b, rows, stretch);
+        // The rows follow the end of compression with a delay of one sweep, so that no sweep waits for them.
+        if constexpr (kEnd == End::kWhole) {
+            set_rows<K>(t_c, rows);
+            t_c = 2.0 * stretch.p_c / stretch.h - 1.0;
+        }
         const V4 root = forces<K, kExact>(m, n);
         const double dh = stretch.h - h;
         // The end, too, is a fixed point, with a contraction of about mu_s mu_b.
-        converged = (sum(change) + dh * dh * steep) * slope + (dh * dh) * end_slope <= stretch.sweep_goal &&
-                    sum(root) <= stretch.root_goal;
+        const double r = sum(root);
+        converged = (sum(change) + dh * dh * steep) * slope + (dh * dh + dh_before * dh_before) * end_slope <=
+                        stretch.sweep_goal &&
+                    r * r * r <= stretch.root_goal;
+        dh_before = dh;
     }
     stretch.sweeps += k;
     if (!converged) return false;
-    find_end<K, kEnd>(m, start, n.g_b, stretch);
+    find_end<K, kEnd>(m, start, n.g_b, rows, stretch);
     const double h = stretch.h;
     const double xi = h * dot<K>(T::weights, n.xi), zeta = h * dot<K>(T::weights, n.zeta);
     const double g_a = h * dot<K>(T::weights, n.g_a), g_b = h * dot<K>(T::weights, n.g_b);
-    const double tx = dot<K>(T::top, n.xi), tz = dot<K>(T::top, n.zeta), ta = dot<K>(T::top, n.g_a), tb = dot<K>(T::top, n.g_b);
+    const double tx = dot<K>(T::top, n.xi), tz = dot<K>(T::top, n.zeta), ta = dot<K>(T::top, n.g_a),
+                 tb = dot<K>(T::top, n.g_b);
     stretch.s_top = square_root(tx * tx + tz * tz);
     stretch.g_top = square_root(ta * ta + tb * tb);
     if constexpr (kEnd != End::kWhole) stretch.done = start.v * h + h * h * (1.0 - late_share<K>(n.g_b));

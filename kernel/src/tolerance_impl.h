@@ -1,5 +1,5 @@
-// One impact by tolerance: check, scale, solve, project back. Built once per instruction set; CAROM_TOLERANCE_NAME is
-// the name of the function.
+// One impact by tolerance: check, scale, solve, project back. Built once per instruction set;
+// CAROM_TOLERANCE_NAME is the name of the function.
 #pragma once
 
 #include "tolerance_solve.h"
@@ -44,7 +44,8 @@ CAROM_INLINE bool pose(const FrameState& s, const ImpactParams& p, double tolera
 CAROM_INLINE void apply(const Impulses& t, double n, double R, bool second, FrameState& s) {
     const double p = n * t.p, xi = n * t.xi, zeta = second ? n * t.zeta : -(n * t.zeta);
     const double g_a = n * t.g_a, g_b = n * t.g_b, spin = 2.5 / R;
-    const double a1 = second ? 0.0 : g_a, b1 = second ? 0.0 : g_b, a2 = second ? -g_a : 0.0, b2 = second ? -g_b : 0.0;
+    const double a1 = second ? 0.0 : g_a, b1 = second ? 0.0 : g_b, a2 = second ? -g_a : 0.0,
+                 b2 = second ? -g_b : 0.0;
     s.v1x += a1 - xi;
     s.v1y += b1 - p;
     s.v2x += a2 + xi;

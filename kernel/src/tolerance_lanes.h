@@ -1,9 +1,11 @@
-// Four doubles at once, the only vector shape of the kernel by tolerance: one ymm register with AVX2, two xmm without.
+// Four doubles at once, the only vector shape of the kernel by tolerance: one ymm register with AVX2, two xmm
+// without.
 //
-// Every operation is + - * / or a square root of one lane, each correctly rounded, and sums over lanes have one written
-// order. So all instruction sets, compilers and optimisation levels give the same bits. No fused multiply-add: without
-// it plain x86-64 needs no software emulation, and it would save little, because square roots and divisions dominate.
-// Included by files built for one instruction set: no std templates here, everything inline in an anonymous namespace.
+// Every operation is + - * / or a square root of one lane, each correctly rounded, and sums over lanes have
+// one written order. So all instruction sets, compilers and optimisation levels give the same bits. No fused
+// multiply-add: without it plain x86-64 needs no software emulation, and it would save little, because square
+// roots and divisions dominate. Included by files built for one instruction set: no std templates here,
+// everything inline in an anonymous namespace.
 #pragma once
 
 #if defined(__SSE2__)

@@ -13,7 +13,8 @@ struct Problem {
     Model model;
     State start;
     double tolerance;
-    bool from_rest;  // the cloth slip is zero (rolling, at rest): it starts in the direction of the force on it
+    bool from_rest;  // the cloth slip is zero (rolling, at rest): it starts in the direction of the force on
+                     // it
 };
 
 struct Solution {
@@ -22,8 +23,8 @@ struct Solution {
     ToleranceMethod method;
 };
 
-// Ellipse of Bernstein about [0, 1]: how far a singularity stays away from a stretch. The error of N nodes falls as
-// rho^-2N.
+// Ellipse of Bernstein about [0, 1]: how far a singularity stays away from a stretch. The error of N nodes
+// falls as rho^-2N.
 CAROM_INLINE double ellipse(double sum_of_axes) {  // rho + 1/rho -> rho
     return sum_of_axes > 2.0 ? 0.5 * (sum_of_axes + square_root(sum_of_axes * sum_of_axes - 4.0)) : 1.0;
 }
@@ -47,8 +48,8 @@ CAROM_INLINE Rates rates(const Model& m, const State& at) {
 }
 
 // Frictionless from here to the end.
-CAROM_INLINE void finish_frictionless(double v, double work_left, bool compressing, double compressed, double e_b,
-                                      Impulses& total) {
+CAROM_INLINE void finish_frictionless(double v, double work_left, bool compressing, double compressed,
+                                      double e_b, Impulses& total) {
     if (compressing) {
         total.p += -0.5 * v;
         work_left = e_b * e_b * (compressed + 0.25 * v * v);
@@ -57,8 +58,8 @@ CAROM_INLINE void finish_frictionless(double v, double work_left, bool compressi
     if (work_left > 0.0) total.p += 2.0 * work_left / (v + square_root(v * v + 4.0 * work_left));
 }
 
-// The rest of an impact whose slip is nearly gone: it ends with the direction of the cloth slip as it is, or, where the
-// impulse that is left does not suffice for that, in proportion.
+// The rest of an impact whose slip is nearly gone: it ends with the direction of the cloth slip as it is, or,
+// where the impulse that is left does not suffice for that, in proportion.
 inline void finish_stuck(const Model& m, State at, double left, Impulses& total, double& v) {
     const double s = square_root(at.x * at.x + at.z * at.z), u = square_root(at.a * at.a + at.b * at.b);
     const double ga = u > 0.0 ? m.mu_s * (at.a / u) : 0.0, gb = u > 0.0 ? m.mu_s * (at.b / u) : 0.0;
@@ -87,7 +88,8 @@ inline double needed_ellipse(double excess) {
 inline void frozen_step(const Model& m, double h, State& at, Impulses& total, double& done) {
     const double s = square_root(at.x * at.x + at.z * at.z), u = square_root(at.a * at.a + at.b * at.b);
     const double xi = s > 0.0 ? m.mu_b * (at.x / s) * h : 0.0, zeta = s > 0.0 ? m.mu_b * (at.z / s) * h : 0.0;
-    const double ga = u > 0.0 ? m.mu_s * zeta * (at.a / u) : 0.0, gb = u > 0.0 ? m.mu_s * zeta * (at.b / u) : 0.0;
+    const double ga = u > 0.0 ? m.mu_s * zeta * (at.a / u) : 0.0,
+                 gb = u > 0.0 ? m.mu_s * zeta * (at.b / u) : 0.0;
     done = at.v * h + h * h;
     at.x += ga - 7.0 * xi;
     at.z = largest(0.0, at.z + (2.5 * gb - 5.0 * zeta));
@@ -107,11 +109,11 @@ struct Goals {
     double sweep, root;
 };
 
-CAROM_INLINE Goals goals(double tolerance) {
+CAROM_INLINE Goals goals(const Model& m, double tolerance) {
     Goals g;
-    g.sweep = 1 * tolerance * tolerance;
-    // (5/16) r^3 is what a carried root keeps of its error r; r^2 <= tolerance^(2/3) needs no cube root when bounded so.
-    g.root = tolerance < 1e-7 ? 1e-8 : 1e-5;
+    g.sweep = 2.0 * tolerance * tolerance;
+    // A corrected root keeps (5/16) r^3 of its error r, and an error of a direction acts with 7 mu_b.
+    g.root = 0.05 * (tolerance * tolerance) / (m.mu_b * m.mu_b);
     return g;
 }
 
@@ -119,7 +121,8 @@ CAROM_INLINE Goals goals(double tolerance) {
 CAROM_INLINE bool resolved(const Model& m, const Stretch& stretch, double tolerance) {
     const double s2 = stretch.s_top * stretch.s_top, g2 = stretch.g_top * stretch.g_top;
     return 7.0 * stretch.h * s2 <= 3.0 * tolerance * m.mu_b &&
-           81.0 * (stretch.h * stretch.h) * (g2 * stretch.g_top) <= 9.0 * (tolerance * tolerance) * (m.mu_b * m.mu_s);
+           81.0 * (stretch.h * stretch.h) * (g2 * stretch.g_top) <=
+               9.0 * (tolerance * tolerance) * (m.mu_b * m.mu_s);
 }
 
 // Intervals, each so long that |s| and |u| keep a share of their size over it.
@@ -130,13 +133,13 @@ inline void solve_adaptive(const Problem& problem, Solution& solution) {
     Impulses total = {0.0, 0.0, 0.0, 0.0, 0.0};
     const double rho = needed_ellipse(m.mu_b / tolerance), S = rho + 1.0 / rho;
     const double shortest = 1e-3 * tolerance / m.mu_b;
-    const Goals goal = goals(tolerance);
+    const Goals goal = goals(m, tolerance);
     bool compressing = true, from_rest = problem.from_rest;
     double compressed = 0.0, left = 0.0, shrink = 1.0;
     solution.method = ToleranceMethod::kAdaptive;
     for (int stretches = 0; stretches < kMostStretches; ++stretches) {
-        const double end = compressing ? -0.5 * at.v
-                                       : 2.0 * left / (at.v + square_root(at.v * at.v + 4.0 * left));
+        const double end =
+            compressing ? -0.5 * at.v : 2.0 * left / (at.v + square_root(at.v * at.v + 4.0 * left));
         const double total_left = compressing ? end * (1.0 + m.e_b) : end;
         const Rates r = rates(m, at);
         const double u = square_root(at.a * at.a + at.b * at.b), f = square_root(r.fx * r.fx + r.fy * r.fy);
@@ -153,13 +156,17 @@ inline void solve_adaptive(const Problem& problem, Solution& solution) {
         }
         h = largest(shrink * h, shortest);
         const bool last = h >= 1.1 * end;
-        Stretch stretch{last ? end : smallest(h, 0.6 * end), left, 0.0, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0};
+        Stretch stretch{
+            last ? end : smallest(h, 0.6 * end), left, 0.0, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0};
         State next = at;
         Impulses sum_next = total;
         bool ok;
-        if (!last) ok = collocate<2, End::kFixed, true>(m, next, sum_next, stretch);
-        else if (compressing) ok = collocate<2, End::kToZero, true>(m, next, sum_next, stretch);
-        else ok = collocate<2, End::kToWork, true>(m, next, sum_next, stretch);
+        if (!last)
+            ok = collocate<2, End::kFixed, true>(m, next, sum_next, stretch);
+        else if (compressing)
+            ok = collocate<2, End::kToZero, true>(m, next, sum_next, stretch);
+        else
+            ok = collocate<2, End::kToWork, true>(m, next, sum_next, stretch);
         solution.sweeps += stretch.sweeps;
         ok = ok && resolved(m, stretch, tolerance);
         if (!ok) {
@@ -174,8 +181,10 @@ inline void solve_adaptive(const Problem& problem, Solution& solution) {
         shrink = smallest(1.0, 1.6 * shrink);
         at = next;
         total = sum_next;
-        if (compressing) compressed -= stretch.done;
-        else left -= stretch.done;
+        if (compressing)
+            compressed -= stretch.done;
+        else
+            left -= stretch.done;
         if (compressing && (at.v >= 0.0 || (ok && last))) {
             compressing = false;
             left = m.e_b * m.e_b * compressed;
@@ -192,7 +201,7 @@ inline void solve_adaptive(const Problem& problem, Solution& solution) {
 
 template <int K>
 CAROM_INLINE bool solve_whole(const Problem& problem, double guess, Solution& solution) {
-    const Goals goal = goals(problem.tolerance);
+    const Goals goal = goals(problem.model, problem.tolerance);
     Stretch stretch{guess, 0.0, 0.5, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0};
     State state = problem.start;
     solution.total = {0.0, 0.0, 0.0, 0.0, 0.0};
@@ -232,7 +241,8 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
     double rho_u = 1e30;
     if (!problem.from_rest) {
         const double a1 = start.a + guess * r.fx, b1 = start.b + guess * r.fy;
-        const double u0 = square_root(start.a * start.a + start.b * start.b), u1 = square_root(a1 * a1 + b1 * b1);
+        const double u0 = square_root(start.a * start.a + start.b * start.b),
+                     u1 = square_root(a1 * a1 + b1 * b1);
         rho_u = ellipse(2.0 * (u0 + u1) / (guess * (1.0 + absolute(m.sigma) * m.mu_b)));
     }
     const double s2 = rho_s * rho_s, u2 = rho_u * rho_u;
@@ -242,7 +252,8 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
     if (problem.tolerance * (s4 * s2) >= size_s && problem.tolerance * (u4 * rho_u) >= size_u) {
         if (solve_whole<1>(problem, guess, solution)) return;
     }
-    if (problem.tolerance * (s4 * s4 * s4) >= 0.5 * size_s && problem.tolerance * (u4 * u4 * u2) >= 0.5 * size_u) {
+    if (problem.tolerance * (s4 * s4 * s4) >= 0.5 * size_s &&
+        problem.tolerance * (u4 * u4 * u2) >= 0.5 * size_u) {
         if (solve_whole<2>(problem, guess, solution)) return;
     }
     solve_adaptive(problem, solution);
