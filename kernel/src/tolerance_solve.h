@@ -131,7 +131,7 @@ inline void solve_adaptive(const Problem& problem, Solution& solution) {
     const double tolerance = problem.tolerance;
     State at = problem.start;
     Impulses total = {0.0, 0.0, 0.0, 0.0, 0.0};
-    const double rho = needed_ellipse(m.mu_b / tolerance), S = rho + 1.0 / rho;
+    const double rho = needed_ellipse(0.3 * m.mu_b / tolerance), S = rho + 1.0 / rho;
     const double shortest = 1e-3 * tolerance / m.mu_b;
     const Goals goal = goals(m, tolerance);
     bool compressing = true, from_rest = problem.from_rest;
@@ -246,7 +246,7 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
         rho_u = ellipse(2.0 * (u0 + u1) / (guess * (1.0 + absolute(m.sigma) * m.mu_b)));
     }
     const double s2 = rho_s * rho_s, u2 = rho_u * rho_u;
-    const double size_s = 1.7 * m.mu_b, size_u = 2.2 * m.mu_b * m.mu_s;
+    const double size_s = 1.0 * m.mu_b, size_u = 1.2 * m.mu_b * m.mu_s;
     solution.sweeps = 0;
     const double s4 = s2 * s2, u4 = u2 * u2;
     if (problem.tolerance * (s4 * s2) >= size_s && problem.tolerance * (u4 * rho_u) >= size_u) {

@@ -1,12 +1,14 @@
-// Legend: s = (x, z) slip between the balls, u = (a, b) slip of the active ball (the one pressed on the cloth), both as
-// in docs/kernel_tolerance.md; q the independent variable, dp = |s| |u| dq with p the normal impulse per mass. In q
-// neither the end of the slip (|s| -> 0) nor a cloth slip that passes close to zero is singular:
+// Legend: s = (x, z) slip between the balls, u = (a, b) slip of the active ball (the one pressed on the
+// cloth), both as in docs/kernel_tolerance.md; q the independent variable, dp = |s| |u| dq with p the normal
+// impulse per mass. In q neither the end of the slip (|s| -> 0) nor a cloth slip that passes close to zero is
+// singular:
 //
 //     x' = -7 mu_b x |u| + mu_s mu_b z a             a' = mu_b x |u| - kappa mu_s mu_b z a
-//     z' = -5 mu_b z |u| + 5/2 mu_s mu_b z b         b' = |s| |u| - 5/2 sigma mu_b z |u| - kappa mu_s mu_b z b
-//     p' = |s| |u|    v' = 2 p' - mu_s mu_b z b    W' = v p'    D' = mu_b |s| p' + mu_s mu_b z |u|^2
+//     z' = -5 mu_b z |u| + 5/2 mu_s mu_b z b         b' = |s| |u| - 5/2 sigma mu_b z |u| - kappa mu_s mu_b z
+//     b p' = |s| |u|    v' = 2 p' - mu_s mu_b z b    W' = v p'    D' = mu_b |s| p' + mu_s mu_b z |u|^2
 //
-// and the friction impulses are sums of their own: X' = mu_b x |u|, Z' = mu_b z |u|, A' = mu_s mu_b z a, B' likewise.
+// and the friction impulses are sums of their own: X' = mu_b x |u|, Z' = mu_b z |u|, A' = mu_s mu_b z a, B'
+// likewise.
 #include "support/reference_impact.h"
 
 #include <algorithm>
@@ -132,7 +134,8 @@ struct Outcome {
     int steps;
 };
 
-Outcome integrate(const Constants& m, Real e_b, const ReferenceSettings& settings, Real (&state)[kVariables]) {
+Outcome integrate(const Constants& m, Real e_b, const ReferenceSettings& settings,
+                  Real (&state)[kVariables]) {
     Outcome out{false, false, 0, 0};
     bool compressing = true;
     Real work_goal = 0;
@@ -148,7 +151,8 @@ Outcome integrate(const Constants& m, Real e_b, const ReferenceSettings& setting
         }
         const Real u = std::hypot(state[kA], state[kB]);
         const bool inward = state[kB] < 0;
-        if (u <= settings.vanished / 2 || (u <= settings.vanished && inward)) leave_zero_slip(m, state, settings.vanished);
+        if (u <= settings.vanished / 2 || (u <= settings.vanished && inward))
+            leave_zero_slip(m, state, settings.vanished);
         expand(m, state, e);
         const Real q = step_length(e, settings.tolerance);
         if (compressing && value(e, kV, q) >= 0) {
@@ -189,8 +193,8 @@ void restore(const Vector2& d, Real yx, Real yy, const double* before, Real z, R
 
 }  // namespace
 
-ReferenceImpact reference_impact(const kernel::Ball& ball1, const kernel::Ball& ball2, const kernel::ImpactParams& params,
-                                 const ReferenceSettings& settings) {
+ReferenceImpact reference_impact(const kernel::Ball& ball1, const kernel::Ball& ball2,
+                                 const kernel::ImpactParams& params, const ReferenceSettings& settings) {
     ReferenceImpact result{};
     const Real dx = Real(ball2.r[0]) - ball1.r[0], dy = Real(ball2.r[1]) - ball1.r[1], d = std::hypot(dx, dy);
     const Real yx = dx / d, yy = dy / d, R = params.R;
@@ -232,8 +236,9 @@ ReferenceImpact reference_impact(const kernel::Ball& ball1, const kernel::Ball& 
 double error_of(const kernel::ImpactResult& result, const ReferenceImpact& truth, double R) {
     Real worst = 0;
     for (int k = 0; k < 3; ++k) {
-        worst = std::max({worst, std::fabs(result.v1[k] - truth.v1[k]), std::fabs(result.v2[k] - truth.v2[k]),
-                          R * std::fabs(result.w1[k] - truth.w1[k]), R * std::fabs(result.w2[k] - truth.w2[k])});
+        worst =
+            std::max({worst, std::fabs(result.v1[k] - truth.v1[k]), std::fabs(result.v2[k] - truth.v2[k]),
+                      R * std::fabs(result.w1[k] - truth.w1[k]), R * std::fabs(result.w2[k] - truth.w2[k])});
     }
     return static_cast<double>(worst / truth.approach);
 }
