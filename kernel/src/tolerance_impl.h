@@ -58,10 +58,8 @@ CAROM_INLINE void apply(const Impulses& t, double n, double R, bool second, Fram
     s.w2z += spin * xi;
 }
 
-}  // namespace
-
-void CAROM_TOLERANCE_NAME(const Ball& ball1, const Ball& ball2, const ImpactParams& params, double tolerance,
-                          ImpactResult& result) noexcept {
+CAROM_INLINE void solve_impact(const Ball& ball1, const Ball& ball2, const ImpactParams& params,
+                               double tolerance, ImpactResult& result) {
     if (!tolerance_in_range(params, tolerance)) {
         copy_input(ball1, ball2, ImpactStatus::kBadParameter, result);
         return;
@@ -77,6 +75,13 @@ void CAROM_TOLERANCE_NAME(const Ball& ball1, const Ball& ball2, const ImpactPara
     apply(solution.total, n, params.R, second, state);
     leave_frame(ball1, ball2, frame, state, solution.sweeps, result);
     result.method = solution.method;
+}
+
+}  // namespace
+
+void CAROM_TOLERANCE_NAME(const Ball& ball1, const Ball& ball2, const ImpactParams& params, double tolerance,
+                          ImpactResult& result) noexcept {
+    solve_impact(ball1, ball2, params, tolerance, result);
 }
 
 }  // namespace carom::kernel

@@ -21,7 +21,6 @@ namespace carom::kernel {
 namespace {
 
 typedef double V4 __attribute__((vector_size(32)));
-typedef long long I4 __attribute__((vector_size(32)));
 
 CAROM_INLINE V4 all(double x) {
     return V4{x, x, x, x};

@@ -1,3 +1,4 @@
-// The impact by tolerance for scalar.
+// Impacts by tolerance, single and in batches, for plain x86-64.
 #define CAROM_TOLERANCE_NAME tolerance_scalar
-#include "tolerance_impl.h"
+#define CAROM_TOLERANCE_BATCH_NAME tolerance_batch_scalar
+#include "tolerance_batch_impl.h"
