@@ -103,7 +103,7 @@ inline void frozen_step(const Model& m, double h, State& at, Impulses& total, do
     total.g_b += gb;
 }
 
-constexpr int kMostStretches = 500;
+constexpr int kMostStretches = 2000;
 
 struct Goals {
     double sweep, root;
@@ -142,7 +142,7 @@ inline void solve_adaptive(const Problem& problem, Solution& solution) {
             compressing ? -0.5 * at.v : 2.0 * left / (at.v + square_root(at.v * at.v + 4.0 * left));
         const double total_left = compressing ? end * (1.0 + m.e_b) : end;
         const Rates r = rates(m, at);
-        const double u = square_root(at.a * at.a + at.b * at.b), f = square_root(r.fx * r.fx + r.fy * r.fy);
+        const double u = square_root(at.a * at.a + at.b * at.b);
         const bool surely_sticks = total_left * m.mu_b * 2.0 > r.s;
         const double vanished2 = surely_sticks ? tolerance * m.mu_b * smallest(u, 1.0) : 0.0;
         if (r.s * r.s <= vanished2 || r.s <= 0.25 * tolerance) {
@@ -151,8 +151,11 @@ inline void solve_adaptive(const Problem& problem, Solution& solution) {
         }
         double h = 4.0 * r.s / (r.fall * (S + 2.0));
         if (!from_rest) {
-            const double along = -(at.a * r.fx + at.b * r.fy) / (f * f);
-            h = smallest(h, (S * (u / f) - 2.0 * along) / (0.25 * S * S - 1.0));
+            // The cloth force itself hastens or delays the closest approach of u to zero.
+            const double drag = u > 0.0 ? m.kappa * (m.mu_s * (m.mu_b * (at.z * r.root_s))) / u : 0.0;
+            const double fx = r.fx - drag * at.a, fy = r.fy - drag * at.b, f2 = fx * fx + fy * fy;
+            const double along = -(at.a * fx + at.b * fy) / f2;
+            h = smallest(h, (S * (u / square_root(f2)) - 2.0 * along) / (0.25 * S * S - 1.0));
         }
         h = largest(shrink * h, shortest);
         const bool last = h >= 1.1 * end;
