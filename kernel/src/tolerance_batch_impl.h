@@ -101,7 +101,7 @@ CAROM_INLINE WideMask wide_enter(const Wide (&in)[kInputs], WideFrame& f) {
                        (magnitude(f.wy2) + magnitude(f.wz2)));
     // Lanes of an extreme range of speeds go to the single kernel, which knows where an impact ends to be
     // one.
-    return (wrong == 0.0) & (d > 0.0) & (magnitude(dz) <= kHeightTolerance * d) & (in[kRadius] > 0.0) &
+    return (wrong == 0.0) & (d > 0.0) & (magnitude(dz) <= kHeightTolerance * d) & (in[kRadius] > 1e-100) &
            (in[kMass] > 0.0) & (in[kMuS1] >= 0.0) & (in[kMuS2] >= 0.0) & (in[kMuB] > 0.0) &
            (in[kMuS1] <= kLargestFriction) & (in[kMuS2] <= kLargestFriction) &
            (in[kMuB] <= kLargestFriction) & (in[kEB] >= 0.0) & (in[kEB] <= 1.0) & (approach > 1e-100) &
@@ -288,14 +288,15 @@ inline void sweep_resolvable(const BatchView& v, double tolerance, Remaining& re
 void CAROM_TOLERANCE_BATCH_NAME(const ImpactBatch& batch, double tolerance,
                                 const ImpactBatchResult& result) noexcept {
     const BatchView v = view(batch, result);
+    const double solved = smallest(tolerance, kLoosestSolved);
     const bool allowed = tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance;
     Remaining rest;
     for (long begin = 0; begin < batch.count; begin += kChunk) {
         const long end = batch.count - begin < kChunk ? batch.count : begin + kChunk;
         rest.resolvables = rest.hards = 0;
         if (allowed) {
-            sweep_easy(v, begin, end, tolerance, rest);
-            sweep_resolvable(v, tolerance, rest);
+            sweep_easy(v, begin, end, solved, rest);
+            sweep_resolvable(v, solved, rest);
         } else {  // the single kernel says what is wrong
             for (long i = begin; i < end; ++i) rest.hard[rest.hards++] = i;
         }

@@ -15,6 +15,9 @@ CAROM_INLINE bool tolerance_in_range(const ImpactParams& p, double tolerance) {
            p.mu_s1 <= kLargestFriction && p.mu_s2 <= kLargestFriction;
 }
 
+// Looser than this nothing is gained, and the iteration may stop so early that energy rises.
+constexpr double kLoosestSolved = 1e-3;
+
 // The canonical form of an impact, and whether it is ball 2 that is pressed on the cloth.
 CAROM_INLINE bool pose(const FrameState& s, const ImpactParams& p, double tolerance, Problem& problem) {
     const double R = p.R, n = s.v1y - s.v2y, scale = 1.0 / n;
@@ -70,11 +73,13 @@ CAROM_INLINE void solve_impact(const Ball& ball1, const Ball& ball2, const Impac
     Problem problem;
     Solution solution;
     const double n = state.v1y - state.v2y;
-    const bool second = pose(state, params, tolerance, problem);
+    const bool second = pose(state, params, smallest(tolerance, kLoosestSolved), problem);
     solve(problem, solution);
     apply(solution.total, n, params.R, second, state);
     leave_frame(ball1, ball2, frame, state, solution.sweeps, result);
     result.method = solution.method;
+    // Spins of a radius next to zero overflow.
+    if (!(finite(result.w1) && finite(result.w2))) copy_input(ball1, ball2, ImpactStatus::kBadState, result);
 }
 
 }  // namespace

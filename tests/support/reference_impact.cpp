@@ -27,7 +27,7 @@ struct Constants {
 
 struct Expansion {
     int order;
-    Real c[kVariables][kReferenceMaxOrder + 1];  // coefficients of every variable
+    Real c[kVariables][kTruthMaxOrder + 1];  // coefficients of every variable
 };
 
 Real product(const Real* f, const Real* g, int k) {
@@ -45,8 +45,8 @@ Real root_term(const Real* square, const Real* root, int k) {
 }
 
 void expand(const Constants& m, const Real (&state)[kVariables], Expansion& e) {
-    Real s[kReferenceMaxOrder + 1], u[kReferenceMaxOrder + 1];
-    Real s2[kReferenceMaxOrder + 1], u2[kReferenceMaxOrder + 1], p1[kReferenceMaxOrder + 1];
+    Real s[kTruthMaxOrder + 1], u[kTruthMaxOrder + 1];
+    Real s2[kTruthMaxOrder + 1], u2[kTruthMaxOrder + 1], p1[kTruthMaxOrder + 1];
     for (int i = 0; i < kVariables; ++i) e.c[i][0] = state[i];
     for (int k = 0; k < e.order; ++k) {
         s2[k] = product(e.c[kX], e.c[kX], k) + product(e.c[kZ], e.c[kZ], k);
@@ -134,8 +134,7 @@ struct Outcome {
     int steps;
 };
 
-Outcome integrate(const Constants& m, Real e_b, const ReferenceSettings& settings,
-                  Real (&state)[kVariables]) {
+Outcome integrate(const Constants& m, Real e_b, const TruthSettings& settings, Real (&state)[kVariables]) {
     Outcome out{false, false, 0, 0};
     bool compressing = true;
     Real work_goal = 0;
@@ -193,9 +192,9 @@ void restore(const Vector2& d, Real yx, Real yy, const double* before, Real z, R
 
 }  // namespace
 
-ReferenceImpact reference_impact(const kernel::Ball& ball1, const kernel::Ball& ball2,
-                                 const kernel::ImpactParams& params, const ReferenceSettings& settings) {
-    ReferenceImpact result{};
+ImpactTruth reference_impact(const kernel::Ball& ball1, const kernel::Ball& ball2,
+                             const kernel::ImpactParams& params, const TruthSettings& settings) {
+    ImpactTruth result{};
     const Real dx = Real(ball2.r[0]) - ball1.r[0], dy = Real(ball2.r[1]) - ball1.r[1], d = std::hypot(dx, dy);
     const Real yx = dx / d, yy = dy / d, R = params.R;
     const Vector2 v1 = project(ball1.v, yx, yy), w1 = project(ball1.w, yx, yy);
@@ -233,7 +232,7 @@ ReferenceImpact reference_impact(const kernel::Ball& ball1, const kernel::Ball& 
     return result;
 }
 
-double error_of(const kernel::ImpactResult& result, const ReferenceImpact& truth, double R) {
+double error_of(const kernel::ImpactResult& result, const ImpactTruth& truth, double R) {
     Real worst = 0;
     for (int k = 0; k < 3; ++k) {
         worst =

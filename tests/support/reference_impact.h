@@ -6,15 +6,15 @@
 
 namespace carom::test {
 
-struct ReferenceSettings {
-    int order = 22;                  ///< of the Taylor series, 4..kReferenceMaxOrder
+struct TruthSettings {
+    int order = 22;                  ///< of the Taylor series, 4..kTruthMaxOrder
     long double tolerance = 1e-17L;  ///< of one step, relative to the approach speed
     long double vanished = 1e-19L;   ///< slip below this share of the approach speed is zero
 };
 
-inline constexpr int kReferenceMaxOrder = 30;
+inline constexpr int kTruthMaxOrder = 30;
 
-struct ReferenceImpact {
+struct ImpactTruth {
     bool ok = false;           ///< false: no impact (bad or separating input), or the step bound was met
     bool stuck = false;        ///< the slip between the balls ended during the impact
     long double v1[3], w1[3];  ///< after the impact
@@ -26,10 +26,10 @@ struct ReferenceImpact {
 };
 
 /// Solves one impact. Written for mu_s, mu_b <= 1 and an approach speed above 1e-9 of the other speeds.
-ReferenceImpact reference_impact(const kernel::Ball& ball1, const kernel::Ball& ball2,
-                                 const kernel::ImpactParams& params, const ReferenceSettings& settings = {});
+ImpactTruth reference_impact(const kernel::Ball& ball1, const kernel::Ball& ball2,
+                             const kernel::ImpactParams& params, const TruthSettings& settings = {});
 
 /// Largest difference of any component of v and R w, relative to the approach speed of the reference.
-double error_of(const kernel::ImpactResult& result, const ReferenceImpact& truth, double R);
+double error_of(const kernel::ImpactResult& result, const ImpactTruth& truth, double R);
 
 }  // namespace carom::test

@@ -21,8 +21,8 @@ inline constexpr double kLargestFriction = 1.0;
 
 /// Solves one impact between equal balls.
 ///
-/// @param tolerance  largest error of any component of v [m/s] and of R w after the impact, as a share of the
-/// approach
+/// @param tolerance  (looser than 1e-3 is solved as 1e-3) largest error of any component of v [m/s] and of R
+/// w after the impact, as a share of the approach
 ///     speed. Rounding adds a few units in the last place of the largest speed that went in.
 /// `result.steps` is the number of evaluations of the slip directions over the impact (sweeps), 1 for a
 /// closed form; `result.method` is what was used.
