@@ -262,7 +262,7 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
     }
     const double steep = sum(tight),
                  slope = (reach * reach) * (reach * reach) * (steep * (1.0 / (16.0 * K * K)));
-    const double end_slope = (m.mu_b * m.mu_b) * (m.mu_s * m.mu_s);
+    const double end_slope = 16.0 * ((m.mu_b * m.mu_b) * (m.mu_s * m.mu_s));
     bool converged = false;
     double dh_before = 0.0, t_c = 2.0 / (1.0 + m.e_b) - 1.0;
     EndRows<K> rows;
@@ -279,7 +279,7 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
         }
         const V4 root = forces<K, kExact>(m, n);
         const double dh = stretch.h - h;
-        // The end, too, is a fixed point, with a contraction of about mu_s mu_b.
+        // The end, too, is a fixed point, with a contraction of at most a few mu_s mu_b.
         const double r = sum(root);
         converged = (sum(change) + dh * dh * steep) * slope + (dh * dh + dh_before * dh_before) * end_slope <=
                         stretch.sweep_goal &&
