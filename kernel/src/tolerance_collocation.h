@@ -79,6 +79,7 @@ struct Stretch {
     double work;          // kToWork: the work to do
     double p_c;           // kWhole: impulse at the end of compression, a first guess and then the one found
     double done;          // the other kinds: work of the normal impulse over the stretch
+    double row_goal;      // how exact the rows of the end must be
     double sweep_goal;    // square of the error that the iteration may leave
     double root_goal;     // sixth power of the relative error of a carried root before its last correction
     double s_top, g_top;  // sizes of the highest Legendre coefficients: how well the nodes resolve the forces
@@ -105,10 +106,14 @@ CAROM_INLINE double dot(const double* weights, const Lanes<K>& f) {
     return sum(total);
 }
 
+// Error of the rows, as a share of the tolerance, from which on they are set anew.
+constexpr double kRowsGoal = 0.1;
+
 // Rows that integrate a force over compression and restitution, for an end of compression at t_c = 2 p_c/p
 // - 1.
 template <int K>
 struct EndRows {
+    double t;  // the t_c that they are made for
     Lanes<K> before, before_late, after_late;
 };
 
@@ -131,6 +136,7 @@ CAROM_INLINE Lanes<K> row_at(const double* table, double t) {
 
 template <int K>
 CAROM_INLINE void set_rows(double t, EndRows<K>& rows) {
+    rows.t = t;
     rows.before = row_at<K>(Tables<K>::before, t);
     rows.before_late = row_at<K>(Tables<K>::before_late, t);
     rows.after_late = row_at<K>(Tables<K>::after_late, t);
@@ -237,8 +243,9 @@ CAROM_INLINE V4 slips(const Model& m, const State& start, double h, Nodes<K>& n)
 }
 
 // Solves one stretch. False if the sweeps do not converge; then nothing has changed but `stretch.h`.
-template <int K, End kEnd, bool kExact>
-CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stretch& stretch) {
+// The roots of the first `exact` sweeps are fresh, those of later ones carried.
+template <int K, End kEnd>
+CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stretch& stretch, int exact) {
     using T = Tables<K>;
     const State start = state;
     Nodes<K> n;
@@ -274,10 +281,10 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
         find_end<K, kEnd>(m, start, n.g_b, rows, stretch);
         // The rows follow the end of compression with a delay of one sweep, so that no sweep waits for them.
         if constexpr (kEnd == End::kWhole) {
-            set_rows<K>(t_c, rows);
+            if (absolute(t_c - rows.t) * m.mu_b * m.mu_s > stretch.row_goal) set_rows<K>(t_c, rows);
             t_c = 2.0 * stretch.p_c / stretch.h - 1.0;
         }
-        const V4 root = forces<K, kExact>(m, n);
+        const V4 root = k < exact ? forces<K, true>(m, n) : forces<K, false>(m, n);
         const double dh = stretch.h - h;
         // The end, too, is a fixed point, with a contraction of at most a few mu_s mu_b.
         const double r = sum(root);

@@ -160,16 +160,17 @@ inline void solve_adaptive(const Problem& problem, Solution& solution) {
         h = largest(shrink * h, shortest);
         const bool last = h >= 1.1 * end;
         Stretch stretch{
-            last ? end : smallest(h, 0.6 * end), left, 0.0, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0};
+            last ? end : smallest(h, 0.6 * end), left, 0.0, 0.0, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0};
         State next = at;
         Impulses sum_next = total;
+        const int exact = shrink < 1.0 ? Tables<2>::sweeps : 3;
         bool ok;
         if (!last)
-            ok = collocate<2, End::kFixed, true>(m, next, sum_next, stretch);
+            ok = collocate<2, End::kFixed>(m, next, sum_next, stretch, exact);
         else if (compressing)
-            ok = collocate<2, End::kToZero, true>(m, next, sum_next, stretch);
+            ok = collocate<2, End::kToZero>(m, next, sum_next, stretch, exact);
         else
-            ok = collocate<2, End::kToWork, true>(m, next, sum_next, stretch);
+            ok = collocate<2, End::kToWork>(m, next, sum_next, stretch, exact);
         solution.sweeps += stretch.sweeps;
         ok = ok && resolved(m, stretch, tolerance);
         if (!ok) {
@@ -206,10 +207,10 @@ inline void solve_adaptive(const Problem& problem, Solution& solution) {
 template <int K>
 CAROM_INLINE bool solve_whole(const Problem& problem, double guess, Solution& solution) {
     const Goals goal = goals(problem.model, problem.tolerance);
-    Stretch stretch{guess, 0.0, 0.5, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0};
+    Stretch stretch{guess, 0.0, 0.5, 0.0, kRowsGoal * problem.tolerance, goal.sweep, goal.root, 0.0, 0.0, 0};
     State state = problem.start;
     solution.total = {0.0, 0.0, 0.0, 0.0, 0.0};
-    const bool ok = collocate<K, End::kWhole, false>(problem.model, state, solution.total, stretch);
+    const bool ok = collocate<K, End::kWhole>(problem.model, state, solution.total, stretch, 0);
     solution.sweeps = stretch.sweeps;
     solution.method = K == 1 ? ToleranceMethod::kCollocation4 : ToleranceMethod::kCollocation8;
     return ok && resolved(problem.model, stretch, problem.tolerance);

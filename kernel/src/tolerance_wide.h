@@ -5,7 +5,7 @@
 // itself.
 #pragma once
 
-#include "tolerance_lanes.h"
+#include "tolerance_collocation.h"
 #include "tolerance_tables.h"
 
 namespace carom::kernel {
@@ -169,26 +169,47 @@ CAROM_INLINE Wide wide_slips(const WideModel& m, const WideStart& start, Wide h,
     return change;
 }
 
-// The rows of the end (EndRows), here already applied to the force.
-struct WideEnd {
-    Wide before, before_late, after_late;
+// As EndRows. `t` is where they stand.
+template <int N>
+struct WideRows {
+    Wide t, before[N], before_late[N], after_late[N];
 };
 
 template <int N>
-CAROM_INLINE Wide wide_row(const double* table, Wide t, const Wide (&f)[N]) {
-    Wide value = wide_dot<N>(table + (N - 1) * N, 1, f);
-    for (int k = N - 2; k >= 0; --k) value = value * t + wide_dot<N>(table + k * N, 1, f);
+CAROM_INLINE Wide wide_polynomial(const double* table, Wide t) {
+    Wide value = wide(table[(N - 1) * N]);
+    for (int k = N - 2; k >= 0; --k) value = value * t + table[k * N];
     return value;
 }
 
 template <int N>
-CAROM_INLINE Wide wide_find_end(const WideModel& m, const Wide (&g_b)[N], Wide t, Wide& p_c) {
-    using T = WideTables<N>;
-    const Wide lost = 1.0 - wide_row<N>(T::after_late, t, g_b);
-    const Wide share = 2.0 - wide_row<N>(T::before, t, g_b);
+CAROM_INLINE void wide_set_rows(Wide t, WideRows<N>& rows) {
+    rows.t = t;
+    for (int j = 0; j < N; ++j) {
+        rows.before[j] = wide_polynomial<N>(WideTables<N>::before + j, t);
+        rows.before_late[j] = wide_polynomial<N>(WideTables<N>::before_late + j, t);
+        rows.after_late[j] = wide_polynomial<N>(WideTables<N>::after_late + j, t);
+    }
+}
+
+// sum_j a[j] b[j]
+template <int N>
+CAROM_INLINE Wide wide_dot(const Wide (&a)[N], const Wide (&b)[N]) {
+    Wide even = a[0] * b[0], odd = a[1] * b[1];
+    for (int j = 2; j < N; j += 2) {
+        even += a[j] * b[j];
+        odd += a[j + 1] * b[j + 1];
+    }
+    return even + odd;
+}
+
+template <int N>
+CAROM_INLINE Wide wide_find_end(const WideModel& m, const Wide (&g_b)[N], const WideRows<N>& rows, Wide& p_c) {
+    const Wide lost = 1.0 - wide_dot<N>(rows.after_late, g_b);
+    const Wide share = 2.0 - wide_dot<N>(rows.before, g_b);
     const Wide both = 1.0 / (lost * share);
     p_c = both * lost;
-    const Wide work = p_c * (1.0 - p_c * (1.0 - wide_row<N>(T::before_late, t, g_b)));
+    const Wide work = p_c * (1.0 - p_c * (1.0 - wide_dot<N>(rows.before_late, g_b)));
     return p_c + m.e_b * wide_root(work * (both * share));
 }
 
@@ -198,7 +219,9 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
                                  double tolerance, WideResult& out) {
     using T = WideTables<N>;
     WideNodes<N> n;
-    Wide h = 0.5 * (1.0 + m.e_b), t_c = 2.0 / (1.0 + m.e_b) - 1.0, t_next = t_c;
+    Wide h = 0.5 * (1.0 + m.e_b), t_c = 2.0 / (1.0 + m.e_b) - 1.0;
+    WideRows<N> rows;
+    wide_set_rows<N>(t_c, rows);
     const Wide share = m.mu_b / wide_root(start.x * start.x + start.z * start.z);
     const Wide xi0 = share * start.x, zeta0 = share * start.z;
     for (int i = 0; i < N; ++i) {
@@ -221,16 +244,18 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
     for (int k = 1; k < T::sweeps && any(open); ++k) {
         const Wide change = wide_slips<N>(m, start, h, n);
         Wide p_c;
-        const Wide h_new = wide_find_end<N>(m, n.g_b, t_c, p_c), dh = h_new - h;
-        t_c = t_next;
-        t_next = 2.0 * p_c / h_new - 1.0;
+        const Wide h_new = wide_find_end<N>(m, n.g_b, rows, p_c), dh = h_new - h;
+        // Rows are set anew in the lanes where that matters; the others keep theirs, whatever their neighbours do.
+        const WideMask moved = open & (magnitude(t_c - rows.t) * m.mu_b * m.mu_s > kRowsGoal * tolerance);
+        if (any(moved)) wide_set_rows<N>(choose(moved, t_c, rows.t), rows);
+        t_c = 2.0 * p_c / h_new - 1.0;
         h = h_new;
         const Wide r = wide_forces<N, false>(m, n);
         const Wide left = (change + dh * dh * steep) * slope + (dh * dh + dh_before * dh_before) * end_slope;
         const WideMask now = open & (left <= sweep_goal) & (r * r * r <= root_goal);
         dh_before = dh;
         if (!any(now)) continue;
-        const Wide p = wide_find_end<N>(m, n.g_b, t_c, p_c);
+        const Wide p = wide_find_end<N>(m, n.g_b, rows, p_c);
         const Wide tx = wide_dot<N>(T::top, 1, n.xi), tz = wide_dot<N>(T::top, 1, n.zeta);
         const Wide ta = wide_dot<N>(T::top, 1, n.g_a), tb = wide_dot<N>(T::top, 1, n.g_b);
         const Wide s2 = tx * tx + tz * tz, g2 = ta * ta + tb * tb;
