@@ -68,7 +68,9 @@ ImpactSettings settings_of(const ImpactArgs& args) {
     settings.substeps = args.substeps;
     settings.cloth_slip =
         args.cloth_slip == "as_published" ? kernel::ClothSlip::kAsPublished : kernel::ClothSlip::kConsistent;
+    settings.tolerance = args.tolerance;
     settings.march = kernel::march_function(chosen_isa());
+    settings.by_tolerance = kernel::tolerance_function(chosen_isa());
     return settings;
 }
 

@@ -111,7 +111,8 @@ Json ball_ball(const Json& line, const ImpactSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
     switch (settings.method) {
         case ImpactSettings::Method::kMathavan:
-            settings.march(ball1, ball2, p, settings.substeps, result);
+            if (settings.substeps) settings.march(ball1, ball2, p, *settings.substeps, result);
+            else settings.by_tolerance(ball1, ball2, p, settings.tolerance, result);
             break;
         case ImpactSettings::Method::kInelastic:
             kernel::collide_inelastic(ball1, ball2, p, result);

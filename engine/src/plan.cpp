@@ -100,7 +100,8 @@ Plan make_plan(const Scene& scene, kernel::Isa isa) {
     add_geometry(scene.table, plan);
     decide_effects(scene, plan);
     plan.isa = isa;
-    plan.march = kernel::march_function(isa);
+    if (scene.physics.substeps) plan.march = kernel::march_function(isa);
+    else plan.by_tolerance = kernel::tolerance_function(isa);
     if (scene.cue) {
         const double vertical = strike(*scene.cue, scene.balls).dropped_vertical;
         if (vertical > 0.0)

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "carom/engine/tolerances.h"
+#include "carom/kernel/tolerance.h"
 #include "rack.h"
 
 namespace carom::detail {
@@ -87,6 +88,11 @@ void read_balls(const Section& top, Scene& scene) {
     p.e_b = s.number("e_b", p.e_b, kRestitution);
     p.e_c = s.number("e_c", p.e_c, kRestitution);
     p.f_c = s.number("f_c", p.f_c, kFriction);
+    for (const auto& [key, value] : {std::pair{"mu_s", p.mu_s}, std::pair{"mu_b", p.mu_b}}) {
+        if (value > kernel::kLargestFriction && scene.physics.ball_ball == BallBallModel::kMathavan && !scene.physics.substeps)
+            s.fail(s.where(key), fmt::format("balls.{} = {}: the impact by tolerance takes frictions up to {}; lower it, or set "
+                                             "physics.substeps = 1000", key, value, kernel::kLargestFriction));
+    }
     scene.balls = p;
 }
 
@@ -185,8 +191,12 @@ void read_physics(const Section& top, Scene& scene) {
     p.cushion = s.choice("cushion", p.cushion, kCushionModels);
     p.cloth_slip = s.choice("cloth_slip", p.cloth_slip, kClothSlipSigns);
     p.clusters = s.choice("clusters", p.clusters, kClusterModels);
-    s.refuse("tolerance", "use substeps (default 1000)");
-    p.substeps = static_cast<int>(s.integer("substeps", p.substeps, 1, kMaxSubsteps));
+    p.tolerance = s.number("tolerance", p.tolerance, at_least(kernel::kTightestTolerance, kernel::kLoosestTolerance));
+    if (s.has("substeps")) {
+        if (s.has("tolerance"))
+            s.fail(s.where("substeps"), "physics.substeps and physics.tolerance exclude each other; remove one of the two");
+        p.substeps = static_cast<int>(s.integer("substeps", 1, 1, kMaxSubsteps));
+    }
 }
 
 void read_stop(const Section& top, Scene& scene) {

@@ -52,14 +52,19 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     kernel::ImpactResult result;
     const auto start = kProfile ? Clock::now() : Clock::time_point{};
     switch (physics.ball_ball) {
-        case BallBallModel::kMathavan: plan_.march(b1, b2, params, physics.substeps, result); break;
+        case BallBallModel::kMathavan:
+            if (plan_.march != nullptr) plan_.march(b1, b2, params, *physics.substeps, result);
+            else plan_.by_tolerance(b1, b2, params, physics.tolerance, result);
+            break;
         case BallBallModel::kInelastic: kernel::collide_inelastic(b1, b2, params, result); break;
         case BallBallModel::kElastic: kernel::collide_elastic(b1, b2, params, result); break;
     }
     if constexpr (kProfile) {
         cost_.kernel_ns = nanoseconds(start, Clock::now());
         cost_.steps = result.steps;
-        cost_.method = physics.ball_ball == BallBallModel::kMathavan ? "march" : name(physics.ball_ball);
+        cost_.method = physics.ball_ball != BallBallModel::kMathavan ? name(physics.ball_ball)
+                       : plan_.march != nullptr                      ? "march"
+                                                                     : kernel::name(result.method);
     }
     const auto id = [this](int ball) { return record_.tracks[static_cast<std::size_t>(ball)].id; };
     if (result.status != kernel::ImpactStatus::kOk && result.status != kernel::ImpactStatus::kNotApproaching)

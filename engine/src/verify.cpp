@@ -70,7 +70,7 @@ class Checker {
     bool keeps_energy() const {
         const Physics& physics = plan_.scene.physics;
         return physics.ball_ball != BallBallModel::kMathavan ||
-               (physics.cloth_slip == ClothSlipSign::kConsistent && physics.substeps >= 100);
+               (physics.cloth_slip == ClothSlipSign::kConsistent && physics.substeps.value_or(100) >= 100);
     }
 
     double first_energy_after_cue() const {

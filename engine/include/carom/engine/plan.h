@@ -9,6 +9,7 @@
 #include "carom/engine/scene.h"
 #include "carom/kernel/closed_forms.h"
 #include "carom/kernel/march.h"
+#include "carom/kernel/tolerance.h"
 
 namespace carom {
 
@@ -45,7 +46,8 @@ struct Plan {
     std::vector<Pocket> pockets;
     std::vector<EffectDecision> effects;
     kernel::Isa isa = kernel::Isa::kScalar;
-    kernel::MarchFunction march = nullptr;
+    kernel::MarchFunction march = nullptr;           ///< set where the scene asks for substeps
+    kernel::ToleranceFunction by_tolerance = nullptr;  ///< set otherwise
     ClusterModel clusters = ClusterModel::kSequential;  ///< kSequential where fewer than three balls leave nothing to decide
     std::vector<std::string> warnings;  ///< one sentence each, for stderr
 };

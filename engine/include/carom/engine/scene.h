@@ -68,7 +68,8 @@ struct Physics {
     CushionModel cushion = CushionModel::kHan2005;
     ClothSlipSign cloth_slip = ClothSlipSign::kConsistent;
     ClusterModel clusters = ClusterModel::kCompliant;
-    int substeps = 1000;  ///< of the march, N
+    double tolerance = 1e-6;      ///< of the impact (mathavan), relative to the approach speed
+    std::optional<int> substeps;  ///< set: the published march with N of them, instead of the tolerance
 };
 
 struct Stop {
