@@ -47,6 +47,7 @@ class LineReader {
         for (;;) {
             throw_if_interrupted();
             const ssize_t count = ::read(STDIN_FILENO, buffer_, sizeof buffer_);
+            throw_if_interrupted();  // the end of the input may come together with the signal
             if (count < 0 && errno == EINTR) continue;
             if (count < 0) throw std::runtime_error(std::string("standard input: ") + std::strerror(errno));
             position_ = 0;
