@@ -148,7 +148,8 @@ inline void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, double 
     const Wide rho_s = wide_ellipse(4.0 * s / (fall * guess) - 2.0);
     const Wide a1 = start.a + guess * (m.mu_b * cx), b1 = start.b + guess * (1.0 - m.sigma * (m.mu_b * cz));
     const Wide u0 = wide_root(start.a * start.a + start.b * start.b), u1 = wide_root(a1 * a1 + b1 * b1);
-    const Wide beside = wide_ellipse(2.0 * (u0 + u1) / (guess * (1.0 + 2.5 * m.mu_b)));
+    const Wide bend = guess * ((published ? 1.5 : 3.5) * (m.mu_s * m.mu_b));
+    const Wide beside = wide_ellipse(2.0 * ((u0 + u1) - bend) / (guess * (1.0 + 2.5 * m.mu_b)));
     const Wide rho_u = choose(from_rest, wide(1e30), beside);
     const Wide s2 = rho_s * rho_s, u2 = rho_u * rho_u, s4 = s2 * s2, u4 = u2 * u2;
     const Wide size_s = kSizeS * m.mu_b, size_u = kSizeU * (m.mu_b * m.mu_s);

@@ -37,7 +37,7 @@ struct Tables<1> {
     static constexpr const double* before_late = kBeforeLate4[0];
     static constexpr const double* after_late = kAfterLate4[0];
     static constexpr const double* top = kTop4;
-    static constexpr int sweeps = 12;
+    static constexpr int sweeps = 24;
 };
 
 template <>
@@ -269,7 +269,7 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
     }
     const double steep = sum(tight),
                  slope = (reach * reach) * (reach * reach) * (steep * (1.0 / (16.0 * K * K)));
-    const double end_slope = 16.0 * ((m.mu_b * m.mu_b) * (m.mu_s * m.mu_s));
+    const double end_slope = 40.0 * ((m.mu_b * m.mu_b) * (m.mu_s * m.mu_s));
     bool converged = false;
     double dh_before = 0.0, t_c = 2.0 / (1.0 + m.e_b) - 1.0;
     EndRows<K> rows;

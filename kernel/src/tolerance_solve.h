@@ -73,12 +73,13 @@ inline void finish_stuck(const Model& m, State at, double left, Impulses& total,
     v -= gb * zeta;
 }
 
-// Smallest rho for which `nodes` nodes keep an error of this size relative to the tolerance.
+// Smallest rho for which 4 K nodes keep an error of this size relative to the tolerance.
+template <int K>
 inline double needed_ellipse(double excess) {
     double rho = 1.6;
     for (int i = 0; i < 32; ++i) {
-        const double r2 = rho * rho, r4 = r2 * r2;
-        if (r4 * r4 * r4 >= excess) break;
+        const double r2 = rho * rho, r6 = r2 * r2 * r2;
+        if ((K == 1 ? r6 : r6 * r6) >= excess) break;
         rho *= 1.125;
     }
     return rho;
@@ -111,7 +112,7 @@ struct Goals {
 
 CAROM_INLINE Goals goals(const Model& m, double tolerance) {
     Goals g;
-    g.sweep = 2.0 * tolerance * tolerance;
+    g.sweep = 8.0 * tolerance * tolerance;
     // A corrected root keeps (5/16) r^3 of its error r, and an error of a direction acts with 7 mu_b.
     g.root = 0.05 * (tolerance * tolerance) / (m.mu_b * m.mu_b);
     return g;
@@ -126,18 +127,22 @@ CAROM_INLINE bool resolved(const Model& m, const Stretch& stretch, double tolera
 }
 
 // Intervals, each so long that |s| and |u| keep a share of their size over it.
-inline void solve_adaptive(const Problem& problem, Solution& solution) {
+//
+// False if their number meets its bound: then `solution` is finite but may miss the tolerance.
+template <int K>
+inline bool solve_adaptive(const Problem& problem, Solution& solution) {
     const Model& m = problem.model;
     const double tolerance = problem.tolerance;
     State at = problem.start;
     Impulses total = {0.0, 0.0, 0.0, 0.0, 0.0};
-    const double rho = needed_ellipse(0.3 * m.mu_b / tolerance), S = rho + 1.0 / rho;
+    const double rho = needed_ellipse<K>(0.3 * m.mu_b / tolerance), S = rho + 1.0 / rho;
     const double shortest = 1e-3 * tolerance / m.mu_b;
     const Goals goal = goals(m, tolerance);
     bool compressing = true, from_rest = problem.from_rest;
     double compressed = 0.0, left = 0.0, shrink = 1.0;
     solution.method = ToleranceMethod::kAdaptive;
-    for (int stretches = 0; stretches < kMostStretches; ++stretches) {
+    int stretches = 0;
+    for (; stretches < kMostStretches; ++stretches) {
         const double end =
             compressing ? -0.5 * at.v : 2.0 * left / (at.v + square_root(at.v * at.v + 4.0 * left));
         const double total_left = compressing ? end * (1.0 + m.e_b) : end;
@@ -163,14 +168,14 @@ inline void solve_adaptive(const Problem& problem, Solution& solution) {
             last ? end : smallest(h, 0.6 * end), left, 0.0, 0.0, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0};
         State next = at;
         Impulses sum_next = total;
-        const int exact = shrink < 1.0 ? Tables<2>::sweeps : 3;
+        const int exact = shrink < 1.0 ? Tables<K>::sweeps : 3;
         bool ok;
         if (!last)
-            ok = collocate<2, End::kFixed>(m, next, sum_next, stretch, exact);
+            ok = collocate<K, End::kFixed>(m, next, sum_next, stretch, exact);
         else if (compressing)
-            ok = collocate<2, End::kToZero>(m, next, sum_next, stretch, exact);
+            ok = collocate<K, End::kToZero>(m, next, sum_next, stretch, exact);
         else
-            ok = collocate<2, End::kToWork>(m, next, sum_next, stretch, exact);
+            ok = collocate<K, End::kToWork>(m, next, sum_next, stretch, exact);
         solution.sweeps += stretch.sweeps;
         ok = ok && resolved(m, stretch, tolerance);
         if (!ok) {
@@ -181,6 +186,7 @@ inline void solve_adaptive(const Problem& problem, Solution& solution) {
             next = at;
             sum_next = total;
             frozen_step(m, smallest(shortest, end), next, sum_next, stretch.done);
+            from_rest = false;
         }
         shrink = smallest(1.0, 1.6 * shrink);
         at = next;
@@ -202,6 +208,7 @@ inline void solve_adaptive(const Problem& problem, Solution& solution) {
     finish_frictionless(at.v, left, compressing, compressed, m.e_b, total);
     if (solution.sweeps == 0) solution.sweeps = 1;  // slip so small that it ends at once
     solution.total = total;
+    return stretches < kMostStretches;
 }
 
 template <int K>
@@ -236,6 +243,9 @@ CAROM_INLINE void solve_closed(const Problem& problem, Solution& solution) {
 // rho_u^-10.
 constexpr double kSizeS = 1.0, kSizeU = 1.2;
 
+// From this tolerance on stretches of 4 nodes need hardly be shorter than those of 8.
+constexpr double kLooseStretches = 1e-4;
+
 // Picks the cheapest method that keeps the bound.
 CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
     const Model& m = problem.model;
@@ -253,7 +263,9 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
         const double a1 = start.a + guess * r.fx, b1 = start.b + guess * r.fy;
         const double u0 = square_root(start.a * start.a + start.b * start.b),
                      u1 = square_root(a1 * a1 + b1 * b1);
-        rho_u = ellipse(2.0 * (u0 + u1) / (guess * (1.0 + absolute(m.sigma) * m.mu_b)));
+        // The cloth force bends the way by no more than this.
+        const double bend = guess * (absolute(m.kappa) * (m.mu_s * m.mu_b));
+        rho_u = ellipse(2.0 * ((u0 + u1) - bend) / (guess * (1.0 + absolute(m.sigma) * m.mu_b)));
     }
     const double s2 = rho_s * rho_s, u2 = rho_u * rho_u;
     const double size_s = kSizeS * m.mu_b, size_u = kSizeU * (m.mu_b * m.mu_s);
@@ -266,7 +278,8 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
         problem.tolerance * (u4 * u4 * u2) >= 0.5 * size_u) {
         if (solve_whole<2>(problem, guess, solution)) return;
     }
-    solve_adaptive(problem, solution);
+    if (problem.tolerance >= kLooseStretches && solve_adaptive<1>(problem, solution)) return;
+    solve_adaptive<2>(problem, solution);
 }
 
 }  // namespace

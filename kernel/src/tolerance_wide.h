@@ -71,7 +71,7 @@ struct WideTables<4> {
     static constexpr const double* before = kBefore4[0];
     static constexpr const double* before_late = kBeforeLate4[0];
     static constexpr const double* after_late = kAfterLate4[0];
-    static constexpr int sweeps = 12;
+    static constexpr int sweeps = 24;
 };
 
 template <>
@@ -235,8 +235,8 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
     const Wide mu2 = m.mu_s * m.mu_s, reach2 = (7.0 * m.mu_b * h) * (7.0 * m.mu_b * h);
     Wide steep = {};
     for (int i = 0; i < N; ++i) steep += n.root_s[i] * n.root_s[i] + mu2 * (n.root_u[i] * n.root_u[i]);
-    const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))), end_slope = 16.0 * ((m.mu_b * m.mu_b) * mu2);
-    const double sweep_goal = 2.0 * tolerance * tolerance;
+    const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))), end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
+    const double sweep_goal = 8.0 * tolerance * tolerance;
     const Wide root_goal = (0.05 * tolerance * tolerance) / (m.mu_b * m.mu_b);
     Wide dh_before = {};
     WideMask open = wanted;
