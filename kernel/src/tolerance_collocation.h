@@ -243,14 +243,16 @@ CAROM_INLINE V4 slips(const Model& m, const State& start, double h, Nodes<K>& n)
 }
 
 // Solves one stretch. False if the sweeps do not converge; then nothing has changed but `stretch.h`.
-// The roots of the first `exact` sweeps are fresh, those of later ones carried.
+// The roots of the first `exact` sweeps are fresh, those of later ones carried; `root_s` is 1/|s| at the
+// start.
 template <int K, End kEnd>
-CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stretch& stretch, int exact) {
+CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stretch& stretch, double root_s,
+                            int exact) {
     using T = Tables<K>;
     const State start = state;
     Nodes<K> n;
     // First guess: the forces of the start, with the cloth slip carried along by the normal impulse alone.
-    const double share = m.mu_b / square_root(start.x * start.x + start.z * start.z);
+    const double share = m.mu_b * root_s;
     const double xi0 = share * start.x, zeta0 = share * start.z;
     for (int k = 0; k < K; ++k) {
         const V4 p = all(stretch.h) * load4(T::nodes + 4 * k);

@@ -172,11 +172,11 @@ inline bool solve_adaptive(const Problem& problem, Solution& solution) {
         const int exact = shrink < 1.0 ? Tables<K>::sweeps : 3;
         bool ok;
         if (!last)
-            ok = collocate<K, End::kFixed>(m, next, sum_next, stretch, exact);
+            ok = collocate<K, End::kFixed>(m, next, sum_next, stretch, r.root_s, exact);
         else if (compressing)
-            ok = collocate<K, End::kToZero>(m, next, sum_next, stretch, exact);
+            ok = collocate<K, End::kToZero>(m, next, sum_next, stretch, r.root_s, exact);
         else
-            ok = collocate<K, End::kToWork>(m, next, sum_next, stretch, exact);
+            ok = collocate<K, End::kToWork>(m, next, sum_next, stretch, r.root_s, exact);
         solution.sweeps += stretch.sweeps;
         ok = ok && resolved(m, stretch, tolerance);
         if (!ok) {
@@ -213,12 +213,12 @@ inline bool solve_adaptive(const Problem& problem, Solution& solution) {
 }
 
 template <int K>
-CAROM_INLINE bool solve_whole(const Problem& problem, double guess, Solution& solution) {
+CAROM_INLINE bool solve_whole(const Problem& problem, double guess, double root_s, Solution& solution) {
     const Goals goal = goals(problem.model, problem.tolerance);
     Stretch stretch{guess, 0.0, 0.5, 0.0, kRowsGoal * problem.tolerance, goal.sweep, goal.root, 0.0, 0.0, 0};
     State state = problem.start;
     solution.total = {0.0, 0.0, 0.0, 0.0, 0.0};
-    const bool ok = collocate<K, End::kWhole>(problem.model, state, solution.total, stretch, 0);
+    const bool ok = collocate<K, End::kWhole>(problem.model, state, solution.total, stretch, root_s, 0);
     solution.sweeps = stretch.sweeps;
     solution.method = K == 1 ? ToleranceMethod::kCollocation4 : ToleranceMethod::kCollocation8;
     return ok && resolved(problem.model, stretch, problem.tolerance);
@@ -273,10 +273,10 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
     solution.sweeps = 0;
     const double s4 = s2 * s2, u4 = u2 * u2;
     if (problem.tolerance * (s4 * s2) >= size_s && problem.tolerance * (u4 * rho_u) >= size_u) {
-        if (solve_whole<1>(problem, guess, solution)) return;
+        if (solve_whole<1>(problem, guess, r.root_s, solution)) return;
     }
     if (problem.tolerance * (s4 * s4 * s4) >= size_s && problem.tolerance * (u4 * u4 * u2) >= 0.5 * size_u) {
-        if (solve_whole<2>(problem, guess, solution)) return;
+        if (solve_whole<2>(problem, guess, r.root_s, solution)) return;
     }
     if (problem.tolerance >= kLooseStretches && solve_adaptive<1>(problem, solution)) return;
     solve_adaptive<2>(problem, solution);
