@@ -11,14 +11,16 @@ constexpr double kGaussNodes[kNodes] = {-0.9602898564975362317, -0.7966664774136
                                         -0.1834346424956498049, 0.1834346424956498049,  0.5255324099163289858,
                                         0.7966664774136267396,  0.9602898564975362317};
 
-struct SumTable {
-    double steps;                       // K
+struct alignas(64) SumTable {
     double at[kNodes];                  // t of the nodes
     double sums[kNodes][kNodes];        // [l][i]: what F(node l) adds to the sum at node i
     double total[kNodes];               // ... to the sum over the block
     double double_total[kNodes];        // ... to the sum over m < K of the sums at m
-    double polynomial[kNodes + 1][kNodes];         // [k][l]: coefficients in theta of the sum
-    double double_polynomial[kNodes + 2][kNodes];  // [k][l]: of the sum of sums
+    // Coefficients in theta of the sum (degree 8) and of the sum of sums (degree 9): of degrees 0 .. 7 by node, [l][k],
+    // of those above by degree, [k - 8][l].
+    double once_low[kNodes][kNodes], once_high[1][kNodes];
+    double twice_low[kNodes][kNodes], twice_high[2][kNodes];
+    double steps;                       // K
     double theta0, theta_step;          // theta = theta0 + theta_step t
     double mode6[kNodes], mode7[kNodes];  // the two highest Chebyshev modes of F: what the interpolation may still miss
 };
@@ -68,15 +70,20 @@ constexpr SumTable sum_table(int K) {
         for (int i = 0; i < kNodes; ++i) t.sums[l][i] = evaluate(once, kNodes, kGaussNodes[i]);
         t.total[l] = evaluate(once, kNodes, end);
         t.double_total[l] = evaluate(twice, kNodes + 1, end);
-        for (int k = 0; k <= kNodes; ++k) t.polynomial[k][l] = once[k];
-        for (int k = 0; k <= kNodes + 1; ++k) t.double_polynomial[k][l] = twice[k];
+        for (int k = 0; k < kNodes; ++k) {
+            t.once_low[l][k] = once[k];
+            t.twice_low[l][k] = twice[k];
+        }
+        t.once_high[0][l] = once[kNodes];
+        t.twice_high[0][l] = twice[kNodes];
+        t.twice_high[1][l] = twice[kNodes + 1];
         t.mode6[l] = lagrange[6] / 32.0;
         t.mode7[l] = lagrange[7] / 64.0;
     }
     return t;
 }
 
-constexpr int kSmallestBlock = 16, kBlockSizes = 7;  // 16, 32, ... 1024
+constexpr int kSmallestBlock = 16, kBlockSizes = 7, kLargestBlock = kSmallestBlock << (kBlockSizes - 1);
 constexpr SumTable kSumTables[kBlockSizes] = {sum_table(16),  sum_table(32),  sum_table(64),  sum_table(128),
                                               sum_table(256), sum_table(512), sum_table(1024)};
 

@@ -14,7 +14,10 @@ namespace {
 
 constexpr int kMostSweeps = 24;
 // Change of a node per sweep, and highest modes of the rates, both relative to the approach speed.
-constexpr double kSweepTolerance = 4e-15, kModeTolerance = 2e-13;
+constexpr double kSweepTolerance = 3e-13, kModeTolerance = 1e-9;
+
+// How far the poles are kept, relative to the estimate.
+constexpr double kPoleMargin = 0.5;
 
 template <int kSign>
 class SummedMarch {
@@ -23,14 +26,14 @@ class SummedMarch {
         : r(start), k(constants), scale(absolute(start.v_n)) {}
 
     long run() {
-        int level = kBlockSizes - 1;
+        long patience = 1;
         while (stop.goes_on(r.v_n)) {
             if (steps > k.limit) return -1;
-            level = level < widest() ? level : widest();
+            int level = widest();
             while (level >= 0 && !block(kSumTables[level])) --level;
-            if (level < 0) reduced_steps<kSign>(r, stop, steps, kSmallestBlock, k);
-            ++level;
-            if (level > kBlockSizes - 1) level = kBlockSizes - 1;
+            // Exact steps, more of them the longer nothing smooth comes.
+            if (level >= 0) patience = 1;
+            else reduced_steps<kSign>(r, stop, steps, patience < kSmallestBlock ? patience *= 2 : patience, k);
         }
         return steps;
     }
@@ -43,20 +46,48 @@ class SummedMarch {
     StopTest stop;
     long steps = 0;
 
-    // The widest block in which neither slip can change by more than about half.
-    int widest() const {
+    // A pressed ball that rolls: its slip gets a direction with the next step.
+    bool rolls() const {
         const int pressed = r.z < 0.0;
-        const double c = square_root(r.x * r.x + r.z * r.z);
-        const double U = square_root(r.Ux[pressed] * r.Ux[pressed] + r.Uy[pressed] * r.Uy[pressed]);
-        double most = 2048.0;
-        if (most * k.mu_h * 7.0 > 1.4 * c) most = 1.4 * c / (7.0 * k.mu_h);
-        if (k.mu_s[pressed] > 0.0 && r.Uy[pressed] < 0.0 && most * k.h > 2.0 * U) most = 2.0 * U / k.h;
-        if (5.0 * k.mu_h * most > 2.0 * absolute(r.z) && r.z != 0.0) {
-            // |z| keeps its sign while |z| / c does not vanish; a sixteenth of c is far from any flip
-            if (absolute(r.z) < 0.02 * c) return -1;
-        }
-        int level = -1;
-        while (level < kBlockSizes - 1 && (kSmallestBlock << (level + 1)) <= most) ++level;
+        const double a = r.Ux[pressed], b = r.Uy[pressed];
+        return k.mu_s[pressed] > 0.0 && !(square_root(a * a + b * b) > k.u_floor);
+    }
+
+    // How smooth the direction of a vector is along a block of K steps from (a, b) at (da, db) a step: it has poles where
+    // the length vanishes, at complex t. With the path taken as straight these lie on the ellipse around the block of which
+    // the sum of half axes is rho, and modes fall as rho^-n. `amplitude` is what the direction can do to a result.
+    struct Path {
+        double a, b, da, db, needed;  // needed: (rho + 1/rho) / 2
+    };
+
+    Path path(double a, double b, double da, double db, double amplitude) const {
+        const double sine = absolute(a * db - b * da) /
+                            (square_root((a * a + b * b) * (da * da + db * db)) + 1e-300);
+        const double ratio = amplitude * sine / (kModeTolerance * scale);
+        const double rho = 1.0 + kPoleMargin * square_root(square_root(square_root(ratio)));
+        return {a, b, da, db, 0.5 * (rho + 1.0 / rho)};
+    }
+
+    static bool smooth(const Path& p, double K) {
+        const double a = p.a + K * p.da, b = p.b + K * p.db;
+        return square_root(p.a * p.a + p.b * p.b) + square_root(a * a + b * b) >=
+               p.needed * K * square_root(p.da * p.da + p.db * p.db);
+    }
+
+    // The widest block that promises to be resolved; -1 if none does.
+    int widest() const {
+        constexpr double kKappa = 1.0 - 2.5 * kSign;
+        if (rolls()) return -1;
+        const int pressed = r.z < 0.0;
+        const double c = square_root(r.x * r.x + r.z * r.z), size = absolute(r.z), mu_s = k.mu_s[pressed];
+        int level = kBlockSizes - 1;
+        if (c < kSlipCutoff) return level;
+        const double a = r.Ux[pressed], b = r.Uy[pressed], u = square_root(a * a + b * b);
+        const double xi = k.mu_h * r.x / c, t = k.mu_h * size / c;
+        const double B = u > 0.0 ? mu_s * t / u : 0.0, q_x = B * a, q_y = B * b;
+        const Path slip = path(r.x, size, q_x - 7.0 * xi, 2.5 * q_y - 5.0 * t, kLargestBlock * k.mu_h);
+        const Path cloth = path(a, b, xi - kKappa * q_x, k.h - 2.5 * kSign * t - kKappa * q_y, kLargestBlock * mu_s * t);
+        while (level >= 0 && !(smooth(slip, kSmallestBlock << level) && smooth(cloth, kSmallestBlock << level))) --level;
         return level;
     }
 
@@ -68,14 +99,18 @@ class SummedMarch {
         const Vector8 c = square_root8(x * x + z * z), u = square_root8(a * a + b * b);
         const Vector8 A = k.mu_h / c;
         const Vector8 t = A * z;
-        const Vector8 B = mu_s * t / u;
+        const Vector8 B = t * (mu_s / u);
         return {A * x, t, B * a, B * b};
     }
 
-    static Vector8 summed(const SumTable& table, Vector8 start, Vector8 F) {
-        Vector8 even = start, odd = F[1] * load8(table.sums[1]);
-        for (int l = 0; l < kNodes; l += 2) even += F[l] * load8(table.sums[l]);
-        for (int l = 3; l < kNodes; l += 2) odd += F[l] * load8(table.sums[l]);
+    // start + the columns weighted by F.
+    static Vector8 combined(const double (&columns)[kNodes][kNodes], Vector8 start, Vector8 F) {
+        // Through memory: loads broadcast for nothing, lanes moved in registers do not.
+        alignas(64) double at_node[kNodes];
+        __builtin_memcpy(at_node, &F, sizeof F);
+        Vector8 even = start, odd = at_node[1] * load8(columns[1]);
+        for (int l = 0; l < kNodes; l += 2) even += at_node[l] * load8(columns[l]);
+        for (int l = 3; l < kNodes; l += 2) odd += at_node[l] * load8(columns[l]);
         return even + odd;
     }
 
@@ -99,10 +134,10 @@ class SummedMarch {
         Vector8 b = b0 + push - at * ((2.5 * kSign) * f0.t + kKappa * f0.q_y);
         for (int sweep = 1;; ++sweep) {
             f = rates(x, z, a, b, mu_s);
-            const Vector8 next_x = summed(table, all8(r.x), f.q_x - 7.0 * f.xi);
-            const Vector8 next_z = summed(table, all8(z0), 2.5 * f.q_y - 5.0 * f.t);
-            const Vector8 next_a = summed(table, all8(a0), f.xi - kKappa * f.q_x);
-            const Vector8 next_b = summed(table, b0 + push, (-2.5 * kSign) * f.t - kKappa * f.q_y);
+            const Vector8 next_x = combined(table.sums, all8(r.x), f.q_x - 7.0 * f.xi);
+            const Vector8 next_z = combined(table.sums, all8(z0), 2.5 * f.q_y - 5.0 * f.t);
+            const Vector8 next_a = combined(table.sums, all8(a0), f.xi - kKappa * f.q_x);
+            const Vector8 next_b = combined(table.sums, b0 + push, (-2.5 * kSign) * f.t - kKappa * f.q_y);
             const double change = sum8(absolute8(next_x - x) + absolute8(next_z - z) + absolute8(next_a - a) + absolute8(next_b - b));
             x = next_x;
             z = next_z;
@@ -121,11 +156,10 @@ class SummedMarch {
     }
 
     bool resolved(const SumTable& table, const Rates& f, double slack) const {
-        const auto missing = [&](Vector8 F) {
-            return absolute(total(table.mode7, F)) + 0.1 * absolute(total(table.mode6, F));
-        };
-        return (missing(f.xi) + missing(f.t) + missing(f.q_x) + missing(f.q_y)) * table.steps <=
-               slack * kModeTolerance * scale;
+        // One mixture of the four stands for all: uneven weights, so that no symmetry cancels.
+        const Vector8 F = (f.xi + 0.7 * f.t) + (1.3 * f.q_x - 0.6 * f.q_y);
+        const double missing = absolute(total(table.mode7, F)) + 0.1 * absolute(total(table.mode6, F));
+        return missing * table.steps <= slack * kModeTolerance * scale;
     }
 
     // Takes the block, or as much of it as the march needs.
@@ -142,8 +176,13 @@ class SummedMarch {
             return true;
         }
         double once[kNodes + 1], twice[kNodes + 2];
-        for (int i = 0; i <= kNodes; ++i) once[i] = total(table.polynomial[i], f.q_y);
-        for (int i = 0; i <= kNodes + 1; ++i) twice[i] = total(table.double_polynomial[i], f.q_y);
+        const Vector8 once_low = combined(table.once_low, Vector8{}, f.q_y);
+        const Vector8 twice_low = combined(table.twice_low, Vector8{}, f.q_y);
+        __builtin_memcpy(once, &once_low, sizeof once_low);
+        __builtin_memcpy(twice, &twice_low, sizeof twice_low);
+        once[kNodes] = total(table.once_high[0], f.q_y);
+        twice[kNodes] = total(table.twice_high[0], f.q_y);
+        twice[kNodes + 1] = total(table.twice_high[1], f.q_y);
         const auto theta = [&](double t) { return table.theta0 + table.theta_step * t; };
         const auto v_at = [&](double t) { return v0 + 2.0 * h * t - evaluate(once, kNodes, theta(t)); };
         const auto V_at = [&](double t) {
@@ -153,7 +192,7 @@ class SummedMarch {
         if (stop.compressing) {
             // The first step after which v_n > 0: v grows by about 2 h a step, so Newton with that slope lands beside it.
             double t = -v0 / (2.0 * h);
-            for (int i = 0; i < 6; ++i) t -= v_at(t) / (2.0 * h);
+            for (int i = 0; i < 3; ++i) t -= v_at(t) / (2.0 * h);
             from = first(t, K, [&](double m) { return v_at(m) > 0.0; });
             if (from < 0.0) return false;
             const double V_before = V_at(from - 1.0);
@@ -177,8 +216,14 @@ class SummedMarch {
             if (last < 0.0) last = from;
         }
         stop.W += h * (V_at(last) - V_from);
-        Vector8 weights = load8(table.polynomial[kNodes]);
-        for (int i = kNodes - 1; i >= 0; --i) weights = weights * theta(last) + load8(table.polynomial[i]);
+        // What each node's rate adds to the sum at `last`.
+        alignas(64) double powers[kNodes], weight[kNodes];
+        powers[0] = 1.0;
+        for (int i = 1; i < kNodes; ++i) powers[i] = powers[i - 1] * theta(last);
+        const double highest = powers[kNodes - 1] * theta(last);
+        for (int l = 0; l < kNodes; ++l)
+            weight[l] = total(table.once_low[l], load8(powers)) + highest * table.once_high[0][l];
+        const Vector8 weights = load8(weight);
         take(f, weights, last, pressed);
         steps += static_cast<long>(last);
         return true;
