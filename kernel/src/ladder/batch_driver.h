@@ -1,5 +1,6 @@
-// Takes a batch through lanes: fills W * U lanes, marches them without asking as long as none can end, then step by step,
-// and takes out each lane when it ends. Lanes left behind by the others finish alone, so that one long impact holds none up.
+// Takes a batch through lanes: fills W * U lanes, marches them without asking as long as none can end, then
+// step by step, and takes out each lane when it ends. Lanes left behind by the others finish alone, so that
+// one long impact holds none up.
 #pragma once
 
 #include "carom/kernel/batch.h"
@@ -17,7 +18,8 @@ inline void load_impact(const ImpactBatch& batch, long i, Ball& b1, Ball& b2, Im
         b2.v[k] = batch.v2[k][i];
         b2.w[k] = batch.w2[k][i];
     }
-    p = {batch.R[i], batch.m[i], batch.mu_s1[i], batch.mu_s2[i], batch.mu_b[i], batch.e_b[i], batch.cloth_slip};
+    p = {batch.R[i],    batch.m[i],   batch.mu_s1[i],  batch.mu_s2[i],
+         batch.mu_b[i], batch.e_b[i], batch.cloth_slip};
 }
 
 inline void store_result(const ImpactBatchResult& out, long i, const ImpactResult& result) {
@@ -34,7 +36,8 @@ inline void store_result(const ImpactBatchResult& out, long i, const ImpactResul
 template <int W, int U, class Roots, class Arithmetic, int kSign>
 class BatchMarch {
   public:
-    BatchMarch(const ImpactBatch& b, int substeps, const ImpactBatchResult& r) : batch(b), n(substeps), result(r) {}
+    BatchMarch(const ImpactBatch& b, int substeps, const ImpactBatchResult& r)
+        : batch(b), n(substeps), result(r) {}
 
     void run() {
         const long count = static_cast<long>(batch.count);
@@ -53,9 +56,9 @@ class BatchMarch {
     const ImpactBatch& batch;
     const int n;
     const ImpactBatchResult& result;
-    // Impacts that will stick, or nearly, leave the fast path of the roots for the rest of their march; they share vectors
-    // with each other and not with the rest.
-    Group groups[2];
+    // Impacts that will stick, or nearly, leave the fast path of the roots for the rest of their march; they
+    // share vectors with each other and not with the rest.
+    Group groups[2] = {};
 
     static Lanes<W>& lanes_of(Group& g, int i) { return g.lanes[i / W]; }
 
@@ -83,13 +86,13 @@ class BatchMarch {
     // The sum of (v(m) + v(m+1)) / 2 over the steps done.
     double work_sum(Group& g, int i) {
         Lanes<W>& s = lanes_of(g, i);
-        return at<W>(s.sum_v, i % W) + 0.5 * (at<W>(s.v_n, i % W) - g.records[i].start.v_n);
+        return s.sum_v[i % W] + 0.5 * (s.v_n[i % W] - g.records[i].start.v_n);
     }
 
     // Steps that lane i cannot end or change stage within. v_n grows by at most (2 + mu_s mu_b) h a step.
     long safe_steps(Group& g, int i) {
         const LaneRecord& r = g.records[i];
-        const double v = at<W>(lanes_of(g, i).v_n, i % W), h = r.k.h;
+        const double v = lanes_of(g, i).v_n[i % W], h = r.k.h;
         const double mu_s = r.k.mu_s[0] > r.k.mu_s[1] ? r.k.mu_s[0] : r.k.mu_s[1];
         const double growth = 2.0 * h + mu_s * r.k.mu_h;
         double steps = -v / growth;
@@ -120,7 +123,7 @@ class BatchMarch {
                 double sum_before[W * U], v_before[W * U];
                 for (int i = 0; i < filled; ++i) {
                     sum_before[i] = work_sum(g, i);
-                    v_before[i] = at<W>(lanes_of(g, i).v_n, i % W);
+                    v_before[i] = lanes_of(g, i).v_n[i % W];
                 }
                 advance(g, 1);
                 ++done;
@@ -150,7 +153,7 @@ class BatchMarch {
     // The published stop test on lane i after a step; true when it has ended and been taken out.
     bool ends(Group& g, int i, double sum_before, double v_before, long done) {
         LaneRecord& r = g.records[i];
-        const double v = at<W>(lanes_of(g, i).v_n, i % W);
+        const double v = lanes_of(g, i).v_n[i % W];
         if (r.compressing && v > 0.0) {
             r.compressing = false;
             r.V_cross = work_sum(g, i);
@@ -172,7 +175,7 @@ class BatchMarch {
         r.active = false;
         Lanes<W>& s = lanes_of(g, i);
         V* const constants[5] = {&s.h, &s.h2, &s.mu_h, &s.mu_hs, &s.mu_other};
-        for (V* constant : constants) at<W>(*constant, i % W) = 0.0;
+        for (V* constant : constants) (*constant)[i % W] = 0.0;
     }
 
     void finish_alone(Group& g, int i, long done) {
@@ -197,7 +200,8 @@ template <int W, int U, class Roots, class Arithmetic>
 void batch_march(const ImpactBatch& batch, int n, const ImpactBatchResult& result) {
     if (batch.cloth_slip == ClothSlip::kAsPublished)
         BatchMarch<W, U, Roots, Arithmetic, +1>(batch, n, result).run();
-    else BatchMarch<W, U, Roots, Arithmetic, -1>(batch, n, result).run();
+    else
+        BatchMarch<W, U, Roots, Arithmetic, -1>(batch, n, result).run();
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Section 3.3: other order of the branches: which ball is pressed down is asked first, by the sign of the vertical slip,
-// and the exceptions (no slip at all) last.
+// Section 3.3: other order of the branches: which ball is pressed down is asked first, by the sign of the
+// vertical slip, and the exceptions (no slip at all) last.
 #pragma once
 
 #include "driver.h"

@@ -1,4 +1,5 @@
-// The paper's combined best: rsqrt with Newton, roots that wait for no branch, two stages, precomputed constants.
+// The paper's combined best: rsqrt with Newton, roots that wait for no branch, two stages, precomputed
+// constants.
 #pragma once
 
 #include "precomputed.h"
@@ -20,9 +21,12 @@ struct CombinedStep {
         const bool slips = square >= kSlipCutoff * kSlipCutoff, turns = slips && absolute(c_z) >= kSlipCutoff;
         const double friction = slips ? k.mu_b * h * NewtonRoot::inverse(square) : 0.0;
         const double J1 = friction * c_x, J2 = turns ? -friction * c_z : 0.0;
-        const double cloth = turns && u > k.u_floor * k.u_floor ? (second ? k.mu_s2 * J2 : -k.mu_s1 * J2) * NewtonRoot::inverse(u) : 0.0;
+        const double cloth = turns && u > k.u_floor * k.u_floor
+                                 ? (second ? k.mu_s2 * J2 : -k.mu_s1 * J2) * NewtonRoot::inverse(u)
+                                 : 0.0;
         const double Qx = cloth * u_x, Qy = cloth * u_y;
-        const double Q1x = second ? 0.0 : Qx, Q1y = second ? 0.0 : Qy, Q2x = second ? Qx : 0.0, Q2y = second ? Qy : 0.0;
+        const double Q1x = second ? 0.0 : Qx, Q1y = second ? 0.0 : Qy, Q2x = second ? Qx : 0.0,
+                     Q2y = second ? Qy : 0.0;
         s.v1x -= J1 + Q1x;
         s.v1y -= h + Q1y;
         s.v2x += J1 - Q2x;

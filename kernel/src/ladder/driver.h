@@ -1,9 +1,9 @@
-// What all rungs of the ladder share: constants, loops with the published stop test, and the entry from table coordinates.
-// A rung holds only what differs: a step, or a loop of its own.
+// What all rungs of the ladder share: constants, loops with the published stop test, and the entry from table
+// coordinates. A rung holds only what differs: a step, or a loop of its own.
 #pragma once
 
-#include "carom/kernel/march.h"
 #include "../frame.h"
+#include "carom/kernel/march.h"
 
 namespace carom::kernel {
 namespace {
@@ -114,10 +114,13 @@ void drive(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int
     Frame frame;
     FrameState state;
     if (enter_frame(ball1, ball2, params, frame, state, result) != ImpactStatus::kOk) return;
-    const long steps = params.cloth_slip == ClothSlip::kAsPublished ? Rung::template loop<+1>(state, params, n)
-                                                                    : Rung::template loop<-1>(state, params, n);
-    if (steps < 0) copy_input(ball1, ball2, ImpactStatus::kStepLimit, result);
-    else leave_frame(ball1, ball2, frame, state, steps, result);
+    const long steps = params.cloth_slip == ClothSlip::kAsPublished
+                           ? Rung::template loop<+1>(state, params, n)
+                           : Rung::template loop<-1>(state, params, n);
+    if (steps < 0)
+        copy_input(ball1, ball2, ImpactStatus::kStepLimit, result);
+    else
+        leave_frame(ball1, ball2, frame, state, steps, result);
 }
 
 }  // namespace

@@ -24,13 +24,15 @@ struct ExplicitFmaStep {
             if (!(absolute(c_z) < kSlipCutoff)) {
                 J2 = friction * c_z;
                 if (J2 > 0.0) {
-                    const double u_x = fma3(kSign * k.R, s.w2y, s.v2x), u_y = fma3(-kSign * k.R, s.w2x, s.v2y);
+                    const double u_x = fma3(kSign * k.R, s.w2y, s.v2x),
+                                 u_y = fma3(-kSign * k.R, s.w2x, s.v2y);
                     const double u = square_root(fma3(u_x, u_x, u_y * u_y));
                     const double cloth = u > k.u_floor ? -k.mu_s2 * J2 / u : 0.0;
                     Q2x = cloth * u_x;
                     Q2y = cloth * u_y;
                 } else {
-                    const double u_x = fma3(kSign * k.R, s.w1y, s.v1x), u_y = fma3(-kSign * k.R, s.w1x, s.v1y);
+                    const double u_x = fma3(kSign * k.R, s.w1y, s.v1x),
+                                 u_y = fma3(-kSign * k.R, s.w1x, s.v1y);
                     const double u = square_root(fma3(u_x, u_x, u_y * u_y));
                     const double cloth = u > k.u_floor ? k.mu_s1 * J2 / u : 0.0;
                     Q1x = cloth * u_x;

@@ -1,4 +1,5 @@
-// Section 3.2: fewer square roots. The cutoff is tested on the square, and a slip whose friction is zero takes no root.
+// Section 3.2: fewer square roots. The cutoff is tested on the square, and a slip whose friction is zero
+// takes no root.
 #pragma once
 
 #include "driver.h"

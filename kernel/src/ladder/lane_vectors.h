@@ -25,15 +25,18 @@ inline typename LaneVector<W>::Type all(double a) {
 }
 
 template <int W>
-inline typename LaneVector<W>::Type keep_lanes(typename LaneVector<W>::Mask mask, typename LaneVector<W>::Type a) {
+inline typename LaneVector<W>::Type keep_lanes(typename LaneVector<W>::Mask mask,
+                                               typename LaneVector<W>::Type a) {
     return (typename LaneVector<W>::Type)(mask & (typename LaneVector<W>::Mask)a);
 }
 
 template <int W>
 inline bool any(typename LaneVector<W>::Mask mask) {
 #if defined(__AVX512F__)
-    if constexpr (W == 8) return _mm512_movepi64_mask((__m512i)mask) != 0;
-    else return _mm256_movemask_pd((__m256d)mask) != 0;
+    if constexpr (W == 8)
+        return _mm512_movepi64_mask((__m512i)mask) != 0;
+    else
+        return _mm256_movemask_pd((__m256d)mask) != 0;
 #elif defined(__AVX__)
     __m256d part[W / 4];
     __builtin_memcpy(part, &mask, sizeof mask);
@@ -88,8 +91,10 @@ inline typename LaneVector<W>::Type root(typename LaneVector<W>::Type a) {
 template <int W>
 inline typename LaneVector<W>::Type approximate_rsqrt(typename LaneVector<W>::Type a) {
 #if defined(__AVX512F__)
-    if constexpr (W == 8) return (typename LaneVector<W>::Type)_mm512_rsqrt14_pd((__m512d)a);
-    else return (typename LaneVector<W>::Type)_mm256_rsqrt14_pd((__m256d)a);
+    if constexpr (W == 8)
+        return (typename LaneVector<W>::Type)_mm512_rsqrt14_pd((__m512d)a);
+    else
+        return (typename LaneVector<W>::Type)_mm256_rsqrt14_pd((__m256d)a);
 #elif defined(__AVX__)
     __m256d part[W / 4];
     __builtin_memcpy(part, &a, sizeof a);
@@ -111,14 +116,16 @@ struct FusedArithmetic {
     static V madd(V a, V b, V c) {
         if constexpr (sizeof(V) == 32) return (V)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
 #if defined(__AVX512F__)
-        else return (V)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+        else
+            return (V)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
 #endif
     }
     template <class V>
     static V nmadd(V a, V b, V c) {  // c - a b
         if constexpr (sizeof(V) == 32) return (V)_mm256_fnmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
 #if defined(__AVX512F__)
-        else return (V)_mm512_fnmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+        else
+            return (V)_mm512_fnmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
 #endif
     }
 };

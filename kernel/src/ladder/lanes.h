@@ -1,6 +1,7 @@
-// Section 3.8 and past it: independent impacts in the lanes of a vector. W lanes, U vectors interleaved, so that the latency
-// of one hides behind the other. The step is that of reduced.h with the pressed ball's slip (a, b) and the other's (c, d);
-// a lane whose vertical slip changes sign swaps them. Lanes share nothing: each result depends on its own impact alone.
+// Section 3.8 and past it: independent impacts in the lanes of a vector. W lanes, U vectors interleaved, so
+// that the latency of one hides behind the other. The step is that of reduced.h with the pressed ball's slip
+// (a, b) and the other's (c, d); a lane whose vertical slip changes sign swaps them. Lanes share nothing:
+// each result depends on its own impact alone.
 #pragma once
 
 #include "lane_vectors.h"
@@ -14,11 +15,12 @@ template <int W>
 struct Lanes {
     using V = typename LaneVector<W>::Type;
     using Mask = typename LaneVector<W>::Mask;
-    V x, size, a, b, c, d, v_n, sum_v;   // sum_v: of v_n over the steps done, for the work
-    V h, h2, mu_h, floor2;               // h2 = 2 h; of a lane that is done all constants are 0: nothing moves
-    V mu_hs, mu_other;                   // mu_b h times mu_s of the pressed and of the other ball
-    Mask pressed2;                       // all bits where ball 2 is pressed
-    V c_root, c_before, c_first, u_root, u_before, u_first;  // carried reciprocal lengths of the last three steps
+    V x, size, a, b, c, d, v_n, sum_v;  // sum_v: of v_n over the steps done, for the work
+    V h, h2, mu_h, floor2;              // h2 = 2 h; of a lane that is done all constants are 0: nothing moves
+    V mu_hs, mu_other;                  // mu_b h times mu_s of the pressed and of the other ball
+    Mask pressed2;                      // all bits where ball 2 is pressed
+    V c_root, c_before, c_first, u_root, u_before,
+        u_first;  // carried reciprocal lengths of the last three steps
 };
 
 template <int W, class Roots, class Arithmetic, int kSign>
@@ -29,7 +31,8 @@ inline void lane_step(Lanes<W>& s) {
     constexpr double kKappa = 1.0 - 2.5 * kSign;
     const V zero{};
     const V c2 = A::madd(s.x, s.x, s.size * s.size), u2 = A::madd(s.a, s.a, s.b * s.b);
-    // Everything that needs no root comes first, so that after the roots only two operations are in the way of the next step.
+    // Everything that needs no root comes first, so that after the roots only two operations are in the way
+    // of the next step.
     const V x1 = s.mu_h * s.x, t1 = s.mu_h * s.size, q1 = s.mu_hs * s.size, a1 = q1 * s.a, b1 = q1 * s.b;
     const V b_pushed = s.b + s.h, d_pushed = s.d + s.h, v_pushed = s.v_n + s.h2;
     V C, U;  // 1/c and 1/u; 0 where the published cutoff, or the floor, says that there is no direction
@@ -66,7 +69,8 @@ struct LaneExactRoots {
     }
 };
 
-// Approximate instruction and refinement; squares that it cannot hold, and zero, go to sqrt and division, lane by lane.
+// Approximate instruction and refinement; squares that it cannot hold, and zero, go to sqrt and division,
+// lane by lane.
 struct LaneRsqrtRoots {
     template <int W, class A, class S, class V>
     static void take(S& s, V c2, V u2, V& c, V& u) {
@@ -80,14 +84,15 @@ struct LaneRsqrtRoots {
         y = y * (1.5 - half * y * y);
         y = y * (1.5 - half * y * y);
         const auto fits = (square > 1e-30) & (square < 1e30);
-        if (any<W>(~fits)) [[unlikely]] return fits ? y : 1.0 / root<W>(square);
+        if (any<W>(~fits)) [[unlikely]]
+            return fits ? y : 1.0 / root<W>(square);
         return y;
     }
 };
 
-// No root at all: the reciprocal length is carried from step to step, extrapolated quadratically and corrected by the
-// series of (1 - e)^(-1/2). Where e is above 1e-4 (starts, near stick, after a flip) the lane takes sqrt and division.
-// What remains is 35/128 e^4, below an ulp.
+// No root at all: the reciprocal length is carried from step to step, extrapolated quadratically and
+// corrected by the series of (1 - e)^(-1/2). Where e is above 1e-4 (starts, near stick, after a flip) the
+// lane takes sqrt and division. What remains is 35/128 e^4, below an ulp.
 struct LaneCarriedRoots {
     template <int W, class A, class S, class V>
     static void take(S& s, V c2, V u2, V& c, V& u) {
@@ -132,46 +137,42 @@ struct LaneRecord {
     FrameState state;
     Reduced start;
     ReducedConstants k;
-    double V_cross, W, W_f;  // in units of W/h: sum of (v(m) + v(m+1)) / 2 at the end of compression, work, target
+    double V_cross, W,
+        W_f;  // in units of W/h: sum of (v(m) + v(m+1)) / 2 at the end of compression, work, target
     long steps, index;
     bool active, compressing;
 };
 
 template <int W>
-double& at(typename LaneVector<W>::Type& v, int lane) {
-    return reinterpret_cast<double*>(&v)[lane];
-}
-
-template <int W>
 void fill_lane(Lanes<W>& s, int i, const LaneRecord& r) {
     const int pressed = r.start.z < 0.0;
-    at<W>(s.x, i) = r.start.x;
-    at<W>(s.size, i) = absolute(r.start.z);
-    at<W>(s.a, i) = r.start.Ux[pressed];
-    at<W>(s.b, i) = r.start.Uy[pressed];
-    at<W>(s.c, i) = r.start.Ux[1 - pressed];
-    at<W>(s.d, i) = r.start.Uy[1 - pressed];
-    at<W>(s.v_n, i) = r.start.v_n;
-    at<W>(s.h, i) = r.k.h;
-    at<W>(s.mu_h, i) = r.k.mu_h;
-    at<W>(s.h2, i) = 2.0 * r.k.h;
-    at<W>(s.mu_hs, i) = r.k.mu_h * r.k.mu_s[pressed];
-    at<W>(s.mu_other, i) = r.k.mu_h * r.k.mu_s[1 - pressed];
-    at<W>(s.floor2, i) = r.k.u_floor * r.k.u_floor;
-    reinterpret_cast<long*>(&s.pressed2)[i] = -static_cast<long>(pressed);
+    s.x[i] = r.start.x;
+    s.size[i] = absolute(r.start.z);
+    s.a[i] = r.start.Ux[pressed];
+    s.b[i] = r.start.Uy[pressed];
+    s.c[i] = r.start.Ux[1 - pressed];
+    s.d[i] = r.start.Uy[1 - pressed];
+    s.v_n[i] = r.start.v_n;
+    s.h[i] = r.k.h;
+    s.mu_h[i] = r.k.mu_h;
+    s.h2[i] = 2.0 * r.k.h;
+    s.mu_hs[i] = r.k.mu_h * r.k.mu_s[pressed];
+    s.mu_other[i] = r.k.mu_h * r.k.mu_s[1 - pressed];
+    s.floor2[i] = r.k.u_floor * r.k.u_floor;
+    s.pressed2[i] = -static_cast<long>(pressed);
 }
 
 template <int W>
 Reduced lane_state(Lanes<W>& s, int i) {
-    const int pressed = reinterpret_cast<long*>(&s.pressed2)[i] != 0;
+    const int pressed = s.pressed2[i] != 0;
     Reduced r;
-    r.x = at<W>(s.x, i);
-    r.z = pressed ? -at<W>(s.size, i) : at<W>(s.size, i);
-    r.v_n = at<W>(s.v_n, i);
-    r.Ux[pressed] = at<W>(s.a, i);
-    r.Uy[pressed] = at<W>(s.b, i);
-    r.Ux[1 - pressed] = at<W>(s.c, i);
-    r.Uy[1 - pressed] = at<W>(s.d, i);
+    r.x = s.x[i];
+    r.z = pressed ? -s.size[i] : s.size[i];
+    r.v_n = s.v_n[i];
+    r.Ux[pressed] = s.a[i];
+    r.Uy[pressed] = s.b[i];
+    r.Ux[1 - pressed] = s.c[i];
+    r.Uy[1 - pressed] = s.d[i];
     return r;
 }
 

@@ -7,7 +7,8 @@ namespace carom::kernel {
 namespace {
 
 inline double keep(bool condition, double x) {
-    return __builtin_bit_cast(double, __builtin_bit_cast(unsigned long, x) & -static_cast<unsigned long>(condition));
+    return __builtin_bit_cast(double,
+                              __builtin_bit_cast(unsigned long, x) & -static_cast<unsigned long>(condition));
 }
 
 struct MasksStep {

@@ -1,4 +1,5 @@
-// Section 3.4: precomputation. Spins are carried as R w, impulses per unit mass, and every product of constants once.
+// Section 3.4: precomputation. Spins are carried as R w, impulses per unit mass, and every product of
+// constants once.
 #pragma once
 
 #include "driver.h"

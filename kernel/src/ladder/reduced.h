@@ -1,10 +1,13 @@
-// Past the paper: the reduced state. Ten velocities follow from six numbers and the impulse, because every change is a
-// sum of five: Xi (horizontal friction), T (vertical friction), Q (two of the cloth) and p (normal), all per unit mass.
+// Past the paper: the reduced state. Ten velocities follow from six numbers and the impulse, because every
+// change is a sum of five: Xi (horizontal friction), T (vertical friction), Q (two of the cloth) and p
+// (normal), all per unit mass.
 //
 //   x = v1x - v2x - R (w1z + w2z), z = R (w1x + w2x)     slip between the balls
-//   U[1] = u2, U[0] = -u1                                cloth slips, mirrored so that both sides read the same
+//   U[1] = u2, U[0] = -u1                                cloth slips, mirrored so that both sides read the
+//   same
 //
-// With c = |(x, z)|, A = mu_b h / c, xi = A x, t = A |z| and the pressed ball's q = mu_s t U / |U| one step is
+// With c = |(x, z)|, A = mu_b h / c, xi = A x, t = A |z| and the pressed ball's q = mu_s t U / |U| one step
+// is
 //
 //   x += -7 xi + q_x          |z| += -5 t + 5/2 q_y          v_n += 2 h - q_y
 //   U_pressed += (xi - kappa q_x, h - 5/2 sigma t - kappa q_y)
@@ -41,7 +44,8 @@ struct Sums {
 template <int kSign>
 Sums sums_between(const Reduced& a, const Reduced& b, double p) {
     constexpr double kKappa = 1.0 - 2.5 * kSign;
-    const double d0x = b.Ux[0] - a.Ux[0], d1x = b.Ux[1] - a.Ux[1], d0y = b.Uy[0] - a.Uy[0], d1y = b.Uy[1] - a.Uy[1];
+    const double d0x = b.Ux[0] - a.Ux[0], d1x = b.Ux[1] - a.Ux[1], d0y = b.Uy[0] - a.Uy[0],
+                 d1y = b.Uy[1] - a.Uy[1];
     Sums s;
     s.p = p;
     s.Xi = (kKappa * (b.x - a.x) + d0x + d1x) / (2.0 - 7.0 * kKappa);
@@ -75,7 +79,11 @@ struct ReducedConstants {
 template <int kSign>
 ReducedConstants reduced_constants(const FrameState& s, const ImpactParams& p, int n) {
     const double h = 0.5 * (1.0 + p.e_b) * absolute(s.v2y - s.v1y) / n;
-    return {h, p.mu_b * h, {p.mu_s1, p.mu_s2}, 1.0 + p.e_b * p.e_b, cloth_slip_floor(s, p.R, kSign),
+    return {h,
+            p.mu_b * h,
+            {p.mu_s1, p.mu_s2},
+            1.0 + p.e_b * p.e_b,
+            cloth_slip_floor(s, p.R, kSign),
             kMarchStepLimit * static_cast<long>(n)};
 }
 

@@ -1,4 +1,5 @@
-// Reciprocal square roots. rsqrtss takes floats: squares of velocities outside [1e-30, 1e30] go to sqrt and division.
+// Reciprocal square roots. rsqrtss takes floats: squares of velocities outside [1e-30, 1e30] go to sqrt and
+// division.
 #pragma once
 
 #include <immintrin.h>

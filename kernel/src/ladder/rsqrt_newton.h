@@ -1,4 +1,5 @@
-// Section 3.2: rsqrtss and Newton steps. The published rung gives NaN at zero slip; here zero slip takes no root at all.
+// Section 3.2: rsqrtss and Newton steps. The published rung gives NaN at zero slip; here zero slip takes no
+// root at all.
 #pragma once
 
 #include "inverse_step.h"

@@ -1,5 +1,5 @@
-// Section 3.7: SIMD in the whole loop, one register per vector (v1, w1, v2, w2 as x, y, z, -). Most lanes idle and every
-// dot product needs shuffles, which is why it lost in the paper.
+// Section 3.7: SIMD in the whole loop, one register per vector (v1, w1, v2, w2 as x, y, z, -). Most lanes
+// idle and every dot product needs shuffles, which is why it lost in the paper.
 #pragma once
 
 #include <immintrin.h>
@@ -51,7 +51,8 @@ struct SimdLoop {
             const __m256d u_squares = _mm256_mul_pd(u, u);
             const double length = square_root(lane0(u_squares) + lane1(u_squares));
             const double cloth = length > k.u_floor ? (second ? -k.mu_s2 * J2 : k.mu_s1 * J2) / length : 0.0;
-            const __m256d Q = _mm256_blend_pd(_mm256_mul_pd(_mm256_set1_pd(cloth), u), _mm256_setzero_pd(), 0b1100);
+            const __m256d Q =
+                _mm256_blend_pd(_mm256_mul_pd(_mm256_set1_pd(cloth), u), _mm256_setzero_pd(), 0b1100);
             const __m256d Q1 = second ? _mm256_setzero_pd() : Q, Q2 = second ? Q : _mm256_setzero_pd();
             const __m256d along = _mm256_set_pd(0.0, 0.0, -h, J1);
             v1 = _mm256_add_pd(v1, _mm256_add_pd(along, Q1));
@@ -59,8 +60,12 @@ struct SimdLoop {
             // dw = C (J2 + Q_y, -Q_x, -J1)
             const __m256d torque = _mm256_set_pd(0.0, -J1, 0.0, J2);
             const __m256d signs = _mm256_set_pd(0.0, 0.0, -1.0, 1.0);
-            w1 = _mm256_add_pd(w1, _mm256_mul_pd(spin, _mm256_add_pd(torque, _mm256_mul_pd(signs, _mm256_permute_pd(Q1, 0b0101)))));
-            w2 = _mm256_add_pd(w2, _mm256_mul_pd(spin, _mm256_add_pd(torque, _mm256_mul_pd(signs, _mm256_permute_pd(Q2, 0b0101)))));
+            w1 = _mm256_add_pd(
+                w1, _mm256_mul_pd(
+                        spin, _mm256_add_pd(torque, _mm256_mul_pd(signs, _mm256_permute_pd(Q1, 0b0101)))));
+            w2 = _mm256_add_pd(
+                w2, _mm256_mul_pd(
+                        spin, _mm256_add_pd(torque, _mm256_mul_pd(signs, _mm256_permute_pd(Q2, 0b0101)))));
             const double v_n_before = v_n;
             v_n = lane1(v2) - lane1(v1);
             W += 0.5 * k.dP * absolute(v_n_before + v_n);

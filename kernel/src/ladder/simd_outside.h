@@ -1,5 +1,5 @@
-// Section 3.7: SIMD around a scalar loop. Projection and back-projection take a ball's vector in one register; the loop
-// is the baseline's. It can win only what the frame costs, under one per cent at N = 1000.
+// Section 3.7: SIMD around a scalar loop. Projection and back-projection take a ball's vector in one
+// register; the loop is the baseline's. It can win only what the frame costs, under one per cent at N = 1000.
 #pragma once
 
 #include <immintrin.h>
@@ -37,7 +37,8 @@ inline void simd_outside(const Ball& b1, const Ball& b2, const ImpactParams& p, 
         return;
     }
     const __m256d back = _mm256_set_pd(0.0, 0.0, -f.yx, f.yx);
-    const double in[4][3] = {{s.v1x, s.v1y, b1.v[2]}, {s.w1x, s.w1y, s.w1z}, {s.v2x, s.v2y, b2.v[2]}, {s.w2x, s.w2y, s.w2z}};
+    const double in[4][3] = {
+        {s.v1x, s.v1y, b1.v[2]}, {s.w1x, s.w1y, s.w1z}, {s.v2x, s.v2y, b2.v[2]}, {s.w2x, s.w2y, s.w2z}};
     double* to[4] = {out.v1, out.w1, out.v2, out.w2};
     for (int k = 0; k < 4; ++k) {
         _mm256_store_pd(a[k], turned(in[k], along, back));

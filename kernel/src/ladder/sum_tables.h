@@ -1,28 +1,30 @@
-// Exact sums of polynomials over consecutive steps. A block has K steps, t = 0 .. K; a rate F is held by its values at
-// eight Gauss-Legendre nodes, as the polynomial of degree 7 through them. The sum over m < t of F(m) is then a
-// polynomial of degree 8 in t, the sum of those one of degree 9: no quadrature error, only that of the interpolation.
+// Exact sums of polynomials over consecutive steps. A block has K steps, t = 0 .. K; a rate F is held by its
+// values at eight Gauss-Legendre nodes, as the polynomial of degree 7 through them. The sum over m < t of
+// F(m) is then a polynomial of degree 8 in t, the sum of those one of degree 9: no quadrature error, only
+// that of the interpolation.
 #pragma once
 
 namespace carom::kernel {
 namespace {
 
 constexpr int kNodes = 8;
-constexpr double kGaussNodes[kNodes] = {-0.9602898564975362317, -0.7966664774136267396, -0.5255324099163289858,
-                                        -0.1834346424956498049, 0.1834346424956498049,  0.5255324099163289858,
-                                        0.7966664774136267396,  0.9602898564975362317};
+constexpr double kGaussNodes[kNodes] = {
+    -0.9602898564975362317, -0.7966664774136267396, -0.5255324099163289858, -0.1834346424956498049,
+    0.1834346424956498049,  0.5255324099163289858,  0.7966664774136267396,  0.9602898564975362317};
 
 struct alignas(64) SumTable {
-    double at[kNodes];                  // t of the nodes
-    double sums[kNodes][kNodes];        // [l][i]: what F(node l) adds to the sum at node i
-    double total[kNodes];               // ... to the sum over the block
-    double double_total[kNodes];        // ... to the sum over m < K of the sums at m
-    // Coefficients in theta of the sum (degree 8) and of the sum of sums (degree 9): of degrees 0 .. 7 by node, [l][k],
-    // of those above by degree, [k - 8][l].
+    double at[kNodes];            // t of the nodes
+    double sums[kNodes][kNodes];  // [l][i]: what F(node l) adds to the sum at node i
+    double total[kNodes];         // ... to the sum over the block
+    double double_total[kNodes];  // ... to the sum over m < K of the sums at m
+    // Coefficients in theta of the sum (degree 8) and of the sum of sums (degree 9): of degrees 0 .. 7 by
+    // node, [l][k], of those above by degree, [k - 8][l].
     double once_low[kNodes][kNodes], once_high[1][kNodes];
     double twice_low[kNodes][kNodes], twice_high[2][kNodes];
-    double steps;                       // K
-    double theta0, theta_step;          // theta = theta0 + theta_step t
-    double mode6[kNodes], mode7[kNodes];  // the two highest Chebyshev modes of F: what the interpolation may still miss
+    double steps;               // K
+    double theta0, theta_step;  // theta = theta0 + theta_step t
+    double mode6[kNodes],
+        mode7[kNodes];  // the two highest Chebyshev modes of F: what the interpolation may still miss
 };
 
 constexpr double evaluate(const double* a, int degree, double x) {
@@ -50,7 +52,8 @@ constexpr SumTable sum_table(int K) {
     SumTable t{};
     t.steps = K;
     t.theta_step = 2.0 / K;
-    t.theta0 = -(K - 1.0) / K;  // the nodes span the K steps evenly: theta = -1 is half a step before the first
+    t.theta0 =
+        -(K - 1.0) / K;  // the nodes span the K steps evenly: theta = -1 is half a step before the first
     for (int i = 0; i < kNodes; ++i) t.at[i] = (kGaussNodes[i] - t.theta0) / t.theta_step;
     const double end = t.theta0 + K * t.theta_step;
     for (int l = 0; l < kNodes; ++l) {
@@ -60,7 +63,8 @@ constexpr SumTable sum_table(int K) {
         for (int i = 0; i < kNodes; ++i) {
             if (i == l) continue;
             for (int k = ++degree; k >= 0; --k)
-                lagrange[k] = (k > 0 ? lagrange[k - 1] : 0.0) - kGaussNodes[i] * (k < degree ? lagrange[k] : 0.0);
+                lagrange[k] =
+                    (k > 0 ? lagrange[k - 1] : 0.0) - kGaussNodes[i] * (k < degree ? lagrange[k] : 0.0);
             scale *= kGaussNodes[l] - kGaussNodes[i];
         }
         for (double& a : lagrange) a /= scale;

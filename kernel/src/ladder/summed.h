@@ -1,8 +1,9 @@
-// Past the march: its result without its steps. The Euler march is the sequence y(m+1) = y(m) + h f(y(m)); over a block of
-// K steps the rates are a smooth function of m, so a polynomial through eight nodes holds them all, and their sums over
-// consecutive m are exact (sum_tables.h). The nodes are found by fixed-point sweeps, eight lanes at once. It is the Euler
-// sequence that is summed, not the continuous impact: step count, last step and discretisation error are the march's own.
-// Where rates are not smooth (a side that flips, a slip near zero, a ball that starts rolling) exact steps are taken.
+// Past the march: its result without its steps. The Euler march is the sequence y(m+1) = y(m) + h f(y(m));
+// over a block of K steps the rates are a smooth function of m, so a polynomial through eight nodes holds
+// them all, and their sums over consecutive m are exact (sum_tables.h). The nodes are found by fixed-point
+// sweeps, eight lanes at once. It is the Euler sequence that is summed, not the continuous impact: step
+// count, last step and discretisation error are the march's own. Where rates are not smooth (a side that
+// flips, a slip near zero, a ball that starts rolling) exact steps are taken.
 #pragma once
 
 #include "reduced.h"
@@ -14,7 +15,7 @@ namespace {
 
 constexpr int kMostSweeps = 24;
 // Change of a node per sweep, and highest modes of the rates, both relative to the approach speed.
-constexpr double kSweepTolerance = 3e-13, kModeTolerance = 1e-9;
+constexpr double kSweepTolerance = 3e-11, kModeTolerance = 1e-9;
 
 // How far the poles are kept, relative to the estimate.
 constexpr double kPoleMargin = 0.5;
@@ -32,8 +33,10 @@ class SummedMarch {
             int level = widest();
             while (level >= 0 && !block(kSumTables[level])) --level;
             // Exact steps, more of them the longer nothing smooth comes.
-            if (level >= 0) patience = 1;
-            else reduced_steps<kSign>(r, stop, steps, patience < kSmallestBlock ? patience *= 2 : patience, k);
+            if (level >= 0)
+                patience = 1;
+            else
+                reduced_steps<kSign>(r, stop, steps, patience < kSmallestBlock ? patience *= 2 : patience, k);
         }
         return steps;
     }
@@ -53,16 +56,17 @@ class SummedMarch {
         return k.mu_s[pressed] > 0.0 && !(square_root(a * a + b * b) > k.u_floor);
     }
 
-    // How smooth the direction of a vector is along a block of K steps from (a, b) at (da, db) a step: it has poles where
-    // the length vanishes, at complex t. With the path taken as straight these lie on the ellipse around the block of which
-    // the sum of half axes is rho, and modes fall as rho^-n. `amplitude` is what the direction can do to a result.
+    // How smooth the direction of a vector is along a block of K steps from (a, b) at (da, db) a step: it has
+    // poles where the length vanishes, at complex t. With the path taken as straight these lie on the ellipse
+    // around the block of which the sum of half axes is rho, and modes fall as rho^-n. `amplitude` is what
+    // the direction can do to a result.
     struct Path {
         double a, b, da, db, needed;  // needed: (rho + 1/rho) / 2
     };
 
     Path path(double a, double b, double da, double db, double amplitude) const {
-        const double sine = absolute(a * db - b * da) /
-                            (square_root((a * a + b * b) * (da * da + db * db)) + 1e-300);
+        const double sine =
+            absolute(a * db - b * da) / (square_root((a * a + b * b) * (da * da + db * db)) + 1e-300);
         const double ratio = amplitude * sine / (kModeTolerance * scale);
         const double rho = 1.0 + kPoleMargin * square_root(square_root(square_root(ratio)));
         return {a, b, da, db, 0.5 * (rho + 1.0 / rho)};
@@ -86,8 +90,11 @@ class SummedMarch {
         const double xi = k.mu_h * r.x / c, t = k.mu_h * size / c;
         const double B = u > 0.0 ? mu_s * t / u : 0.0, q_x = B * a, q_y = B * b;
         const Path slip = path(r.x, size, q_x - 7.0 * xi, 2.5 * q_y - 5.0 * t, kLargestBlock * k.mu_h);
-        const Path cloth = path(a, b, xi - kKappa * q_x, k.h - 2.5 * kSign * t - kKappa * q_y, kLargestBlock * mu_s * t);
-        while (level >= 0 && !(smooth(slip, kSmallestBlock << level) && smooth(cloth, kSmallestBlock << level))) --level;
+        const Path cloth =
+            path(a, b, xi - kKappa * q_x, k.h - 2.5 * kSign * t - kKappa * q_y, kLargestBlock * mu_s * t);
+        while (level >= 0 &&
+               !(smooth(slip, kSmallestBlock << level) && smooth(cloth, kSmallestBlock << level)))
+            --level;
         return level;
     }
 
@@ -138,7 +145,8 @@ class SummedMarch {
             const Vector8 next_z = combined(table.sums, all8(z0), 2.5 * f.q_y - 5.0 * f.t);
             const Vector8 next_a = combined(table.sums, all8(a0), f.xi - kKappa * f.q_x);
             const Vector8 next_b = combined(table.sums, b0 + push, (-2.5 * kSign) * f.t - kKappa * f.q_y);
-            const double change = sum8(absolute8(next_x - x) + absolute8(next_z - z) + absolute8(next_a - a) + absolute8(next_b - b));
+            const double change = sum8(absolute8(next_x - x) + absolute8(next_z - z) + absolute8(next_a - a) +
+                                       absolute8(next_b - b));
             x = next_x;
             z = next_z;
             a = next_a;
@@ -190,7 +198,8 @@ class SummedMarch {
         };
         double from = 0.0, V_from = 0.0;
         if (stop.compressing) {
-            // The first step after which v_n > 0: v grows by about 2 h a step, so Newton with that slope lands beside it.
+            // The first step after which v_n > 0: v grows by about 2 h a step, so Newton with that slope
+            // lands beside it.
             double t = -v0 / (2.0 * h);
             for (int i = 0; i < 3; ++i) t -= v_at(t) / (2.0 * h);
             from = first(t, K, [&](double m) { return v_at(m) > 0.0; });

@@ -1,5 +1,5 @@
-// Eight doubles in whatever registers the instruction set has. Only + - * / sqrt, lane by lane, so that every instruction
-// set and compiler gives the same bits; sums over lanes have one written order.
+// Eight doubles in whatever registers the instruction set has. Only + - * / sqrt, lane by lane, so that every
+// instruction set and compiler gives the same bits; sums over lanes have one written order.
 #pragma once
 
 #include <immintrin.h>

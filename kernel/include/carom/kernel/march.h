@@ -8,20 +8,22 @@ namespace carom::kernel {
 
 /// Marches one impact by N steps per half of the estimated impulse.
 ///
-/// Source: Mathavan, Jackson, Parkin, "Numerical simulations of the frictional collisions of solid balls on a rough
-/// surface", Sports Engineering 17 (2014); step rule of its published code, dP = (1 + e_b) m |v_n| / (2 N).
-/// The result is off by up to about (1 + e_b) v_n / N and is a step function of its input; below N of about 40 the march
-/// gains energy by construction (hard case H24).
+/// Source: Mathavan, Jackson, Parkin, "Numerical simulations of the frictional collisions of solid balls on a
+/// rough surface", Sports Engineering 17 (2014); step rule of its published code, dP = (1 + e_b) m |v_n| / (2
+/// N). The result is off by up to about (1 + e_b) v_n / N and is a step function of its input; below N of
+/// about 40 the march gains energy by construction (hard case H24).
 ///
 /// @param n  substeps N >= 1; fewer is kBadParameter.
-/// The number of steps is bounded: an impact that has not ended after kMarchStepLimit * n steps is kStepLimit.
+/// The number of steps is bounded: an impact that has not ended after kMarchStepLimit * n steps is
+/// kStepLimit.
 using MarchFunction = void (*)(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
                                ImpactResult& result) noexcept;
 
 /// The march built for one instruction set (which must be available). All give the same bits.
 MarchFunction march_function(Isa isa) noexcept;
 
-/// An impact of v_n > 0 ends after N + 1 to about N + 31 steps; only degenerate parameters come near this bound.
+/// An impact of v_n > 0 ends after N + 1 to about N + 31 steps; only degenerate parameters come near this
+/// bound.
 inline constexpr long kMarchStepLimit = 64;
 
 }  // namespace carom::kernel
