@@ -62,6 +62,7 @@ inline void copy_input(const Ball& b1, const Ball& b2, ImpactStatus status, Impa
     }
     out.steps = 0;
     out.status = status;
+    out.method = ToleranceMethod::kNone;
 }
 
 inline bool in_range(const ImpactParams& p) {
@@ -128,6 +129,7 @@ inline void leave_frame(const Ball& b1, const Ball& b2, const Frame& f, const Fr
     out.w2[2] = s.w2z;
     out.steps = steps;
     out.status = ImpactStatus::kOk;
+    out.method = ToleranceMethod::kNone;
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ CAROM_RUNG(paper_flags, PaperFlags)
 
 // A batch by the summed march, impact by impact.
 void summed_batch(const ImpactBatch& batch, int n, const ImpactBatchResult& result) noexcept {
-    for (long i = 0; i < static_cast<long>(batch.count); ++i) {
+    for (long i = 0; i < batch.count; ++i) {
         Ball b1, b2;
         ImpactParams p;
         ImpactResult out;

@@ -11,26 +11,27 @@ namespace {
 
 inline void load_impact(const ImpactBatch& batch, long i, Ball& b1, Ball& b2, ImpactParams& p) {
     for (int k = 0; k < 3; ++k) {
-        b1.r[k] = batch.r1[k][i];
-        b1.v[k] = batch.v1[k][i];
-        b1.w[k] = batch.w1[k][i];
-        b2.r[k] = batch.r2[k][i];
-        b2.v[k] = batch.v2[k][i];
-        b2.w[k] = batch.w2[k][i];
+        b1.r[k] = batch.ball1.r[k][i];
+        b1.v[k] = batch.ball1.v[k][i];
+        b1.w[k] = batch.ball1.w[k][i];
+        b2.r[k] = batch.ball2.r[k][i];
+        b2.v[k] = batch.ball2.v[k][i];
+        b2.w[k] = batch.ball2.w[k][i];
     }
-    p = {batch.R[i],    batch.m[i],   batch.mu_s1[i],  batch.mu_s2[i],
-         batch.mu_b[i], batch.e_b[i], batch.cloth_slip};
+    p = {batch.params.R[i],    batch.params.m[i],   batch.params.mu_s1[i],  batch.params.mu_s2[i],
+         batch.params.mu_b[i], batch.params.e_b[i], batch.params.cloth_slip};
 }
 
 inline void store_result(const ImpactBatchResult& out, long i, const ImpactResult& result) {
     for (int k = 0; k < 3; ++k) {
-        out.v1[k][i] = result.v1[k];
-        out.w1[k][i] = result.w1[k];
-        out.v2[k][i] = result.v2[k];
-        out.w2[k][i] = result.w2[k];
+        out.ball1.v[k][i] = result.v1[k];
+        out.ball1.w[k][i] = result.w1[k];
+        out.ball2.v[k][i] = result.v2[k];
+        out.ball2.w[k][i] = result.w2[k];
     }
-    out.steps[i] = result.steps;
     out.status[i] = result.status;
+    if (out.steps != nullptr) out.steps[i] = result.steps;
+    if (out.method != nullptr) out.method[i] = result.method;
 }
 
 template <int W, int U, class Roots, class Arithmetic, int kSign>
@@ -40,7 +41,7 @@ class BatchMarch {
         : batch(b), n(substeps), result(r) {}
 
     void run() {
-        const long count = static_cast<long>(batch.count);
+        const long count = batch.count;
         for (long i = 0; i < count; ++i) fill(i);
         for (Group& g : groups) march(g);
     }
@@ -198,7 +199,7 @@ class BatchMarch {
 
 template <int W, int U, class Roots, class Arithmetic>
 void batch_march(const ImpactBatch& batch, int n, const ImpactBatchResult& result) {
-    if (batch.cloth_slip == ClothSlip::kAsPublished)
+    if (batch.params.cloth_slip == ClothSlip::kAsPublished)
         BatchMarch<W, U, Roots, Arithmetic, +1>(batch, n, result).run();
     else
         BatchMarch<W, U, Roots, Arithmetic, -1>(batch, n, result).run();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/record.h"
 #include "carom/engine/scene.h"
 #include "carom/kernel/closed_forms.h"
 #include "carom/kernel/march.h"
@@ -18,23 +19,34 @@ struct EffectDecision {
     std::string reason;
 };
 
-/// A straight cushion in final form.
+/// A straight cushion in final form; index as in scene.table.cushions.
 struct CushionLine {
-    Vec2 from, to;
-    Vec2 direction;  ///< unit, from -> to
+    Vec2 from;
+    Vec2 direction;  ///< unit
     double length;
     double height;
+};
+
+/// A round nose: a jaw, or the end of a cushion that no jaw rounds off (radius 0).
+struct Nose {
+    Vec2 center;
+    double radius;
+    double height;
+    EventType type;  ///< kBallJaw or kBallCushion
+    int index;       ///< of the jaw or cushion in scene.table
 };
 
 struct Plan {
     Scene scene;  ///< ids, table and settings as read
     BallParams balls{};
     double gravity = 9.81;
-    std::vector<CushionLine> cushions;  ///< index as in scene.table.cushions
-    bool has_pockets = false;
+    std::vector<CushionLine> cushions;
+    std::vector<Nose> noses;
+    std::vector<Pocket> pockets;
     std::vector<EffectDecision> effects;
     kernel::Isa isa = kernel::Isa::kScalar;
     kernel::MarchFunction march = nullptr;
+    ClusterModel clusters = ClusterModel::kSequential;  ///< kSequential where fewer than three balls leave nothing to decide
     std::vector<std::string> warnings;  ///< one sentence each, for stderr
 };
 

@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <iosfwd>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,13 +24,17 @@ struct Segment {
     double spin_decay = 0.0;  ///< |dw_z/dt| [rad/s^2], >= 0; w_z never passes 0
     double duration = 0.0;    ///< until the ball's own next transition [s]; infinite if none
     MotionState state = MotionState::kStationary;
+    bool held = false;  ///< in a sustained contact: `a` holds the contact forces too
+    bool ends = true;   ///< its own transition comes at the end of the duration (a held ball may only turn its forces)
 };
 
 enum class EventType : std::uint8_t {
     kCueStrike, kBallBall, kBallCluster, kBallCushion, kBallJaw, kBallPocket,
     kSlideRoll, kRollSpin, kRollStop, kSpinStop,
+    // Sustained contacts: from a hold to its release the two stay in touch and push each other.
+    kBallBallHold, kBallBallRelease, kBallCushionHold, kBallCushionRelease, kBallJawHold, kBallJawRelease,
 };
-inline constexpr int kEventTypes = 10;
+inline constexpr int kEventTypes = 16;
 const char* name(EventType type);
 
 struct Event {
@@ -39,6 +42,7 @@ struct Event {
     EventType type = EventType::kCueStrike;
     int a = -1;  ///< ball (index)
     int b = -1;  ///< the other ball, or the index of the cushion, jaw or pocket; -1 if none
+    int detail = -1;  ///< kBallCluster: index into Record::clusters; cushions and jaws: of the round nose in Plan::noses, or -1
 };
 
 /// What one event cost; filled only by a profiled run.
@@ -68,15 +72,19 @@ struct BallTrack {
 
 class Record {
   public:
+    Record();
+
     Table table;
     BallParams balls{};
     double gravity = 9.81;
     RenderSettings render;
     std::vector<BallTrack> tracks;
     std::vector<Event> events;
+    std::vector<std::vector<int>> clusters;  ///< balls of every ball_cluster event, by position; a and b are the pair that met
     std::vector<EventCost> costs;  ///< empty, or one per event
     double setup_detect_ns = 0.0;  ///< profiled: first detection of all pairs
     double duration = 0.0;         ///< s
+    double start_time = 0.0;       ///< s: what SimulateOptions::start_time said; all times here are relative to it
     StopReason stopped = StopReason::kAtRest;
 
     /// State of a ball at time t: the last segment that starts at or before t, in closed form. t before 0 gives the start,
@@ -84,7 +92,8 @@ class Record {
     BallState state_at(int ball, double t) const;
 
     /// Orientation (body to table) at time t, starting from the identity, by the integral of the angular velocity; exact
-    /// where the axis is fixed, else by fourth-order Magnus steps of at most half a radian.
+    /// where the axis is fixed, else by fourth-order Magnus steps of at most 0.2 rad
+    /// (1e-7 rad over a shot).
     Eigen::Quaterniond orientation_at(int ball, double t) const;
 
     /// 64-bit FNV-1a over all bits of segments and events, as 16 hex digits.
@@ -95,7 +104,7 @@ class Record {
 
   private:
     struct Orientations;
-    mutable std::shared_ptr<const Orientations> orientations_;  // made on first use
+    std::shared_ptr<Orientations> orientations_;  // made on first use, by any thread
 };
 
 /// Position, velocity and spin of a segment `tau` seconds after its start (tau >= 0).

@@ -59,7 +59,7 @@ struct Cue {
 
 enum class BallBallModel : std::uint8_t { kMathavan, kInelastic, kElastic };
 enum class CushionModel : std::uint8_t { kSmooth, kHan2005 };
-enum class ClusterModel : std::uint8_t { kSequential };
+enum class ClusterModel : std::uint8_t { kCompliant, kSequential, kRigid };
 enum class ClothSlipSign : std::uint8_t { kConsistent, kAsPublished };
 
 struct Physics {
@@ -67,7 +67,7 @@ struct Physics {
     BallBallModel ball_ball = BallBallModel::kMathavan;
     CushionModel cushion = CushionModel::kHan2005;
     ClothSlipSign cloth_slip = ClothSlipSign::kConsistent;
-    ClusterModel clusters = ClusterModel::kSequential;
+    ClusterModel clusters = ClusterModel::kCompliant;
     int substeps = 1000;  ///< of the march, N
 };
 

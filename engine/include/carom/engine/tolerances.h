@@ -1,20 +1,87 @@
-// The one place for a numeric tolerance of the engine: name, unit, reason.
+// The one place for a numeric tolerance or limit of the engine: name, unit, reason.
 #pragma once
+
+#include <cstddef>
 
 namespace carom {
 
-/// [m] Balls that overlap, or reach into a cushion, by at most this much at the start are taken to touch; deeper is an error.
-/// A thousandth of the smallest gap that can be set on a real table, and far above the rounding of typed coordinates.
+/// [m] Balls that overlap, or reach into a cushion, by at most this much at the start are taken to touch;
+/// deeper is an error. A thousandth of the smallest gap that can be set on a real table, and far above the
+/// rounding of typed coordinates.
 inline constexpr double kTouchTolerance = 1e-12;
 
-/// [ulp of |v| + R |w|] A ball whose cloth slip is at most this is rolling: the rounding of computing the slip itself.
+/// [1] Part of the largest coordinate by which such an overlap may also be explained: far from the origin
+/// (1e5 m) the rounding of a typed coordinate, 2^-53 of it, exceeds kTouchTolerance. Two coordinates and a
+/// difference make up to four roundings.
+inline constexpr double kTouchRounding = 0x1p-51;
+
+/// [ulp of |v| + R |w|] A ball whose cloth slip is at most this is rolling: the rounding of computing the
+/// slip itself.
 inline constexpr double kRollingUlp = 8.0;
 
 /// [s] and [-] More events than this within one such span is an error with a dump, never a silent stop.
 inline constexpr double kEventCapSpan = 1e-6;
 inline constexpr int kEventCap = 10000;
+/// [-] Rounds of the loop in a row that changed directions of sustained contacts but brought no event: as bad.
+inline constexpr int kQuietCap = 1000000;
 
 /// [m] Depth at which a pocketed ball comes to rest below the cloth; drawing only. pooltool 0.6.0's value.
 inline constexpr double kPocketDepth = 0.08;
+
+/// Below which approach a bounce is no bounce: one that would end before the contact itself has, 2 e v / a < t_c(v), with the
+/// Hertz contact time t_c = 2.6 (m / k)^0.4 v^-0.2 of two phenolic balls (E = 5.84 GPa, nu = 0.34: k/m = 3.094e9 m^-0.5 s^-2).
+/// Such a contact is held instead. About 1.5e-3 m/s at a = 2 m/s^2.
+inline constexpr double kContactTimeFactor = 2.6;
+inline constexpr double kContactStiffness = 3.094e9;  ///< [m^-0.5 s^-2] k/m
+inline constexpr double kLeastRestitution = 0.1;      ///< stands for a smaller e in that rule, where no bounce is left at all
+
+/// [V] and [L/V] Regularisation of the friction in the compliant cluster map, and its step: errs by about 2e-3 V in stick
+/// (docs/hard_cases.md), 4e-7 V of it from the step. [L/V] The map goes on while a listed pair would touch within this time.
+inline constexpr double kClusterEpsilon = 2e-3;
+inline constexpr double kClusterStep = 1.0 / 80.0;
+inline constexpr double kClusterLookAhead = 2.0;
+/// [L/V] A cluster that has not parted after this many contact times is reported; the slowest of 16 balls takes a few dozen.
+inline constexpr double kClusterTimeLimit = 2000.0;
+/// [-] Largest exponent of the unloading law; restitutions below 0.05 are taken as 0.05 inside a cluster.
+inline constexpr int kLargestLawExponent = 1024;
+/// [share of R] Gaps up to this are rounding of the positions: the balls touch.
+inline constexpr double kTouchUlp = 64.0 * 2.220446049250313e-16;
+/// [-] Sweeps of the rigid projection; a rack of 15 takes about 500.
+inline constexpr long kRigidSweeps = 100000;
+
+/// [s] Longest and shortest interval over which a sustained contact keeps the directions of its forces where they turn.
+inline constexpr double kHoldRefresh = 2e-3;
+inline constexpr double kHoldShortest = 1e-5;
+/// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the straight line.
+inline constexpr double kHoldStraight = 1e-9;
+
+/// [share of the jaw radius] A cushion end this close to a jaw's circle is rounded off by it and needs no tip of its own. The
+/// jaw is a full circle, so nothing can slip between the two.
+inline constexpr double kJawJoinShare = 1e-9;
+/// [ball radii] Cue offsets beyond this from the centre are refused: with chalk, a tip slips off at about
+/// half a radius (static friction of about 0.6 between tip and ball gives sin(atan 0.6) = 0.51), and a miscue
+/// is not simulated.
+inline constexpr double kMiscueOffset = 0.5;
+
+// Limits of scene files. They keep squares and products far from overflow and underflow, and a mistyped file
+// from filling the memory; nothing physical is near them.
+inline constexpr double kMaxCoordinate = 1e6;  ///< [m]
+inline constexpr double kMinLength = 1e-6;     ///< [m], smallest ball radius
+inline constexpr double kMaxLength = 1e3;    ///< [m], largest ball radius, jaw or pocket radius, gap, jitter
+inline constexpr double kMinMass = 1e-9;     ///< [kg], of a ball and of a cue
+inline constexpr double kMaxMass = 1e6;      ///< [kg]
+inline constexpr double kMaxFriction = 1e3;  ///< [-]
+inline constexpr double kMaxSpeed = 1e6;     ///< [m/s]
+inline constexpr double kMaxSpin = 1e9;      ///< [rad/s]
+inline constexpr double kMaxGravity = 1e3;   ///< [m/s^2]
+inline constexpr double kMaxAngle = 1e6;     ///< [degrees], of the aim
+inline constexpr double kMaxTime = 1e9;      ///< [s]
+inline constexpr double kMaxFps = 1e5;       ///< [1/s]
+inline constexpr int kMaxSubsteps = 10000000;  ///< of the march; its result stops improving long before
+inline constexpr int kMaxImageSize = 16384;    ///< [px] per side, what the OpenGL back ends can hold
+inline constexpr int kMaxBalls = 4096;         ///< balls of a scene, written and racked
+inline constexpr int kMaxTableParts = 4096;    ///< cushions, jaws and pockets of a table, each
+inline constexpr std::size_t kMaxFileSize = 4u << 20;  ///< [bytes] of a scene file
+inline constexpr std::size_t kMaxIdLength = 64;        ///< [bytes] of a ball's id
 
 }  // namespace carom

@@ -1,35 +1,51 @@
-// Many independent ball-ball impacts at once.
+// Many independent impacts at once, as structures of arrays: the types that every batch kernel shares.
+//
+// Lane i of a batch is one impact: element i of every array. Arrays need no alignment and a batch may have
+// any length, 0 too. Results may not overlap inputs. Raw pointers, because files built for one instruction
+// set include no std templates.
 #pragma once
 
-#include <cstddef>
-
 #include "carom/kernel/impact.h"
-#include "carom/kernel/isa.h"
 
 namespace carom::kernel {
 
-/// `count` impacts as a structure of arrays: component k of ball 1's velocity in impact i is v1[k][i]. SI
-/// units, as Ball and ImpactParams. The arrays need no alignment and may not overlap the results.
+/// One ball of every impact, read.
+struct BallLanes {
+    const double* r[3];  ///< centre [m]
+    const double* v[3];  ///< velocity [m/s]
+    const double* w[3];  ///< angular velocity [rad/s]
+};
+
+/// The parameters of every impact, read; as ImpactParams. The sign of the cloth slip is one for the batch.
+struct ParamLanes {
+    const double* R;
+    const double* m;
+    const double* mu_s1;
+    const double* mu_s2;
+    const double* mu_b;
+    const double* e_b;
+    ClothSlip cloth_slip = ClothSlip::kConsistent;
+};
+
+/// Velocities of one ball after every impact, written.
+struct VelocityLanes {
+    double* v[3];
+    double* w[3];
+};
+
+/// The impacts of one call.
 struct ImpactBatch {
-    std::size_t count;
-    const double *r1[3], *v1[3], *w1[3];
-    const double *r2[3], *v2[3], *w2[3];
-    const double *R, *m, *mu_s1, *mu_s2, *mu_b, *e_b;
-    ClothSlip cloth_slip;
+    long count;  ///< lanes; <= 0 is none
+    BallLanes ball1, ball2;
+    ParamLanes params;
 };
 
-/// Results, one entry an impact, as ImpactResult. An impact that cannot be computed has its own status and
-/// its input as velocities; the others are not touched by it.
+/// What comes out, per lane exactly as ImpactResult.
 struct ImpactBatchResult {
-    double *v1[3], *w1[3];
-    double *v2[3], *w2[3];
-    long* steps;
+    VelocityLanes ball1, ball2;
     ImpactStatus* status;
+    long* steps;              ///< may be null
+    ToleranceMethod* method;  ///< may be null
 };
-
-/// The march of march.h with N substeps on every impact of the batch. Each impact's result depends on itself
-/// alone, not on what shares its vector, and is the same bits on every instruction set; it differs from
-/// march_function's by rounding (docs/kernel.md). `isa` must be available.
-void collide_balls_batch(Isa isa, const ImpactBatch& batch, int n, const ImpactBatchResult& result) noexcept;
 
 }  // namespace carom::kernel

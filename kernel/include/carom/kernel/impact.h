@@ -42,12 +42,24 @@ enum class ImpactStatus : unsigned char {
 /// What is wrong, in words; "" for kOk and kNotApproaching.
 const char* describe(ImpactStatus status) noexcept;
 
+/// How an impact by tolerance was solved (tolerance.h); kNone from every other kernel and where nothing was computed.
+enum class ToleranceMethod : unsigned char {
+    kNone,
+    kClosedFrictionless,  ///< no friction between the balls: one formula
+    kClosedGearing,       ///< no slip between the balls: as without friction
+    kClosedStick,         ///< horizontal slip only, with the stick that may end it: one formula
+    kCollocation4,        ///< one collocation of 4 nodes over the whole impact
+    kCollocation8,        ///< one collocation of 8 nodes over the whole impact
+    kAdaptive,            ///< cut into intervals, towards stick or where the cloth slip comes close to zero
+};
+
 /// Velocities after the impact. Where the status is not kOk they are those before it.
 struct ImpactResult {
     double v1[3], w1[3];  ///< ball 1 [m/s], [rad/s]
     double v2[3], w2[3];  ///< ball 2
     long steps;           ///< steps of the march, 1 for a closed form, 0 where nothing was computed
     ImpactStatus status;
+    ToleranceMethod method;
 };
 
 }  // namespace carom::kernel

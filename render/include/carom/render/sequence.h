@@ -3,33 +3,28 @@
 
 #include <functional>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "carom/engine/record.h"
+#include "carom/render/backend.h"
+#include "carom/render/error.h"
+#include "carom/render/frame_size.h"
 
 namespace carom::render {
 
-/// A renderer that cannot start, or a file that cannot be written. what() names the package or the file.
-class RenderError : public std::runtime_error {
-  public:
-    using std::runtime_error::runtime_error;
-};
-
-struct FrameSize {
-    int width = 1280, height = 720;
-};
-
 struct SequenceOptions {
-    std::string pattern = "frames/%05d.png";  ///< exactly one %d or %0Nd; empty: frames are encoded and thrown away
+    std::string pattern =
+        "frames/%05d.png";  ///< exactly one %d or %0Nd; empty: frames are encoded and thrown away
     double fps = 60.0;
-    double from = 0.0;                ///< s
-    std::optional<double> to;         ///< s; default: the record's duration
-    std::optional<long> frame;        ///< only this k
+    double from = 0.0;          ///< s
+    std::optional<double> to;   ///< s; default: the record's duration
+    std::optional<long> frame;  ///< only this k
     FrameSize size;
     std::string camera = "top";
-    int png_level = 1;                ///< zlib level 0..9
+    int table_samples = 16;  ///< per pixel of the table, which is drawn once per camera
+    int png_level = 1;       ///< zlib level 0..9
+    Backend backend = Backend::kOsmesa;
     std::function<void(long done, long total)> progress;  ///< called after every frame
 };
 
@@ -40,7 +35,11 @@ struct FrameTiming {
     double draw_ms = 0.0, readback_ms = 0.0, encode_ms = 0.0, write_ms = 0.0;
 };
 
-/// Number of frames k with from + k / fps <= to.
+/// Time of frame k.
+double frame_time(double from, long k, double fps);
+
+/// Number of frames k with from + k / fps <= to; 0 when to < from. @throws RenderError unless fps > 0 and
+/// both times are finite
 long frame_count(double from, double to, double fps);
 
 /// Renders and writes (temporary name, then renamed). Makes the folder of the pattern if its parent exists.

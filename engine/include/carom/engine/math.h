@@ -1,0 +1,26 @@
+// Trigonometry of our own, made of + - * / and sqrt only, so that every machine, compiler and C library gives
+// the same bits (the C library picks variants by CPU).
+#pragma once
+
+namespace carom {
+
+struct SinCos {
+    double sin;
+    double cos;
+};
+
+/// Sine and cosine of an angle in radians.
+///
+/// Both are within 1 ulp for |radians| <= 1e6 (reduction by a four-part pi/2 after Cody and Waite, then the
+/// Taylor series). Beyond that the absolute error is at most about |radians| 2^-51, the spacing of the
+/// argument itself. NaN for both when |radians| >= 2^50 or not finite.
+SinCos sin_cos(double radians);
+
+/// Sine and cosine of an angle in degrees, within 1 ulp. Degrees are reduced exactly, whatever their size: 90
+/// gives exactly (1, 0), 180 gives (0, -1), 30 gives sine 0.5. NaN for both when not finite.
+SinCos sin_cos_deg(double degrees);
+
+/// Tangent of an angle in degrees, within 2 ulp; infinite at 90 and its odd multiples.
+double tan_deg(double degrees);
+
+}  // namespace carom

@@ -1,0 +1,35 @@
+// A file that is complete or absent: written under a temporary name, then renamed.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace carom {
+
+/// Every failure is a std::runtime_error that names the file and the reason.
+///
+/// What is not a regular file (/dev/null, a named pipe) is written to directly: renaming would replace the
+/// device itself.
+class OutputFile {
+  public:
+    explicit OutputFile(std::string path);
+    ~OutputFile();  ///< removes the temporary file unless commit() was called
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+
+    void write(std::string_view text);
+
+    /// Closes and renames; before this nothing stands under the name asked for.
+    void commit();
+
+  private:
+    [[noreturn]] void fail(const char* what);
+
+    std::string path_;       ///< as asked for, for messages
+    std::string target_;     ///< symbolic links followed
+    std::string temporary_;  ///< empty where written to directly
+    std::FILE* file_ = nullptr;
+};
+
+}  // namespace carom

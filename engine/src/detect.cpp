@@ -1,0 +1,187 @@
+#include "detect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "motion.h"
+#include "roots.h"
+
+namespace carom {
+
+namespace {
+
+constexpr double kNoise = kClosingUlp * std::numeric_limits<double>::epsilon();
+
+// Relative motion of two centres, and how large a closing speed is rounding.
+struct Relative {
+    Vec2 r, v, a;
+    double noise;  // m/s
+};
+
+Vec2 at(const Relative& m, double t) {
+    return {m.r.x() + t * (m.v.x() + 0.5 * t * m.a.x()), m.r.y() + t * (m.v.y() + 0.5 * t * m.a.y())};
+}
+Vec2 rate(const Relative& m, double t) {
+    return {m.v.x() + t * m.a.x(), m.v.y() + t * m.a.y()};
+}
+double dot(const Vec2& a, const Vec2& b) {
+    return a.x() * b.x() + a.y() * b.y();
+}
+
+// Closing speed at t [m/s], positive while the distance falls.
+double closing_speed(const Relative& m, double t) {
+    const Vec2 r = at(m, t);
+    const double d = length(r);
+    return d > 0.0 ? -dot(r, rate(m, t)) / d : length(rate(m, t));
+}
+
+// The polynomial root, refined by the distance itself: Newton steps on |r(t)| - reach that are kept only while the gap
+// falls (at a graze they would run away), then at most one ulp-sized step back to the side that does not penetrate.
+double refine(const Relative& m, double reach, double t, double horizon) {
+    double gap = length(at(m, t)) - reach;
+    for (int i = 0; i < 3 && gap != 0.0; ++i) {
+        const double closing = closing_speed(m, t);
+        if (!(closing > m.noise)) break;
+        const double next = std::clamp(t + gap / closing, 0.0, horizon);
+        const double next_gap = length(at(m, next)) - reach;
+        if (!(std::abs(next_gap) < std::abs(gap))) break;
+        t = next;
+        gap = next_gap;
+    }
+    if (gap < 0.0) {
+        const double closing = closing_speed(m, t);
+        const double back = closing > m.noise ? t + gap / closing : t;
+        const double earlier = std::min(back, t - std::numeric_limits<double>::epsilon() * t);
+        if (earlier >= 0.0) {
+            const double earlier_gap = length(at(m, earlier)) - reach;
+            if (earlier_gap >= 0.0 && earlier_gap <= -2.0 * gap) t = earlier;
+        }
+    }
+    return t;
+}
+
+// Speed by which a contact that is pressed together has to close to count as an impact: above the rounding, and a
+// vanishing share of what the closing acceleration reaches within the horizon.
+constexpr double kPressShare = 1e-12;
+
+double press_delay(double closing_acceleration, double noise, double horizon) {
+    return 2.0 * noise / closing_acceleration + kPressShare * std::min(horizon, 1.0);
+}
+
+// Straight relative path with signed acceleration `alpha` along it: solved in arc length, exact at grazing.
+double along_line(const Relative& m, double reach, double speed, double alpha, double horizon) {
+    const Vec2 e = m.v / speed;
+    const double along = -dot(m.r, e);  // arc length of the closest approach
+    if (!(along > 0.0)) return kNever;
+    const double miss = std::abs(cross(m.r, e));
+    if (!(miss < reach)) return kNever;
+    const double half_chord = std::sqrt((reach - miss) * (reach + miss));
+    // c / (b + sqrt(b^2 - c)) with c = |r|^2 - reach^2 from its factors: no cancellation near contact.
+    const double d = length(m.r);
+    const double s = (d - reach) * (d + reach) / (along + half_chord);
+    if (!(s >= 0.0)) return kNever;
+    const double end_speed_squared = speed * speed + 2.0 * alpha * s;
+    if (!(end_speed_squared >= 0.0)) return kNever;  // stops short
+    const double t = 2.0 * s / (speed + std::sqrt(end_speed_squared));
+    return t <= horizon ? refine(m, reach, t, horizon) : kNever;
+}
+
+// First time within the horizon at which |r| falls to reach, closing or only touching; c0 = |r|^2 - reach^2 now.
+double first_touch(const Relative& m, double reach, double c0, double horizon, bool straight) {
+    const double speed = length(m.v), pull = length(m.a);
+    if (speed == 0.0 && pull == 0.0) return kNever;
+    if (c0 > 0.0) {
+        const double gap = length(m.r) - reach;
+        if (horizon < kNever && gap > horizon * (speed + 0.5 * horizon * pull)) return kNever;  // too far
+        if (pull == 0.0) return along_line(m, reach, speed, 0.0, horizon);
+        if (straight && speed > 0.0) {
+            const double alpha = dot(m.a, m.v) / speed;
+            // The closed form holds while the motion does not turn back.
+            if (speed + alpha * horizon >= -4.0 * std::numeric_limits<double>::epsilon() * speed)
+                return along_line(m, reach, speed, alpha, horizon);
+        }
+    } else if (pull == 0.0) {
+        return kNever;  // touching, not closing, and on a straight line: parts for good
+    }
+    const double c[5] = {c0, 2.0 * dot(m.r, m.v), dot(m.v, m.v) + dot(m.r, m.a), dot(m.v, m.a), 0.25 * dot(m.a, m.a)};
+    const double t = first_descent(c, horizon);
+    return t == kNever ? kNever : refine(m, reach, t, horizon);
+}
+
+// First contact that closes by more than rounding. A graze below that is passed over; a contact that closes only because
+// it is pressed together counts from when its closing speed can be told from 0.
+double time_to_reach(Relative m, double reach, double horizon, bool straight) {
+    const double d = length(m.r);
+    double c0 = (d - reach) * (d + reach);
+    double elapsed = 0.0;
+    if (c0 <= 0.0 && closing_speed(m, 0.0) > m.noise) return 0.0;
+    for (int grazes = 0; grazes < 4; ++grazes) {
+        const Vec2 v0 = m.v;
+        const double curving = -(dot(v0, v0) + dot(m.r, m.a));
+        const bool pressed_now = c0 <= 0.0 && curving > 0.0 && dot(m.r, m.v) <= 0.0;
+        const double t = pressed_now ? 0.0 : first_touch(m, reach, c0, horizon, straight);
+        if (t == kNever) return kNever;
+        if (!pressed_now && closing_speed(m, t) > m.noise) return elapsed + t;
+        const Vec2 r = at(m, t), v = rate(m, t);
+        const double closing_acceleration = -(dot(v, v) + dot(r, m.a)) / length(r);
+        if (closing_acceleration > 0.0) {
+            const double pressed = t + press_delay(closing_acceleration, m.noise, horizon - t);
+            return pressed <= horizon ? elapsed + pressed : kNever;
+        }
+        m.r = r;
+        m.v = v;
+        c0 = 0.0;
+        elapsed += t;
+        horizon -= t;
+        straight = false;
+    }
+    return kNever;
+}
+
+}  // namespace
+
+double time_to_ball(const Path& b1, const Path& b2, double reach) {
+    if (!b1.moves && !b2.moves) return kNever;
+    const Relative m{b2.r - b1.r, b2.v - b1.v, b2.a - b1.a, kNoise * (length(b1.v) + length(b2.v))};
+    const bool straight = (b1.straight && !b2.moves) || (b2.straight && !b1.moves);
+    return time_to_reach(m, reach, std::min(b1.horizon, b2.horizon), straight);
+}
+
+double time_to_circle(const Path& ball, const Vec2& center, double reach) {
+    if (!ball.moves) return kNever;
+    const Relative m{ball.r - center, ball.v, ball.a, kNoise * length(ball.v)};
+    return time_to_reach(m, reach, ball.horizon, ball.straight);
+}
+
+double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, double line_length, double R) {
+    if (!ball.moves) return kNever;
+    const Vec2 normal(-direction.y(), direction.x());
+    const Vec2 offset = ball.r - from;
+    const double d0 = dot(normal, offset), d1 = dot(normal, ball.v), d2 = dot(normal, ball.a);
+    const double noise = kNoise * length(ball.v);
+    const auto foot_inside = [&](double t) {
+        const double foot = dot(direction, offset) + t * (dot(direction, ball.v) + 0.5 * t * dot(direction, ball.a));
+        return foot >= 0.0 && foot <= line_length;
+    };
+    double best = kNever;
+    for (const double side : {1.0, -1.0}) {
+        const double h0 = side * d0 - R, h1 = side * d1, h2 = side * d2;
+        const bool here = side * d0 >= 0.0;  // the ball is on this side now
+        double t = kNever;
+        if (here && h0 <= 0.0 && h1 < -noise) t = 0.0;
+        else if (here && h0 <= 0.0 && h2 < 0.0 && !(h1 > noise && h1 * h1 > 2.0 * h2 * h0))
+            t = std::max(0.0, -h1 / h2) + press_delay(-h2, noise, ball.horizon);  // pressed against the nose
+        else t = first_descent_quadratic(h0, h1, h2, ball.horizon);
+        if (t < best && t <= ball.horizon && h1 + t * h2 < -noise && foot_inside(t)) best = t;
+    }
+    return best;
+}
+
+double time_to_pocket(const Path& ball, const Vec2& center, double radius) {
+    const double d = length(ball.r - center);
+    if (d < radius) return 0.0;
+    return time_to_circle(ball, center, radius);
+}
+
+}  // namespace carom

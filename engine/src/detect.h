@@ -1,0 +1,34 @@
+// When does the next contact begin? One rule everywhere, instead of any epsilon or spacer: a pair collides only while closing;
+// overlapped and closing means now; overlapped and receding means no event.
+#pragma once
+
+#include "carom/engine/vec.h"
+
+namespace carom {
+
+/// Translation of one ball from now on: r + v t + a t^2 / 2, for 0 <= t <= horizon (its own next transition).
+struct Path {
+    Vec2 r, v, a;
+    double horizon;  ///< s, may be infinite
+    bool straight;   ///< v and a are parallel (rolling; sliding with u parallel to v; at rest)
+    bool moves;
+};
+
+/// Closing speeds below this many ulp of the speeds involved are rounding noise of the projection, not an approach.
+inline constexpr double kClosingUlp = 8.0;
+
+/// Time until the centres of two balls come within `reach` (R1 + R2) while closing; kNever if not within both horizons.
+double time_to_ball(const Path& ball1, const Path& ball2, double reach);
+
+/// Time until the centre comes within `reach` of a fixed point while closing.
+double time_to_circle(const Path& ball, const Vec2& center, double reach);
+
+/// Time until the centre comes within R of a segment of a straight line (its ends are circles of their own), from either
+/// side, with the foot point between the ends.
+/// @param direction unit, from -> to
+double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, double line_length, double R);
+
+/// Time until the centre enters a pocket's circle; 0 if it is inside.
+double time_to_pocket(const Path& ball, const Vec2& center, double radius);
+
+}  // namespace carom

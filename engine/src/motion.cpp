@@ -1,0 +1,149 @@
+#include "motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "carom/engine/tolerances.h"
+
+namespace carom {
+
+namespace {
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+Vec2 planar(const Vec3& a) {
+    return {a.x(), a.y()};
+}
+
+// Time left until |w_z| has decayed to 0.
+double spin_time(double w_z, const MotionParams& p) {
+    return w_z == 0.0 ? 0.0 : (p.spin > 0.0 ? std::abs(w_z) / p.spin : kInfinity);
+}
+
+double decayed(double w_z, double decay, double tau) {
+    const double left = std::abs(w_z) - decay * tau;
+    if (!(left > 0.0)) return 0.0;
+    return w_z < 0.0 ? -left : left;
+}
+}  // namespace
+
+double length(const Vec2& a) {
+    const double largest = std::max(std::abs(a.x()), std::abs(a.y()));
+    if (largest == 0.0) return 0.0;
+    // Squares stay normal numbers in this range; outside it, scale by a power of two (exact).
+    if (largest > 0x1p-500 && largest < 0x1p500) return std::sqrt(a.x() * a.x() + a.y() * a.y());
+    const double scale = largest < 1.0 ? 0x1p600 : 0x1p-600;
+    const double x = a.x() * scale, y = a.y() * scale;
+    return std::sqrt(x * x + y * y) / scale;
+}
+
+Vec2 cloth_slip(const Vec3& v, const Vec3& w, double R) {
+    return {v.x() - R * w.y(), v.y() + R * w.x()};
+}
+
+MotionParams motion_params(const BallParams& balls, double gravity) {
+    return {balls.R, balls.mu_s * gravity, balls.mu_r * gravity, 5.0 * balls.mu_sp * gravity / (2.0 * balls.R)};
+}
+
+Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& p) {
+    Segment s;
+    s.start = t;
+    s.r = r;
+    s.v = Vec3(v.x(), v.y(), 0.0);
+    s.w = w;
+    s.a = Vec2::Zero();
+    s.dw = Vec2::Zero();
+    s.spin_decay = p.spin;
+    const Vec2 u = cloth_slip(s.v, s.w, p.R);
+    const double slip = length(u), speed = length(planar(s.v));
+    const double spin = std::sqrt(w.x() * w.x() + w.y() * w.y() + w.z() * w.z());
+    if (slip > kRollingUlp * kEpsilon * (speed + p.R * spin)) {
+        s.state = MotionState::kSliding;
+        if (p.slide == 0.0) {
+            s.duration = kInfinity;
+        } else {
+            const Vec2 direction = u / slip;
+            const double turn = 2.5 * p.slide / p.R;
+            s.a = -p.slide * direction;
+            s.dw = Vec2(-turn * direction.y(), turn * direction.x());  // -(5 mu_s g / 2R) (u x z)/|u|
+            s.duration = 2.0 * slip / (7.0 * p.slide);
+        }
+    } else if (speed > 0.0) {
+        s.state = MotionState::kRolling;
+        s.w.x() = -s.v.y() / p.R;
+        s.w.y() = s.v.x() / p.R;
+        s.duration = p.roll > 0.0 ? speed / p.roll : kInfinity;
+        if (p.roll > 0.0) {
+            s.a = planar(s.v) * (-p.roll / speed);
+            s.dw = Vec2(-s.a.y() / p.R, s.a.x() / p.R);
+        }
+    } else {
+        s.w.x() = s.w.y() = 0.0;
+        s.state = s.w.z() != 0.0 ? MotionState::kSpinning : MotionState::kStationary;
+        s.duration = s.w.z() != 0.0 ? spin_time(s.w.z(), p) : kInfinity;
+    }
+    return s;
+}
+
+Segment pocketed_segment(double t, const Pocket& pocket) {
+    Segment s;
+    s.start = t;
+    s.r = Vec3(pocket.center.x(), pocket.center.y(), -pocket.depth);
+    s.v = s.w = Vec3::Zero();
+    s.a = s.dw = Vec2::Zero();
+    s.duration = kInfinity;
+    s.state = MotionState::kPocketed;
+    return s;
+}
+
+Vec3 position_at(const Segment& s, double tau) {
+    return {s.r.x() + tau * (s.v.x() + 0.5 * tau * s.a.x()), s.r.y() + tau * (s.v.y() + 0.5 * tau * s.a.y()), s.r.z()};
+}
+
+Vec3 velocity_at(const Segment& s, double tau) {
+    if (s.state == MotionState::kRolling && s.duration < kInfinity && !s.held) {
+        // v + a tau, written so that the direction stays and the end is exactly 0.
+        const double left = std::max(0.0, 1.0 - tau / s.duration);
+        return {s.v.x() * left, s.v.y() * left, 0.0};
+    }
+    return {s.v.x() + tau * s.a.x(), s.v.y() + tau * s.a.y(), 0.0};
+}
+
+Vec3 spin_at(const Segment& s, double tau, double R) {
+    const double w_z = decayed(s.w.z(), s.spin_decay, tau);
+    if (s.state == MotionState::kRolling) {
+        const Vec3 v = velocity_at(s, tau);
+        return {-v.y() / R, v.x() / R, w_z};
+    }
+    return {s.w.x() + tau * s.dw.x(), s.w.y() + tau * s.dw.y(), w_z};
+}
+
+Segment after_transition(const Segment& s, const MotionParams& p) {
+    const double tau = s.duration;
+    const Vec3 r = position_at(s, tau);
+    Vec3 v = Vec3::Zero(), w(0.0, 0.0, decayed(s.w.z(), s.spin_decay, tau));
+    switch (s.state) {
+        case MotionState::kSliding: {
+            // v_f = v - (2/7) u, and the spin that rolls with it.
+            const Vec2 u = cloth_slip(s.v, s.w, p.R);
+            v = Vec3(s.v.x() - u.x() * (2.0 / 7.0), s.v.y() - u.y() * (2.0 / 7.0), 0.0);
+            w.x() = -v.y() / p.R;
+            w.y() = v.x() / p.R;
+            break;
+        }
+        case MotionState::kSpinning: w.z() = 0.0; break;
+        case MotionState::kRolling:
+        case MotionState::kStationary:
+        case MotionState::kPocketed: break;
+    }
+    return start_segment(s.start + tau, r, v, w, p);
+}
+
+EventType transition_type(const Segment& segment, const Segment& next) {
+    if (segment.state == MotionState::kSliding) return EventType::kSlideRoll;
+    if (segment.state == MotionState::kSpinning) return EventType::kSpinStop;
+    return next.state == MotionState::kSpinning ? EventType::kRollSpin : EventType::kRollStop;
+}
+
+}  // namespace carom

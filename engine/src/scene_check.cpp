@@ -1,0 +1,151 @@
+// Rules that tie the sections of a scene together.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "carom/engine/tolerances.h"
+#include "scene_sections.h"
+
+namespace carom::detail {
+namespace {
+
+Vec2 planar(const BallStart& ball) {
+    return ball.position.head<2>();
+}
+
+/// How deep two things may overlap and still count as touching, at this distance from the origin.
+double touch_tolerance(const Vec2& p) {
+    return std::max(kTouchTolerance, kTouchRounding * std::max(std::abs(p.x()), std::abs(p.y())));
+}
+
+double distance_to_segment(const Vec2& p, const Cushion& c) {
+    const Vec2 along = c.to - c.from;
+    const double s = std::clamp((p - c.from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    if (s <= 0.0) return (p - c.from).norm();
+    if (s >= 1.0) return (p - c.to).norm();
+    return std::abs(cross(p - c.from, along)) / along.norm();
+}
+
+void check_ids(const Section& top, const Scene& scene) {
+    std::unordered_map<std::string, SourceLocation> seen;
+    for (const BallStart& ball : scene.ball) {
+        const auto [first, fresh] = seen.emplace(ball.id, ball.where);
+        if (fresh) continue;
+        top.fail(ball.where,
+                 fmt::format("ball id {} is already used in line {}; give each ball an id of its own",
+                             quoted(ball.id), first->second.line));
+    }
+}
+
+void check_overlaps(const Section& top, const Scene& scene) {
+    const double diameter = 2.0 * scene.balls.R;
+    for (std::size_t i = 0; i < scene.ball.size(); ++i) {
+        const Vec2 p = planar(scene.ball[i]);
+        const double least = diameter - touch_tolerance(p);
+        for (std::size_t j = 0; j < i; ++j) {
+            // Per axis first: most pairs are far apart.
+            const Vec2 d = p - planar(scene.ball[j]);
+            if (std::abs(d.x()) >= diameter || std::abs(d.y()) >= diameter) continue;
+            const double distance = d.norm();
+            if (distance >= least) continue;
+            top.fail(scene.ball[i].where,
+                     fmt::format("balls {} and {} overlap by {:.4g} m; move one of them",
+                                 quoted(scene.ball[j].id), quoted(scene.ball[i].id), diameter - distance));
+        }
+    }
+}
+
+void check_reach(const Section& top, const Scene& scene) {
+    const double R = scene.balls.R;
+    const auto refuse = [&](const BallStart& ball, const char* kind, const std::string& id, double depth) {
+        top.fail(ball.where, fmt::format("ball {} reaches {:.4g} m into {} {}; move it away", quoted(ball.id),
+                                         depth, kind, id));
+    };
+    for (const BallStart& ball : scene.ball) {
+        const Vec2 p = planar(ball);
+        const double touch = touch_tolerance(p);
+        for (const Cushion& c : scene.table.cushions) {
+            const double depth = R - distance_to_segment(p, c);
+            if (depth > touch) refuse(ball, "cushion", c.id, depth);
+        }
+        for (const Jaw& j : scene.table.jaws) {
+            const double depth = R + j.radius - (p - j.center).norm();
+            if (depth > touch) refuse(ball, "jaw", j.id, depth);
+        }
+    }
+}
+
+/// A nose at or above the top of the ball meets nothing.
+void check_noses(const Section& top, const Scene& scene) {
+    const auto check = [&](const char* kind, const std::string& id, double height) {
+        if (height < 2.0 * scene.balls.R) return;
+        top.fail(top.has("table") ? "table" : "balls",
+                 fmt::format("the nose of {} {} is {} m high, not below the top of a ball ({} m); "
+                             "use larger balls or a lower cushion",
+                             kind, id, height, 2.0 * scene.balls.R));
+    };
+    for (const Cushion& c : scene.table.cushions) check("cushion", c.id, c.height);
+    for (const Jaw& j : scene.table.jaws) check("jaw", j.id, j.height);
+}
+
+/// What can be set going in a scene.
+struct Motions {
+    bool travel = false;  ///< some ball can move over the cloth
+    bool slip = false;    ///< some ball can slide on the cloth
+    bool twist = false;   ///< some ball can have vertical spin
+};
+
+Motions possible_motions(const Scene& scene) {
+    Motions m;
+    const double R = scene.balls.R;
+    const bool struck = scene.cue && scene.cue->speed > 0.0;
+    m.travel = m.slip = struck;
+    m.twist = struck && scene.cue->side != 0.0;
+    for (const BallStart& ball : scene.ball) {
+        const double vx = ball.velocity.x(), vy = ball.velocity.y(), wx = ball.spin.x(), wy = ball.spin.y();
+        m.travel = m.travel || vx != 0.0 || vy != 0.0 || wx != 0.0 || wy != 0.0;
+        const double slip = Vec2(vx - R * wy, vy + R * wx).norm();
+        const double scale = ball.velocity.norm() + R * ball.spin.norm();
+        m.slip = m.slip || slip > kRollingUlp * 0x1p-52 * scale;
+        m.twist = m.twist || ball.spin.z() != 0.0;
+    }
+    if (!m.travel) return m;
+    // An impact can turn rolling into sliding and, with friction, make vertical spin.
+    const bool cushions = !scene.table.cushions.empty() || !scene.table.jaws.empty();
+    const bool pairs = scene.ball.size() > 1;
+    m.slip = m.slip || cushions || pairs;
+    m.twist = m.twist || (pairs && scene.balls.mu_b > 0.0) ||
+              (cushions && scene.balls.f_c > 0.0 && scene.physics.cushion != CushionModel::kSmooth);
+    return m;
+}
+
+void check_rest(const Section& top, const Scene& scene) {
+    if (scene.stop.time || scene.stop.events) return;
+    const Motions m = possible_motions(scene);
+    const auto refuse = [&](const char* section, const char* cause, const char* result) {
+        top.fail(section,
+                 fmt::format(
+                     "with {} = 0 {} for ever and the run cannot end at rest; add [stop] with time or events",
+                     cause, result));
+    };
+    if (scene.physics.gravity == 0.0 && (m.travel || m.twist))
+        refuse("physics", "physics.gravity", "balls move");
+    if (scene.balls.mu_s == 0.0 && m.slip) refuse("balls", "balls.mu_s", "balls slide");
+    if (scene.balls.mu_r == 0.0 && m.travel) refuse("balls", "balls.mu_r", "balls roll");
+    if (scene.balls.mu_sp == 0.0 && m.twist) refuse("balls", "balls.mu_sp", "balls spin");
+}
+
+}  // namespace
+
+void check_scene(const Section& top, const Scene& scene) {
+    if (scene.ball.empty()) top.fail(SourceLocation{}, "there is no ball; add a [[ball]] or a [rack]");
+    check_ids(top, scene);
+    check_noses(top, scene);
+    check_overlaps(top, scene);
+    check_reach(top, scene);
+    check_rest(top, scene);
+}
+
+}  // namespace carom::detail

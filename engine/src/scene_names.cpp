@@ -1,0 +1,56 @@
+// How models are spelt in files, and the text of a scene error.
+#include <fmt/format.h>
+
+#include "carom/engine/scene.h"
+
+namespace carom {
+
+SceneError::SceneError(const std::string& file, SourceLocation where, const std::string& message)
+    : std::runtime_error(where.line > 0 ? fmt::format("{}:{}:{}: {}", file, where.line, where.column, message)
+                                        : fmt::format("{}: {}", file, message)) {}
+
+const char* name(BallBallModel model) {
+    switch (model) {
+        case BallBallModel::kMathavan:
+            return "mathavan";
+        case BallBallModel::kInelastic:
+            return "inelastic";
+        case BallBallModel::kElastic:
+            return "elastic";
+    }
+    return "?";
+}
+
+const char* name(CushionModel model) {
+    switch (model) {
+        case CushionModel::kSmooth:
+            return "smooth";
+        case CushionModel::kHan2005:
+            return "han_2005";
+    }
+    return "?";
+}
+
+const char* name(ClusterModel model) {
+    switch (model) {
+        case ClusterModel::kCompliant:
+            return "compliant";
+        case ClusterModel::kRigid:
+            return "rigid";
+        case ClusterModel::kSequential:
+            return "sequential";
+    }
+    return "?";
+}
+
+const char* name(ClothSlipSign sign) {
+    switch (sign) {
+        case ClothSlipSign::kConsistent:
+            return "consistent";
+        case ClothSlipSign::kAsPublished:
+            return "as_published";
+    }
+    return "?";
+}
+
+}  // namespace carom

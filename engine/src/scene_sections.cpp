@@ -1,0 +1,219 @@
+#include "scene_sections.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "carom/engine/tolerances.h"
+#include "rack.h"
+
+namespace carom::detail {
+namespace {
+
+/// Presets are built by name; the value says no more than that the name is there.
+constexpr Choice<bool> kBallPresets[] = {{"pool", true}, {"snooker", true}, {"carom", true}};
+
+constexpr Choice<RackGame> kRackGames[] = {{"eight_ball", RackGame::kEightBall},
+                                           {"nine_ball", RackGame::kNineBall},
+                                           {"line", RackGame::kLine},
+                                           {"snooker", std::nullopt},
+                                           {"triangle", std::nullopt}};
+constexpr Choice<BallBallModel> kBallBallModels[] = {{"mathavan", BallBallModel::kMathavan},
+                                                     {"inelastic", BallBallModel::kInelastic},
+                                                     {"elastic", BallBallModel::kElastic}};
+constexpr Choice<CushionModel> kCushionModels[] = {{"han_2005", CushionModel::kHan2005},
+                                                   {"smooth", CushionModel::kSmooth},
+                                                   {"mathavan_2010", std::nullopt},
+                                                   {"stronge", std::nullopt},
+                                                   {"impulse", std::nullopt}};
+constexpr Choice<ClothSlipSign> kClothSlipSigns[] = {{"consistent", ClothSlipSign::kConsistent},
+                                                     {"as_published", ClothSlipSign::kAsPublished}};
+constexpr Choice<ClusterModel> kClusterModels[] = {
+    {"compliant", ClusterModel::kCompliant}, {"sequential", ClusterModel::kSequential}, {"rigid", ClusterModel::kRigid}};
+constexpr Choice<bool> kCameras[] = {{"top", true}, {"rail", std::nullopt}, {"follow", std::nullopt}};
+
+constexpr Interval kCoordinate = at_least(-kMaxCoordinate, kMaxCoordinate, "m");
+constexpr Interval kFriction = at_least(0.0, kMaxFriction);
+constexpr Interval kRestitution = at_least(0.0, 1.0);
+
+/// Ids go into CSV files and messages as they are.
+void check_id(const Section& section, const std::string& id) {
+    if (id.empty()) section.fail("id", "a ball's id is empty; give it a name");
+    if (id.size() > kMaxIdLength) {
+        section.fail("id", fmt::format("the ball id {} is longer than {} bytes; shorten it", quoted(id),
+                                       kMaxIdLength));
+    }
+    for (const char c : id) {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"') {
+            section.fail(
+                "id",
+                fmt::format("the ball id {} holds a comma, a quote or a control character; leave it out",
+                            quoted(id)));
+        }
+    }
+}
+
+BallStart read_ball(const Section& s, double R) {
+    BallStart ball;
+    ball.where = s.where();
+    ball.id = s.text("id", "cue");
+    check_id(s, ball.id);
+    const Vec2 p = s.vec2("position", {0.635, 0.5}, "[x, y]", kCoordinate);
+    ball.position = {p.x(), p.y(), R};
+    const Vec2 v = s.vec2("velocity", Vec2::Zero(), "[vx, vy]", at_least(-kMaxSpeed, kMaxSpeed, "m/s"));
+    ball.velocity = {v.x(), v.y(), 0.0};
+    const auto w = s.numbers("spin", 3, "[wx, wy, wz]", at_least(-kMaxSpin, kMaxSpin, "rad/s"));
+    if (w) ball.spin = {(*w)[0], (*w)[1], (*w)[2]};
+    return ball;
+}
+
+}  // namespace
+
+void read_balls(const Section& top, Scene& scene) {
+    scene.balls = make_ball_params(scene.ball_preset);
+    const toml::table* table = top.table("balls");
+    if (!table) return;
+    const Section s(*table, top.file(), "balls",
+                    {"preset", "radius", "mass", "mu_s", "mu_r", "mu_sp", "mu_b", "e_b", "e_c", "f_c"});
+    s.choice("preset", true, kBallPresets);
+    scene.ball_preset = s.text("preset", scene.ball_preset);
+    BallParams p = make_ball_params(scene.ball_preset);
+    p.R = s.number("radius", p.R, at_least(kMinLength, kMaxLength, "m"));
+    p.m = s.number("mass", p.m, at_least(kMinMass, kMaxMass, "kg"));
+    p.mu_s = s.number("mu_s", p.mu_s, kFriction);
+    p.mu_r = s.number("mu_r", p.mu_r, kFriction);
+    p.mu_sp = s.number("mu_sp", p.mu_sp, kFriction);
+    p.mu_b = s.number("mu_b", p.mu_b, kFriction);
+    p.e_b = s.number("e_b", p.e_b, kRestitution);
+    p.e_c = s.number("e_c", p.e_c, kRestitution);
+    p.f_c = s.number("f_c", p.f_c, kFriction);
+    scene.balls = p;
+}
+
+void read_ball_list(const Section& top, Scene& scene) {
+    const auto tables = top.tables("ball");
+    if (!tables) return;
+    for (const toml::table* table : *tables) {
+        const Section s(*table, top.file(), "ball", {"id", "position", "velocity", "spin"});
+        if (scene.ball.size() == kMaxBalls)
+            s.fail(s.where(), fmt::format("more than {} balls; leave some out", kMaxBalls));
+        scene.ball.push_back(read_ball(s, scene.balls.R));
+    }
+}
+
+void read_rack(const Section& top, Scene& scene) {
+    const toml::table* table = top.table("rack");
+    if (!table) return;
+    const Section s(*table, top.file(), "rack", {"game", "gap", "jitter", "seed", "count", "rows"});
+    s.refuse("rows", "it belongs to the game triangle; use eight_ball, nine_ball or line");
+    Rack rack;
+    rack.game = s.choice("game", rack.game, kRackGames);
+    rack.gap = s.number("gap", rack.gap, at_least(0.0, kMaxLength, "m"));
+    rack.jitter = s.number("jitter", rack.jitter, at_least(0.0, kMaxLength, "m"));
+    rack.seed = static_cast<std::uint64_t>(s.integer("seed", 1, 0, INT64_MAX));
+    if (s.has("count") && rack.game != RackGame::kLine) {
+        s.fail("count", "rack.count belongs to the game line; leave it out or set game = \"line\"");
+    }
+    rack.count = static_cast<int>(s.integer("count", rack.count, 1, kMaxBalls));
+    for (const RackedBall& ball : make_rack(rack, foot_spot(scene.table), scene.balls.R)) {
+        if (scene.ball.size() == kMaxBalls) {
+            s.fail(s.where(), fmt::format("more than {} balls; leave some out", kMaxBalls));
+        }
+        BallStart start;
+        start.id = std::to_string(ball.number);
+        start.position = {ball.position.x(), ball.position.y(), scene.balls.R};
+        start.where = s.where();
+        scene.ball.push_back(start);
+    }
+}
+
+void read_cue(const Section& top, Scene& scene) {
+    const toml::table* table = top.table("cue");
+    if (!table) return;
+    const Section s(*table, top.file(), "cue",
+                    {"ball", "speed", "aim_deg", "elevation_deg", "offset", "mass", "end_mass"});
+    Cue cue;
+    cue.where = s.where();
+    cue.ball = s.text("ball", cue.ball);
+    cue.speed = s.number("speed", 9.0, at_least(0.0, kMaxSpeed, "m/s"));
+    cue.aim_deg = s.number("aim_deg", cue.aim_deg, at_least(-kMaxAngle, kMaxAngle, "degrees"));
+    cue.elevation_deg = s.number("elevation_deg", cue.elevation_deg, {0.0, false, 90.0, true, "degrees"});
+    const Vec2 offset = s.vec2("offset", {0.0, 0.1}, "[side, height]", at_least(-1.0, 1.0, "ball radii"));
+    cue.side = offset.x();
+    cue.height = offset.y();
+    if (offset.squaredNorm() > kMiscueOffset * kMiscueOffset) {
+        s.fail(
+            "offset",
+            fmt::format(
+                "cue.offset is {:.4g} ball radii from the centre, where the tip slips off; keep it within {}",
+                offset.norm(), kMiscueOffset));
+    }
+    cue.mass = s.number("mass", cue.mass, at_least(kMinMass, kMaxMass, "kg"));
+    cue.end_mass = s.number("end_mass", cue.end_mass, at_least(0.0, kMaxMass, "kg"));
+    if (cue.end_mass > cue.mass) {
+        s.fail("end_mass",
+               fmt::format("cue.end_mass = {} is more than the whole cue, cue.mass = {}; make it smaller",
+                           cue.end_mass, cue.mass));
+    }
+    const BallStart* struck = nullptr;
+    for (const BallStart& ball : scene.ball) {
+        if (ball.id == cue.ball) struck = &ball;
+    }
+    if (!struck) {
+        s.fail("ball",
+               fmt::format("cue.ball: there is no ball {}; add a [[ball]] with this id or name another",
+                           quoted(cue.ball)));
+    }
+    if (!struck->velocity.isZero(0.0) || !struck->spin.isZero(0.0)) {
+        s.fail(
+            struck->where,
+            fmt::format(
+                "ball {} has a velocity or spin of its own and is struck by the cue; remove one of the two",
+                quoted(struck->id)));
+    }
+    scene.cue = cue;
+}
+
+void read_physics(const Section& top, Scene& scene) {
+    const toml::table* table = top.table("physics");
+    if (!table) return;
+    const Section s(*table, top.file(), "physics",
+                    {"gravity", "ball_ball", "cushion", "cloth_slip", "clusters", "tolerance", "substeps"});
+    Physics& p = scene.physics;
+    p.gravity = s.number("gravity", p.gravity, at_least(0.0, kMaxGravity, "m/s^2"));
+    p.ball_ball = s.choice("ball_ball", p.ball_ball, kBallBallModels);
+    p.cushion = s.choice("cushion", p.cushion, kCushionModels);
+    p.cloth_slip = s.choice("cloth_slip", p.cloth_slip, kClothSlipSigns);
+    p.clusters = s.choice("clusters", p.clusters, kClusterModels);
+    s.refuse("tolerance", "use substeps (default 1000)");
+    p.substeps = static_cast<int>(s.integer("substeps", p.substeps, 1, kMaxSubsteps));
+}
+
+void read_stop(const Section& top, Scene& scene) {
+    const toml::table* table = top.table("stop");
+    if (!table) return;
+    const Section s(*table, top.file(), "stop", {"time", "events"});
+    scene.stop.time = s.number("time", at_least(0.0, kMaxTime, "s"));
+    scene.stop.events = s.integer("events", 0, INT64_MAX);
+}
+
+void read_render(const Section& top, Scene& scene) {
+    const toml::table* table = top.table("render");
+    if (!table) return;
+    const Section s(*table, top.file(), "render", {"fps", "size", "camera", "eye", "target"});
+    RenderSettings& r = scene.render;
+    s.refuse("eye", "use camera = \"top\"");
+    s.refuse("target", "use camera = \"top\"");
+    r.fps = s.number("fps", r.fps, more_than(0.0, kMaxFps, "frames per second"));
+    const auto size = s.numbers("size", 2, "[width, height]", at_least(1.0, kMaxImageSize, "pixels"));
+    if (size) {
+        r.width = static_cast<int>((*size)[0]);
+        r.height = static_cast<int>((*size)[1]);
+        if (r.width != (*size)[0] || r.height != (*size)[1])
+            s.fail("size", "render.size must be whole pixels; drop the fraction");
+    }
+    s.choice("camera", true, kCameras);
+    r.camera = s.text("camera", r.camera);
+}
+
+}  // namespace carom::detail

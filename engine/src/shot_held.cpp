@@ -1,0 +1,166 @@
+// Sustained contacts of a run: entry, groups, end.
+#include <algorithm>
+
+#include "shot.h"
+
+namespace carom {
+
+bool Shot::held_together(int a, int b) const {
+    if (held_.empty() || !is_held(a) || !is_held(b)) return false;
+    return std::any_of(held_.begin(), held_.end(), [&](const HeldContact& c) {
+        return c.j >= 0 && ((c.i == a && c.j == b) || (c.i == b && c.j == a));
+    });
+}
+
+bool Shot::held_to(int ball, int cushion, int nose) const {
+    if (held_.empty() || !is_held(ball)) return false;
+    return std::any_of(held_.begin(), held_.end(), [&](const HeldContact& c) {
+        return c.j < 0 && c.i == ball && c.cushion == cushion && c.nose == nose;
+    });
+}
+
+// Captures the contact if a bounce would be over before the contact itself is.
+bool Shot::hold_instead(const HeldContact& contact, double v_n, double a_c, double restitution) {
+    if (!holds(v_n, a_c, restitution)) return false;
+    held_.push_back(contact);
+    record_event(contact.hold_type(), contact.i, contact.partner, contact.nose);
+    solve_group(contact.i, false);
+    return true;
+}
+
+// Ends all sustained contacts of a ball that something else happens to; its partners go on without it.
+void Shot::free_ball(int ball) {
+    if (!is_held(ball)) return;
+    std::vector<HeldContact> ended;
+    for (const HeldContact& c : held_) {
+        if (c.i == ball || c.j == ball) ended.push_back(c);
+    }
+    std::erase_if(held_, [ball](const HeldContact& c) { return c.i == ball || c.j == ball; });
+    sort_by_place(ended);
+    std::vector<int> partners;
+    for (const HeldContact& c : ended) {
+        record_event(c.release_type(), c.i, c.partner, c.nose);
+        if (c.j >= 0) partners.push_back(c.i == ball ? c.j : c.i);
+    }
+    // From here the ball's own segment counts as free; the caller replaces it.
+    begin(ball, start_segment(now_, position_now(ball), velocity_now(ball), spin_now(ball), motion_));
+    for (const int partner : partners) {
+        if (is_held(partner)) solve_group(partner, false);
+    }
+}
+
+// The group of a held ball, advanced to now and solved anew. With `transitions`, members whose interval ended with their own
+// transition make it first.
+void Shot::solve_group(int ball, bool transitions) {
+    HeldGroup group;
+    std::vector<int> members{ball};
+    for (std::size_t k = 0; k < members.size(); ++k) {
+        for (const HeldContact& c : held_) {
+            const int other = c.i == members[k] ? c.j : (c.j == members[k] ? c.i : -1);
+            if (other >= 0 && std::find(members.begin(), members.end(), other) == members.end()) members.push_back(other);
+        }
+    }
+    const auto is_member = [&](int b) { return std::find(members.begin(), members.end(), b) != members.end(); };
+    for (const int b : members) {
+        HeldBall member;
+        member.ball = b;
+        member.r = position_now(b);
+        member.v = velocity_now(b);
+        member.w = spin_now(b);
+        const Segment& s = now_of(b);
+        if (transitions && s.held && s.ends && s.start + s.duration <= now_) end_transition(member, s.state, plan_.balls.R);
+        group.balls.push_back(member);
+    }
+    const auto left_of = [](const Vec3& p, const Vec3& q) { return p.x() < q.x() || (p.x() == q.x() && p.y() < q.y()); };
+    std::sort(group.balls.begin(), group.balls.end(), [&](const HeldBall& p, const HeldBall& q) { return left_of(p.r, q.r); });
+    for (HeldContact& c : held_) {
+        if (!is_member(c.i)) continue;
+        refresh_normal(c);
+        group.contacts.push_back(c);
+    }
+    std::erase_if(held_, [&](const HeldContact& c) { return is_member(c.i); });
+    sort_by_place(group.contacts);
+    if (transitions) {
+        for (const HeldBall& member : group.balls) {
+            const Segment& s = now_of(member.ball);
+            if (!(s.held && s.ends && s.start + s.duration <= now_)) continue;
+            const Segment after = start_segment(now_, member.r, member.v, member.w, motion_);
+            record_event(transition_type(s, after), member.ball, -1);
+        }
+    }
+    solve_held(group, plan_, motion_, now_);
+    bool any_released = false;
+    for (const HeldContact& c : group.contacts) {
+        if (c.released) {
+            record_event(c.release_type(), c.i, c.partner, c.nose);
+            any_released = true;
+        } else {
+            held_.push_back(c);
+        }
+    }
+    for (const HeldBall& member : group.balls) begin(member.ball, member.segment);
+    // What a release leaves alone is free, or a smaller group of its own.
+    if (any_released) {
+        for (const HeldBall& member : group.balls) {
+            const bool still = std::any_of(held_.begin(), held_.end(), [&](const HeldContact& c) {
+                return c.i == member.ball || c.j == member.ball;
+            });
+            if (!still) begin(member.ball, start_segment(now_, member.r, member.v, member.w, motion_));
+        }
+    }
+}
+
+// Contacts in the order of their places on the table: never by id, never by when they began.
+void Shot::sort_by_place(std::vector<HeldContact>& contacts) const {
+    const auto place_of = [this](const HeldContact& c) {
+        const Vec3 r = position_now(c.i);
+        return Vec2(r.x() + plan_.balls.R * c.n.x(), r.y() + plan_.balls.R * c.n.y());
+    };
+    std::sort(contacts.begin(), contacts.end(), [&](const HeldContact& p, const HeldContact& q) {
+        const Vec2 a = place_of(p), b = place_of(q);
+        return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+    });
+}
+
+void Shot::refresh_normal(HeldContact& c) const {
+    const Vec3 r = position_now(c.i);
+    const Vec2 here(r.x(), r.y());
+    Vec2 toward;
+    if (c.cushion >= 0) {
+        const CushionLine& line = plan_.cushions[static_cast<std::size_t>(c.cushion)];
+        c.n = Vec2(-line.direction.y(), line.direction.x());
+        if (c.n.dot(here - line.from) > 0.0) c.n = -c.n;
+        return;
+    }
+    if (c.j >= 0) {
+        const Vec3 q = position_now(c.j);
+        toward = Vec2(q.x(), q.y()) - here;
+    } else {
+        toward = plan_.noses[static_cast<std::size_t>(c.nose)].center - here;
+    }
+    c.n = toward / length(toward);
+}
+
+// Sustained contacts of a record that stopped: held and not released since.
+void Shot::restore_held() {
+    for (const Event& e : record_.events) {
+        HeldContact c;
+        c.i = e.a;
+        c.partner = e.b;
+        c.nose = e.detail;
+        switch (e.type) {
+            case EventType::kBallBallHold:
+            case EventType::kBallBallRelease: c.j = e.b; break;
+            case EventType::kBallCushionHold:
+            case EventType::kBallCushionRelease: c.cushion = e.detail >= 0 ? -1 : e.b; break;
+            case EventType::kBallJawHold:
+            case EventType::kBallJawRelease: c.jaw = true; break;
+            default: continue;
+        }
+        if (e.type == c.hold_type()) held_.push_back(c);
+        else std::erase_if(held_, [&c](const HeldContact& h) { return h.i == c.i && h.j == c.j && h.cushion == c.cushion && h.nose == c.nose; });
+    }
+    for (HeldContact& c : held_) refresh_normal(c);
+}
+
+}  // namespace carom

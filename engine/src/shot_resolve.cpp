@@ -1,0 +1,176 @@
+// What an event does to its balls.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "carom/engine/cushion.h"
+#include "carom/engine/tolerances.h"
+#include "shot.h"
+
+namespace carom {
+
+void Shot::begin(int ball, const Segment& segment) {
+    record_.tracks[static_cast<std::size_t>(ball)].segments.push_back(segment);
+    touched_.push_back(ball);
+}
+
+void Shot::record_event(EventType type, int a, int b, int detail) {
+    record_.events.push_back({now_, type, a, b, detail});
+    quiet_ = 0;
+}
+
+template <bool kProfile>
+void Shot::resolve_ball_ball(const Candidate& c) {
+    const double R = plan_.balls.R;
+    // Ball 1 is the one further left, then nearer: relabelling the balls changes no bit.
+    const Vec3 ra = position_now(c.a), rb = position_now(c.b);
+    const bool swap = rb.x() < ra.x() || (rb.x() == ra.x() && rb.y() < ra.y());
+    const int one = swap ? c.b : c.a, two = swap ? c.a : c.b;
+    const Vec3 &r1 = swap ? rb : ra, &r2 = swap ? ra : rb;
+    const Vec3 v1 = velocity_now(one), v2 = velocity_now(two), w1 = spin_now(one), w2 = spin_now(two);
+
+    const Vec2 apart(r2.x() - r1.x(), r2.y() - r1.y());
+    HeldContact contact;
+    contact.i = one;
+    contact.j = two;
+    contact.partner = two;
+    contact.n = apart / length(apart);
+    const double v_n = contact.n.x() * (v1.x() - v2.x()) + contact.n.y() * (v1.y() - v2.y());
+    const Vec2 pull = now_of(one).a - now_of(two).a;
+    const double v_t = cross(contact.n, Vec2(v1.x() - v2.x(), v1.y() - v2.y()));
+    const double a_c = contact.n.x() * pull.x() + contact.n.y() * pull.y() - v_t * v_t / (2.0 * R);
+    if (hold_instead(contact, v_n, a_c, plan_.balls.e_b)) return;
+    if (plan_.clusters != ClusterModel::kSequential && resolve_cluster<kProfile>(c, v_n)) return;
+
+    const kernel::Ball b1{{r1.x(), r1.y(), r1.z()}, {v1.x(), v1.y(), v1.z()}, {w1.x(), w1.y(), w1.z()}};
+    const kernel::Ball b2{{r2.x(), r2.y(), r2.z()}, {v2.x(), v2.y(), v2.z()}, {w2.x(), w2.y(), w2.z()}};
+    const BallParams& p = plan_.balls;
+    const Physics& physics = plan_.scene.physics;
+    const kernel::ImpactParams params{p.R, p.m, p.mu_s, p.mu_s, p.mu_b, p.e_b,
+                                      physics.cloth_slip == ClothSlipSign::kAsPublished ? kernel::ClothSlip::kAsPublished
+                                                                                        : kernel::ClothSlip::kConsistent};
+    kernel::ImpactResult result;
+    const auto start = kProfile ? Clock::now() : Clock::time_point{};
+    switch (physics.ball_ball) {
+        case BallBallModel::kMathavan: plan_.march(b1, b2, params, physics.substeps, result); break;
+        case BallBallModel::kInelastic: kernel::collide_inelastic(b1, b2, params, result); break;
+        case BallBallModel::kElastic: kernel::collide_elastic(b1, b2, params, result); break;
+    }
+    if constexpr (kProfile) {
+        cost_.kernel_ns = nanoseconds(start, Clock::now());
+        cost_.steps = result.steps;
+        cost_.method = physics.ball_ball == BallBallModel::kMathavan ? "march" : name(physics.ball_ball);
+    }
+    const auto id = [this](int ball) { return record_.tracks[static_cast<std::size_t>(ball)].id; };
+    if (result.status != kernel::ImpactStatus::kOk && result.status != kernel::ImpactStatus::kNotApproaching)
+        fail(fmt::format("the impact of {} and {} could not be computed: {}", id(one), id(two), kernel::describe(result.status)));
+    free_ball(one);
+    free_ball(two);
+    const auto vec = [](const double (&x)[3]) { return Vec3(x[0], x[1], x[2]); };
+    begin(one, start_segment(now_, r1, vec(result.v1), vec(result.w1), motion_));
+    begin(two, start_segment(now_, r2, vec(result.v2), vec(result.w2), motion_));
+    if (result.status == kernel::ImpactStatus::kOk) record_event(EventType::kBallBall, c.a, c.b);
+}
+
+template <bool kProfile>
+void Shot::resolve_nose(const Candidate& c) {
+    const Vec3 r = position_now(c.a);
+    Vec3 v = velocity_now(c.a), w = spin_now(c.a);
+    const Vec2 here(r.x(), r.y());
+    Vec2 normal;  // into the table
+    double height, curving = 0.0;
+    if (c.nose >= 0) {
+        const Nose& nose = plan_.noses[static_cast<std::size_t>(c.nose)];
+        const Vec2 out = here - nose.center;
+        normal = out / length(out);
+        height = nose.height;
+        const double v_t = cross(normal, Vec2(v.x(), v.y()));
+        curving = v_t * v_t / (plan_.balls.R + nose.radius);
+    } else {
+        const CushionLine& line = plan_.cushions[static_cast<std::size_t>(c.b)];
+        normal = Vec2(-line.direction.y(), line.direction.x());
+        if (normal.dot(here - line.from) < 0.0) normal = -normal;
+        height = line.height;
+    }
+    HeldContact contact;
+    contact.i = c.a;
+    contact.cushion = c.nose >= 0 ? -1 : c.b;
+    contact.nose = c.nose;
+    contact.jaw = c.type == EventType::kBallJaw;
+    contact.partner = c.b;
+    contact.n = -normal;
+    const Vec2 pull = now_of(c.a).a;
+    const double v_n = -(normal.x() * v.x() + normal.y() * v.y());
+    if (hold_instead(contact, v_n, -(normal.x() * pull.x() + normal.y() * pull.y()) - curving, plan_.balls.e_c)) return;
+
+    const BallParams& p = plan_.balls;
+    resolve_cushion(plan_.scene.physics.cushion, {p.R, p.m, p.mu_s, p.e_c, p.f_c, height}, normal, v, w);
+    if constexpr (kProfile) cost_.method = name(plan_.scene.physics.cushion);
+    free_ball(c.a);
+    begin(c.a, start_segment(now_, r, v, w, motion_));
+    record_event(c.type, c.a, c.b, c.nose);
+}
+
+void Shot::resolve_pocket(const Candidate& c) {
+    free_ball(c.a);
+    begin(c.a, pocketed_segment(now_, plan_.pockets[static_cast<std::size_t>(c.b)]));
+    record_.tracks[static_cast<std::size_t>(c.a)].pocket = c.b;
+    record_event(EventType::kBallPocket, c.a, c.b);
+}
+
+void Shot::resolve_transition(const Candidate& c) {
+    if (is_held(c.a)) {
+        solve_group(c.a, true);
+        return;
+    }
+    const Segment segment = now_of(c.a), after = after_transition(segment, motion_);
+    begin(c.a, after);
+    record_event(transition_type(segment, after), c.a, -1);
+}
+
+template <bool kProfile>
+void Shot::apply(const Candidate& c) {
+    ++quiet_;
+    switch (c.type) {
+        case EventType::kBallBall: resolve_ball_ball<kProfile>(c); break;
+        case EventType::kBallCushion:
+        case EventType::kBallJaw: resolve_nose<kProfile>(c); break;
+        case EventType::kBallPocket: resolve_pocket(c); break;
+        default: resolve_transition(c); break;
+    }
+    guard_cap();
+}
+
+template void Shot::apply<false>(const Candidate&);
+template void Shot::apply<true>(const Candidate&);
+
+void Shot::guard_cap() const {
+    const std::size_t count = record_.events.size(), cap = static_cast<std::size_t>(kEventCap);
+    const bool crowded = count > cap && now_ - record_.events[count - 1 - cap].time < kEventCapSpan;
+    if (crowded) fail(fmt::format("more than {} events within {:g} s of simulated time", kEventCap, kEventCapSpan));
+    if (quiet_ > kQuietCap) fail(fmt::format("{} rounds without an event", kQuietCap));
+}
+
+void Shot::fail(const std::string& why) const {
+    std::string text = fmt::format("simulation stopped at t = {:.17g} s after {} events: {}\n", now_, record_.events.size(), why);
+    const std::size_t count = record_.events.size();
+    text += "last events:\n";
+    for (std::size_t i = count > 8 ? count - 8 : 0; i < count; ++i) {
+        const Event& e = record_.events[i];
+        text += fmt::format("  {:.17g} {} {} {}\n", e.time, name(e.type), record_.tracks[static_cast<std::size_t>(e.a)].id,
+                            record_.partner_id(e));
+    }
+    text += "balls that move (id state x y vx vy wx wy wz):\n";
+    for (int i = 0; i < balls_; ++i) {
+        const Segment& s = now_of(i);
+        if (s.state == MotionState::kStationary || s.state == MotionState::kPocketed) continue;
+        const double tau = std::max(0.0, now_ - s.start);
+        const Vec3 r = position_at(s, tau), v = velocity_at(s, tau), w = spin_at(s, tau, plan_.balls.R);
+        text += fmt::format("  {} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n",
+                            record_.tracks[static_cast<std::size_t>(i)].id, name(s.state), r.x(), r.y(), v.x(), v.y(), w.x(),
+                            w.y(), w.z());
+    }
+    throw SimulationError(text);
+}
+
+}  // namespace carom

@@ -1,0 +1,47 @@
+// Impacts by tolerance: as accurate as asked, and no slower than needed (docs/kernel_tolerance.md).
+//
+// The impact of the 2014 model (march.h) is a small ordinary differential equation in the normal impulse.
+// This kernel solves it by whichever method is cheapest for the impact at hand and keeps the bound asked for,
+// instead of marching.
+#pragma once
+
+#include "carom/kernel/batch.h"
+#include "carom/kernel/impact.h"
+#include "carom/kernel/isa.h"
+
+namespace carom::kernel {
+
+/// Tolerances asked for may lie in this range; anything else, NaN too, is kBadParameter.
+inline constexpr double kTightestTolerance = 1e-13;
+inline constexpr double kLoosestTolerance = 1e-1;
+
+/// Friction coefficients above this are kBadParameter here: up to it no ball can stick to the cloth during an
+/// impact, which the equations that are solved take for granted.
+inline constexpr double kLargestFriction = 1.0;
+
+/// Solves one impact between equal balls.
+///
+/// @param tolerance  (looser than 1e-3 is solved as 1e-3) largest error of any component of v [m/s] and of R
+/// w after the impact, as a share of the approach
+///     speed. Rounding adds a few units in the last place of the largest speed that went in.
+/// `result.steps` is the number of evaluations of the slip directions over the impact (sweeps), 1 for a
+/// closed form; `result.method` is what was used.
+using ToleranceFunction = void (*)(const Ball& ball1, const Ball& ball2, const ImpactParams& params,
+                                   double tolerance, ImpactResult& result) noexcept;
+
+/// The kernel built for one instruction set (which must be available). All give the same bits.
+ToleranceFunction tolerance_function(Isa isa) noexcept;
+
+/// Solves every impact of a batch; the bound holds for each. All instruction sets give the same bits,
+/// whatever the length of the batch and the place of an impact in it; they need not be the bits of
+/// ToleranceFunction.
+using ToleranceBatchFunction = void (*)(const ImpactBatch& batch, double tolerance,
+                                        const ImpactBatchResult& result) noexcept;
+
+/// The batch kernel built for one instruction set (which must be available).
+ToleranceBatchFunction tolerance_batch_function(Isa isa) noexcept;
+
+/// "closed_stick", "collocation_4", ...: as profiles print it.
+const char* name(ToleranceMethod method) noexcept;
+
+}  // namespace carom::kernel

@@ -1,0 +1,18 @@
+// Where the OpenGL context comes from. Both libraries are loaded at run time.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace carom::render {
+
+enum class Backend : std::uint8_t {
+    kOsmesa,  ///< libOSMesa.so.8 (Debian package libosmesa6)
+    kEgl,     ///< libEGL.so.1, surfaceless platform of Mesa (Debian packages libegl1 and libegl-mesa0)
+};
+
+/// "osmesa" or "egl"; @throws RenderError for another name
+Backend backend_from_name(std::string_view name);
+const char* name(Backend backend);
+
+}  // namespace carom::render

@@ -1,0 +1,27 @@
+// Pixels in memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "carom/render/frame_size.h"
+
+namespace carom::render {
+
+/// Eight bits a channel, four channels (the fourth means nothing), sRGB, row 0 at the top.
+struct Image {
+    FrameSize size{0, 0};
+    std::vector<std::uint8_t> rgbx;
+
+    void resize(FrameSize wanted) {
+        size = wanted;
+        rgbx.resize(static_cast<std::size_t>(wanted.width) * static_cast<std::size_t>(wanted.height) * 4);
+    }
+    const std::uint8_t* pixel(int x, int y) const {
+        return rgbx.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) +
+                                  static_cast<std::size_t>(x));
+    }
+};
+
+}  // namespace carom::render

@@ -1,0 +1,35 @@
+// Draw lists in, pixels out. Needs no display; one renderer belongs to the thread that made it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "carom/render/backend.h"
+#include "carom/render/draw_list.h"
+#include "carom/render/image.h"
+
+namespace carom::render {
+
+class Renderer {
+  public:
+    /// @throws RenderError: no such library (names its package), or no OpenGL 3.3
+    explicit Renderer(Backend backend = Backend::kOsmesa);
+    ~Renderer();
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+
+    /// Draws the list. The table comes from the last frame if neither it nor the camera changed.
+    void draw(const DrawList& list);
+
+    /// Copies the pixels of the last draw().
+    void read(Image& image);
+
+    /// "4.5 (Core Profile) Mesa 22.3.6, llvmpipe ..."
+    std::string description() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace carom::render

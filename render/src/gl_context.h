@@ -1,0 +1,36 @@
+// An OpenGL 3.3 core context without a window. Three functions, so that any way of getting one fits behind
+// it. Includes no OpenGL header: those of OSMesa and of the loader do not go together.
+#pragma once
+
+#include <memory>
+
+#include "carom/render/backend.h"
+
+namespace carom::render::gl {
+
+/// Finds an OpenGL function by its full name.
+using Lookup = void* (*)(const char* name);
+
+class Context {
+  public:
+    virtual ~Context() = default;
+    Context() = default;
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    /// Makes the context current on the calling thread. @throws RenderError
+    virtual void make_current() = 0;
+
+    /// Releases it from the calling thread.
+    virtual void release() = 0;
+
+    /// How to find the functions of this context.
+    virtual Lookup lookup() const = 0;
+};
+
+/// @throws RenderError naming the Debian package when the library is missing
+std::unique_ptr<Context> make_osmesa_context();
+std::unique_ptr<Context> make_egl_context();
+std::unique_ptr<Context> make_context(Backend backend);
+
+}  // namespace carom::render::gl

@@ -1,0 +1,20 @@
+// Thin helpers over the loaded OpenGL functions. Objects die with their context unless deleted here.
+#pragma once
+
+#include "gl_api.h"
+
+namespace carom::render::gl {
+
+/// Compiles and links, defines (whole lines) and the common source put first. @throws RenderError with the compiler's log
+GLuint make_program(const Api& api, const char* vertex, const char* fragment, const char* defines = "");
+
+/// A texture without mipmaps, read texel by texel (or linearly), clamped at the edges.
+GLuint make_texture(const Api& api, int width, int height, GLenum internal_format, GLenum format, GLenum type,
+                    const void* texels, bool linear = false);
+
+/// A framebuffer object of a colour texture and, if not 0, a depth texture. @throws RenderError
+GLuint make_framebuffer(const Api& api, GLuint color, GLuint depth);
+
+void bind_texture(const Api& api, GLuint program, int unit, const char* sampler, GLuint texture);
+
+}  // namespace carom::render::gl

@@ -1,0 +1,25 @@
+// A small alphabet of strokes, as an atlas of distances to the nearest stroke: sharp at every size.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace carom::render {
+
+inline constexpr int kGlyphColumns = 8, kGlyphRows = 8;    ///< cells of the atlas
+inline constexpr int kGlyphWidth = 24, kGlyphHeight = 36;  ///< texels of a cell
+inline constexpr float kGlyphReach = 1.5F;                 ///< distance [units] at which the atlas saturates
+inline constexpr float kGlyphUnitsX = 6.0F,
+                       kGlyphUnitsY = 9.0F;  ///< units of a cell; letters are 4 x 6, margin 1 to 2
+
+/// Characters in the order of the cells.
+inline constexpr std::string_view kGlyphs = "0123456789.:-%/+=()ABCDEFGHIJKLMNOPQRSTUVWXYZ";
+
+/// Cell of a character (lower case reads as upper case), or -1 for a blank.
+int glyph_index(char c);
+
+/// One byte per texel, row 0 at the top: 255 on a stroke's centre line, 0 from kGlyphReach on.
+std::vector<std::uint8_t> glyph_atlas();
+
+}  // namespace carom::render

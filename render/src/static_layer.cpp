@@ -1,0 +1,198 @@
+#include "static_layer.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "gl_objects.h"
+#include "shaders.h"
+
+namespace carom::render {
+
+namespace {
+
+constexpr std::size_t kMaxHoles = 32;  // size of u_holes in the shader
+
+// Where pass i samples the pixel, in (-1/2, 1/2)^2: the R2 sequence, evenly spread for every count.
+double r2(int i, double step) {
+    const double x = 0.5 + step * i;
+    return x - static_cast<double>(static_cast<long>(x)) - 0.5;
+}
+
+}  // namespace
+
+// Only there while the table is drawn: two images of 16-bit floats and a depth buffer.
+struct StaticLayer::Scratch {
+    const gl::Api& api;
+    GLuint pass, depth, sum, pass_framebuffer, sum_framebuffer;
+
+    Scratch(const gl::Api& a, int width, int height) : api(a) {
+        pass = gl::make_texture(api, width, height, GL_RGBA16F, GL_RGBA, GL_FLOAT, nullptr);
+        sum = gl::make_texture(api, width, height, GL_RGBA16F, GL_RGBA, GL_FLOAT, nullptr);
+        depth = gl::make_texture(api, width, height, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT,
+                                 nullptr);
+        pass_framebuffer = gl::make_framebuffer(api, pass, depth);
+        sum_framebuffer = gl::make_framebuffer(api, sum, 0);
+    }
+    ~Scratch() {
+        const GLuint textures[] = {pass, depth, sum}, framebuffers[] = {pass_framebuffer, sum_framebuffer};
+        api.BindFramebuffer(GL_FRAMEBUFFER, 0);
+        api.DeleteFramebuffers(2, framebuffers);
+        api.DeleteTextures(3, textures);
+    }
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+};
+
+StaticLayer::StaticLayer(const gl::Api& api) : api_(api) {
+    const auto table_program = [&](const char* kind) {
+        return gl::make_program(api, shaders::kTableVertex, shaders::kTableFragment, kind);
+    };
+    groups_[0].program = table_program(shaders::kClothOnly);
+    groups_[1].program = table_program(shaders::kWoodOnly);
+    groups_[2].program = groups_[4].program = table_program(shaders::kTheRest);
+    groups_[3].program = table_program(shaders::kFloorOnly);
+    add_program_ = gl::make_program(api, shaders::kFullscreenVertex, shaders::kAddFragment);
+    depth_program_ = gl::make_program(api, shaders::kFullscreenVertex, shaders::kDepthFragment);
+    resolve_program_ = gl::make_program(api, shaders::kFullscreenVertex, shaders::kResolveFragment);
+    api.GenVertexArrays(1, &empty_array_);
+    api.GenVertexArrays(1, &vertex_array_);
+    api.GenBuffers(1, &buffer_);
+}
+
+void StaticLayer::upload(const TableMesh& table) {
+    const auto group_of = [](const MeshVertex& vertex) {
+        const auto material = static_cast<Material>(static_cast<int>(vertex.material));
+        if (material == Material::kCloth || material == Material::kCushion) return 0;
+        if (material == Material::kFloor) return 3;
+        return material == Material::kWood ? 1 : 2;
+    };
+    std::vector<MeshVertex> all;
+    for (int group = 0; group < 5; ++group) {
+        const auto first = static_cast<GLint>(all.size());
+        for (const MeshVertex& vertex : group == 4 ? table.blended : table.solid) {
+            if (group == 4 || group_of(vertex) == group) all.push_back(vertex);
+        }
+        groups_[static_cast<std::size_t>(group)].first = first;
+        groups_[static_cast<std::size_t>(group)].count = static_cast<GLsizei>(all.size()) - first;
+    }
+    api_.BindVertexArray(vertex_array_);
+    api_.BindBuffer(GL_ARRAY_BUFFER, buffer_);
+    api_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(all.size() * sizeof(MeshVertex)), all.data(),
+                    GL_STATIC_DRAW);
+    const auto attribute = [&](GLuint index, std::size_t offset) {
+        api_.EnableVertexAttribArray(index);
+        api_.VertexAttribPointer(index, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex),
+                                 reinterpret_cast<const void*>(offset));
+    };
+    attribute(0, offsetof(MeshVertex, x));
+    attribute(1, offsetof(MeshVertex, nx));
+    attribute(2, offsetof(MeshVertex, u));
+    uploaded_ = &table;
+}
+
+void StaticLayer::resize(int width, int height) {
+    if (width == width_ && height == height_) return;
+    if (color_ != 0) {
+        const GLuint textures[] = {color_, occluders_},
+                     framebuffers[] = {color_framebuffer_, occluders_framebuffer_};
+        api_.DeleteFramebuffers(2, framebuffers);
+        api_.DeleteTextures(2, textures);
+    }
+    color_ = gl::make_texture(api_, width, height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    occluders_ = gl::make_texture(api_, width, height, GL_RGBA32F, GL_RGBA, GL_FLOAT, nullptr);
+    color_framebuffer_ = gl::make_framebuffer(api_, color_, 0);
+    occluders_framebuffer_ = gl::make_framebuffer(api_, occluders_, 0);
+    width_ = width;
+    height_ = height;
+}
+
+void StaticLayer::set_table_uniforms(const TableMesh& table, const View& view, GLuint program, double jx, double jy) {
+    view.set(api_, program);
+    const auto at = [&](const char* uniform) { return api_.GetUniformLocation(program, uniform); };
+    api_.Uniform2f(at("u_jitter"), static_cast<float>(2.0 * jx / width_), static_cast<float>(2.0 * jy / height_));
+    std::vector<float> holes;
+    for (const Hole& hole : table.holes) {
+        if (holes.size() == 4 * kMaxHoles) break;
+        const Vec2 center = hole.center - table.origin;
+        holes.insert(holes.end(), {static_cast<float>(center.x()), static_cast<float>(center.y()),
+                                   static_cast<float>(hole.radius), 0.0F});
+    }
+    const auto count = static_cast<GLsizei>(holes.size() / 4);
+    if (count > 0) api_.Uniform4fv(at("u_holes"), count, holes.data());
+    api_.Uniform1i(at("u_hole_count"), count);
+    const Vec2 low = table.inner_low - table.origin, high = table.inner_high - table.origin;
+    api_.Uniform4f(at("u_inner"), static_cast<float>(low.x()), static_cast<float>(low.y()),
+                   static_cast<float>(high.x()), static_cast<float>(high.y()));
+}
+
+void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, double jx, double jy) {
+    api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.pass_framebuffer);
+    api_.DepthMask(GL_TRUE);
+    api_.ClearColor(0.004F, 0.004F, 0.004F, 0.0F);
+    api_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    api_.Enable(GL_DEPTH_TEST);
+    api_.DepthFunc(GL_LEQUAL);
+    api_.Disable(GL_BLEND);
+    api_.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    api_.BindVertexArray(vertex_array_);
+    for (const Group& group : groups_) {
+        // Paint and seams lie on the cloth: blended, and its alpha, which says "cloth", stays.
+        if (&group == &groups_.back()) {
+            api_.Enable(GL_BLEND);
+            api_.DepthMask(GL_FALSE);
+        }
+        set_table_uniforms(table, view, group.program, jx, jy);
+        api_.DrawArrays(GL_TRIANGLES, group.first, group.count);
+    }
+}
+
+void StaticLayer::add_pass(const View& view, const Scratch& scratch, int pass, int samples) {
+    api_.Disable(GL_DEPTH_TEST);
+    api_.BindVertexArray(empty_array_);
+    api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.sum_framebuffer);
+    api_.Enable(GL_BLEND);
+    api_.BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ONE);
+    api_.UseProgram(add_program_);
+    gl::bind_texture(api_, add_program_, 0, "u_pass", scratch.pass);
+    api_.Uniform1f(api_.GetUniformLocation(add_program_, "u_weight"), 1.0F / static_cast<float>(samples));
+    api_.DrawArrays(GL_TRIANGLES, 0, 3);
+    api_.Disable(GL_BLEND);
+
+    // The first four passes also leave their depths, one channel each; with fewer passes the last fills the
+    // rest.
+    if (pass >= 4) return;
+    const auto mask = [&](int channel) {
+        return static_cast<GLboolean>(channel == pass || (pass == samples - 1 && channel > pass));
+    };
+    api_.BindFramebuffer(GL_FRAMEBUFFER, occluders_framebuffer_);
+    api_.UseProgram(depth_program_);
+    gl::bind_texture(api_, depth_program_, 0, "u_depth", scratch.depth);
+    api_.Uniform2f(api_.GetUniformLocation(depth_program_, "u_planes"), view.planes[0], view.planes[1]);
+    api_.ColorMask(mask(0), mask(1), mask(2), mask(3));
+    api_.DrawArrays(GL_TRIANGLES, 0, 3);
+    api_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+void StaticLayer::draw(const TableMesh& table, const View& view, int samples) {
+    samples = std::max(samples, 1);
+    if (uploaded_ != &table) upload(table);
+    resize(static_cast<int>(view.size[0]), static_cast<int>(view.size[1]));
+    const Scratch scratch(api_, width_, height_);
+    api_.Viewport(0, 0, width_, height_);
+    api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.sum_framebuffer);
+    api_.ClearColor(0.0F, 0.0F, 0.0F, 0.0F);
+    api_.Clear(GL_COLOR_BUFFER_BIT);
+    for (int pass = 0; pass < samples; ++pass) {
+        // 1 / plastic number and its square.
+        const double jx = r2(pass, 0.75487766624669276), jy = r2(pass, 0.56984029099805327);
+        draw_pass(table, view, scratch, samples == 1 ? 0.0 : jx, samples == 1 ? 0.0 : jy);
+        add_pass(view, scratch, pass, samples);
+    }
+    api_.BindFramebuffer(GL_FRAMEBUFFER, color_framebuffer_);
+    api_.UseProgram(resolve_program_);
+    gl::bind_texture(api_, resolve_program_, 0, "u_pass", scratch.sum);
+    api_.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+}  // namespace carom::render

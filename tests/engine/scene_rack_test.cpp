@@ -1,0 +1,190 @@
+// Racks: who stands where, how exactly, and that seeds reproduce.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "carom/engine/scene.h"
+
+namespace {
+
+using carom::parse_scene;
+using carom::Scene;
+using carom::Vec2;
+
+constexpr double kR = 0.028575;
+
+Scene rack(const std::string& keys, const std::string& table = "") {
+    return parse_scene(table + "[rack]\n" + keys, "s.toml");
+}
+
+Vec2 at(const Scene& scene, std::size_t i) {
+    return scene.ball[i].position.head<2>();
+}
+
+double closest_pair(const Scene& s) {
+    double best = 1e9;
+    for (std::size_t i = 0; i < s.ball.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) best = std::fmin(best, (at(s, i) - at(s, j)).norm());
+    }
+    return best;
+}
+
+int touching_pairs(const Scene& s, double pitch) {
+    int n = 0;
+    for (std::size_t i = 0; i < s.ball.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) n += std::abs((at(s, i) - at(s, j)).norm() - pitch) < 4e-16;
+    }
+    return n;
+}
+
+/// Id of the ball nearest to a point.
+std::string ball_at(const Scene& s, const Vec2& p) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < s.ball.size(); ++i) {
+        if ((at(s, i) - p).norm() < (at(s, best) - p).norm()) best = i;
+    }
+    return s.ball[best].id;
+}
+
+TEST(EightBall, TouchesExactlyAndMirrorsBitForBit) {
+    for (const char* table : {"", "[table]\npreset = \"seven_foot\"\n", "[table]\npreset = \"carom\"\n"}) {
+        const Scene s = rack("gap = 0\n", table);
+        ASSERT_EQ(s.ball.size(), 15u);
+        EXPECT_EQ(touching_pairs(s, 2 * kR), 30) << table;
+        EXPECT_GE(closest_pair(s), 2 * kR - 4e-16);
+        const double axis = s.table.width / 2;
+        for (std::size_t i = 0; i < 15; ++i) {
+            int mirrored = 0;
+            for (std::size_t j = 0; j < 15; ++j) {
+                mirrored += at(s, i).y() == at(s, j).y() && at(s, i).x() - axis == axis - at(s, j).x();
+            }
+            EXPECT_EQ(mirrored, 1) << table << s.ball[i].id;
+        }
+    }
+}
+
+TEST(EightBall, StandsAtTheFootSpotWithRowsUpTheTable) {
+    const Scene s = rack("gap = 1e-4\n");
+    const Vec2 spot(1.27 / 2, 3 * 2.54 / 4);
+    int at_spot = 0;
+    for (std::size_t i = 0; i < 15; ++i) {
+        at_spot += at(s, i) == spot;
+        EXPECT_GE(at(s, i).y(), spot.y());
+        EXPECT_EQ(s.ball[i].position.z(), kR);
+        EXPECT_EQ(s.ball[i].velocity.norm(), 0.0);
+    }
+    EXPECT_EQ(at_spot, 1);
+    EXPECT_EQ(touching_pairs(s, 2 * kR + 1e-4), 30);
+}
+
+TEST(EightBall, FollowsTheRulesForEverySeed) {
+    const double pitch = 2 * kR, row = pitch * std::sqrt(0.75);
+    const Vec2 spot(1.27 / 2, 3 * 2.54 / 4);
+    std::set<std::string> apexes;
+    int solid_left = 0;
+    constexpr int kSeeds = 400;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+        const Scene s = rack("gap = 0\nseed = " + std::to_string(seed) + "\n");
+        for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(s.ball[i].id, std::to_string(i + 1));
+        EXPECT_EQ(ball_at(s, spot + Vec2(0, 2 * row)), "8");
+        const int left = std::stoi(ball_at(s, spot + Vec2(-2 * pitch, 4 * row)));
+        const int right = std::stoi(ball_at(s, spot + Vec2(2 * pitch, 4 * row)));
+        EXPECT_NE(left < 8, right < 8) << seed;
+        solid_left += left < 8;
+        apexes.insert(ball_at(s, spot));
+    }
+    EXPECT_EQ(apexes.size(), 14u) << "every ball but the 8 comes to the apex";
+    EXPECT_NEAR(solid_left, kSeeds / 2, 60) << "six standard deviations";
+}
+
+TEST(NineBall, FollowsTheRulesForEverySeed) {
+    const double pitch = 2 * kR, row = pitch * std::sqrt(0.75);
+    const Vec2 spot(1.27 / 2, 3 * 2.54 / 4);
+    std::set<std::string> behind;
+    for (int seed = 0; seed < 200; ++seed) {
+        const Scene s = rack("game = \"nine_ball\"\ngap = 0\nseed = " + std::to_string(seed) + "\n");
+        ASSERT_EQ(s.ball.size(), 9u);
+        EXPECT_EQ(s.ball[0].id, "1");
+        EXPECT_EQ(at(s, 0), spot);
+        EXPECT_EQ(ball_at(s, spot + Vec2(0, 2 * row)), "9");
+        EXPECT_EQ(touching_pairs(s, pitch), 16);
+        behind.insert(ball_at(s, spot + Vec2(0, 4 * row)));
+    }
+    EXPECT_EQ(behind.size(), 7u);
+}
+
+TEST(Line, RunsUpTheTable) {
+    const Scene s = rack("game = \"line\"\ncount = 4\ngap = 0.01\n");
+    ASSERT_EQ(s.ball.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(s.ball[i].id, std::to_string(i + 1));
+        EXPECT_EQ(at(s, i).x(), 0.635);
+        EXPECT_NEAR(at(s, i).y(), 1.905 + static_cast<double>(i) * (2 * kR + 0.01), 1e-15);
+    }
+    EXPECT_EQ(rack("game = \"line\"\n").ball.size(), 5u);
+}
+
+TEST(Racks, SeedsReproduceAndDiffer) {
+    const std::string keys = "jitter = 5e-5\nseed = ";
+    const Scene a = rack(keys + "7\n"), b = rack(keys + "7\n"), c = rack(keys + "8\n");
+    bool differs = false;
+    for (std::size_t i = 0; i < 15; ++i) {
+        EXPECT_EQ(a.ball[i].position, b.ball[i].position);
+        differs = differs || a.ball[i].position != c.ball[i].position;
+    }
+    EXPECT_TRUE(differs);
+}
+
+// Written down: a change of the generator or of the order of its draws changes everybody's racks.
+TEST(Racks, SeedOneIsThisRack) {
+    const Scene s = rack("gap = 0\n");
+    const double pitch = 2 * kR, row = pitch * std::sqrt(0.75);
+    std::string order;
+    for (int r = 0; r < 5; ++r) {
+        for (int k = 0; k <= r; ++k)
+            order += ball_at(s, Vec2(0.635 + (k - r / 2.0) * pitch, 1.905 + r * row)) + " ";
+    }
+    EXPECT_EQ(order, "1 5 9 15 8 3 11 2 13 12 14 10 6 7 4 ");
+}
+
+TEST(Racks, JitterStaysInItsBoxAndNeverOverlaps) {
+    for (const char* gap : {"0", "1e-4"}) {
+        const Scene still = rack(std::string("gap = ") + gap + "\n");
+        double reach = 0.0;
+        for (int seed = 1; seed <= 200; ++seed) {
+            const Scene s =
+                rack(std::string("jitter = 1e-4\ngap = ") + gap + "\nseed = " + std::to_string(seed) + "\n");
+            EXPECT_GE(closest_pair(s), 2 * kR - 1e-15);
+            for (std::size_t i = 0; i < 15; ++i) {
+                // Which ball stands where depends on the seed: compare with the nearest place.
+                double best = 1e9;
+                for (std::size_t j = 0; j < 15; ++j) {
+                    best = std::fmin(best, (at(s, i) - at(still, j)).cwiseAbs().maxCoeff());
+                }
+                EXPECT_LE(best, 1e-4 * (1 + 1e-9));
+                EXPECT_GT(best, 0.0) << "a hundred rounds move every ball";
+                reach = std::fmax(reach, best);
+            }
+        }
+        EXPECT_GT(reach, 0.99e-4);
+    }
+}
+
+TEST(Racks, RackedBallsComeAfterTheWrittenOnes) {
+    const Scene s = parse_scene("[rack]\ngame = \"nine_ball\"\n[[ball]]\nid = \"cue\"\n", "s.toml");
+    ASSERT_EQ(s.ball.size(), 10u);
+    EXPECT_EQ(s.ball[0].id, "cue");
+    EXPECT_EQ(s.ball[1].id, "1");
+    EXPECT_EQ(s.ball[1].where.line, 1);
+}
+
+TEST(Racks, BallRadiusSetsThePitch) {
+    const Scene s = parse_scene("[balls]\npreset = \"snooker\"\n[rack]\ngap = 0\n", "s.toml");
+    EXPECT_EQ(touching_pairs(s, 2 * 0.02625), 30);
+}
+
+}  // namespace

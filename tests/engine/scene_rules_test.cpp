@@ -1,0 +1,421 @@
+// Every rule of the scene format: bad scenes and their exact messages, defaults, limits.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "carom/engine/scene.h"
+#include "carom/engine/tolerances.h"
+
+namespace {
+
+using carom::parse_scene;
+using carom::Scene;
+using carom::SceneError;
+using carom::Vec2;
+using carom::Vec3;
+
+std::string read_file(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    EXPECT_TRUE(in) << path;
+    std::ostringstream out;
+    out << in.rdbuf();
+    return out.str();
+}
+
+/// The message of a scene that has to fail, or "" if it does not.
+std::string error_of(const std::string& text) {
+    try {
+        parse_scene(text, "s.toml");
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+/// `*` in the pattern stands for any text.
+bool matches(const std::string& pattern, const std::string& text, std::size_t p = 0, std::size_t t = 0) {
+    for (; p < pattern.size(); ++p, ++t) {
+        if (pattern[p] == '*') {
+            for (std::size_t rest = t; rest <= text.size(); ++rest) {
+                if (matches(pattern, text, p + 1, rest)) return true;
+            }
+            return false;
+        }
+        if (t >= text.size() || pattern[p] != text[t]) return false;
+    }
+    return t == text.size();
+}
+
+std::vector<std::filesystem::path> toml_files(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> out;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() == ".toml") out.push_back(entry.path());
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+const std::string kBall = "[[ball]]\nposition = [0.6, 0.5]\n";
+
+// The first line of each file is a comment with the whole message. `*` stands for what toml++ words or counts
+// differently from version to version (syntax errors only).
+TEST(BadScenes, GiveTheirExactMessage) {
+    const auto files = toml_files(std::filesystem::path(CAROM_TEST_DATA) / "bad_scenes");
+    ASSERT_GE(files.size(), 25u);
+    for (const auto& path : files) {
+        const std::string text = read_file(path);
+        const std::string file = path.filename().string();
+        const std::string want = text.substr(2, text.find('\n') - 2);
+        ASSERT_EQ(want.rfind(file, 0), 0u) << file << " does not begin with its message";
+        try {
+            parse_scene(text, file);
+            ADD_FAILURE() << file << " was accepted";
+        } catch (const SceneError& error) {
+            EXPECT_TRUE(matches(want, error.what())) << "want " << want << "\ngot  " << error.what();
+        }
+    }
+}
+
+TEST(Scenes, EveryFileOfTheRepositoryParses) {
+    const auto files = toml_files(std::filesystem::path(CAROM_SOURCE_DIR) / "scenes");
+    ASSERT_GE(files.size(), 8u);
+    for (const auto& path : files) {
+        const Scene scene = carom::read_scene(path.string());
+        EXPECT_FALSE(scene.ball.empty()) << path;
+        const std::string text = read_file(path);
+        EXPECT_EQ(text.rfind("# ", 0), 0u) << path << ": say in a comment what to look for";
+        EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 30) << path;
+    }
+}
+
+TEST(Scenes, FilesThatCannotBeRead) {
+    const auto message = [](const std::string& path) -> std::string {
+        try {
+            carom::read_scene(path);
+        } catch (const SceneError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(message("no/such.toml"), "no/such.toml: cannot be read: there is no such file; check the path");
+    const std::string folder = CAROM_TEST_DATA;
+    EXPECT_EQ(message(folder), folder + ": cannot be read: it is a directory; name a scene file in it");
+}
+
+TEST(Scenes, TooLargeFile) {
+    const std::string large = "#" + std::string(carom::kMaxFileSize, 'x');
+    EXPECT_EQ(error_of(large), "s.toml: is larger than 4 MiB; a scene file is a few lines");
+    EXPECT_EQ(error_of(kBall + "#" + std::string(carom::kMaxFileSize - kBall.size() - 1, 'x')), "");
+}
+
+TEST(Scenes, DefaultsAreWrittenOut) {
+    const Scene s = parse_scene("[[ball]]\n", "s.toml");
+    EXPECT_EQ(s.file, "s.toml");
+    EXPECT_EQ(s.table.preset, "nine_foot");
+    EXPECT_EQ(s.ball_preset, "pool");
+    EXPECT_EQ(s.balls.R, 0.028575);
+    EXPECT_EQ(s.balls.m, 0.170097);
+    EXPECT_EQ(s.balls.mu_s, 0.2);
+    EXPECT_EQ(s.balls.mu_r, 0.01);
+    EXPECT_EQ(s.balls.mu_sp, 0.0127);
+    EXPECT_EQ(s.balls.mu_b, 0.05);
+    EXPECT_EQ(s.balls.e_b, 0.95);
+    EXPECT_EQ(s.balls.e_c, 0.85);
+    EXPECT_EQ(s.balls.f_c, 0.2);
+    ASSERT_EQ(s.ball.size(), 1u);
+    EXPECT_EQ(s.ball[0].id, "cue");
+    EXPECT_EQ(s.ball[0].position, Vec3(0.635, 0.5, 0.028575));
+    EXPECT_EQ(s.ball[0].velocity, Vec3(0, 0, 0));
+    EXPECT_EQ(s.ball[0].spin, Vec3(0, 0, 0));
+    EXPECT_FALSE(s.cue);
+    EXPECT_EQ(s.physics.gravity, 9.81);
+    EXPECT_STREQ(name(s.physics.ball_ball), "mathavan");
+    EXPECT_STREQ(name(s.physics.cushion), "han_2005");
+    EXPECT_STREQ(name(s.physics.cloth_slip), "consistent");
+    EXPECT_STREQ(name(s.physics.clusters), "compliant");
+    EXPECT_EQ(s.physics.substeps, 1000);
+    EXPECT_FALSE(s.stop.time);
+    EXPECT_FALSE(s.stop.events);
+    EXPECT_EQ(s.render.fps, 60.0);
+    EXPECT_EQ(s.render.width, 1280);
+    EXPECT_EQ(s.render.height, 720);
+    EXPECT_EQ(s.render.camera, "top");
+}
+
+TEST(Scenes, DefaultsOfAnEmptyCueAreThoseShownInTheFormat) {
+    const Scene s = parse_scene("[[ball]]\n[cue]\n", "s.toml");
+    ASSERT_TRUE(s.cue);
+    EXPECT_EQ(s.cue->ball, "cue");
+    EXPECT_EQ(s.cue->speed, 9.0);
+    EXPECT_EQ(s.cue->aim_deg, 90.0);
+    EXPECT_EQ(s.cue->elevation_deg, 0.0);
+    EXPECT_EQ(s.cue->side, 0.0);
+    EXPECT_EQ(s.cue->height, 0.1);
+    EXPECT_EQ(s.cue->mass, 0.567);
+    EXPECT_EQ(s.cue->end_mass, 0.00567);
+}
+
+TEST(Scenes, EveryKeyIsRead) {
+    const Scene s = parse_scene(R"([table]
+preset = "carom"
+[balls]
+preset = "carom"
+radius = 0.031
+mass = 0.22
+mu_s = 0.21
+mu_r = 0.011
+mu_sp = 0.012
+mu_b = 0.06
+e_b = 0.9
+e_c = 0.8
+f_c = 0.1
+[[ball]]
+id = "white"
+position = [0.3, 0.4]
+[[ball]]
+id = "red"
+position = [0.5, 0.6]
+velocity = [1, -2]
+spin = [3, 4.5, -6]
+[cue]
+ball = "white"
+speed = 2
+aim_deg = -30
+elevation_deg = 5
+offset = [-0.2, 0.3]
+mass = 0.5
+end_mass = 0
+[physics]
+gravity = 9.8
+ball_ball = "elastic"
+cushion = "smooth"
+cloth_slip = "as_published"
+clusters = "sequential"
+substeps = 20000
+[stop]
+time = 3
+events = 40
+[render]
+fps = 25
+size = [640, 480]
+camera = "top"
+)",
+                                "s.toml");
+    EXPECT_EQ(s.table.preset, "carom");
+    EXPECT_EQ(s.ball_preset, "carom");
+    const carom::BallParams& p = s.balls;
+    EXPECT_EQ((std::vector<double>{p.R, p.m, p.mu_s, p.mu_r, p.mu_sp, p.mu_b, p.e_b, p.e_c, p.f_c}),
+              (std::vector<double>{0.031, 0.22, 0.21, 0.011, 0.012, 0.06, 0.9, 0.8, 0.1}));
+    ASSERT_EQ(s.ball.size(), 2u);
+    EXPECT_EQ(s.ball[1].id, "red");
+    EXPECT_EQ(s.ball[1].position, Vec3(0.5, 0.6, 0.031));
+    EXPECT_EQ(s.ball[1].velocity, Vec3(1, -2, 0));
+    EXPECT_EQ(s.ball[1].spin, Vec3(3, 4.5, -6));
+    EXPECT_EQ(s.ball[1].where.line, 17);
+    EXPECT_EQ(s.ball[1].where.column, 1);
+    ASSERT_TRUE(s.cue);
+    EXPECT_EQ(s.cue->ball, "white");
+    EXPECT_EQ(s.cue->speed, 2.0);
+    EXPECT_EQ(s.cue->aim_deg, -30.0);
+    EXPECT_EQ(s.cue->elevation_deg, 5.0);
+    EXPECT_EQ(s.cue->side, -0.2);
+    EXPECT_EQ(s.cue->height, 0.3);
+    EXPECT_EQ(s.cue->mass, 0.5);
+    EXPECT_EQ(s.cue->end_mass, 0.0);
+    EXPECT_EQ(s.cue->where.line, 22);
+    EXPECT_EQ(s.physics.gravity, 9.8);
+    EXPECT_STREQ(name(s.physics.ball_ball), "elastic");
+    EXPECT_STREQ(name(s.physics.cushion), "smooth");
+    EXPECT_STREQ(name(s.physics.cloth_slip), "as_published");
+    EXPECT_EQ(s.physics.substeps, 20000);
+    EXPECT_EQ(s.stop.time.value(), 3.0);
+    EXPECT_EQ(s.stop.events.value(), 40);
+    EXPECT_EQ(s.render.fps, 25.0);
+    EXPECT_EQ(s.render.width, 640);
+    EXPECT_EQ(s.render.height, 480);
+}
+
+TEST(Scenes, BallPresets) {
+    const Scene snooker = parse_scene("[balls]\npreset = \"snooker\"\n" + kBall, "s.toml");
+    EXPECT_EQ(snooker.balls.R, 0.02625);
+    EXPECT_EQ(snooker.balls.m, 0.140);
+    const Scene carom = parse_scene("[balls]\npreset = \"carom\"\nmass = 0.2\n" + kBall, "s.toml");
+    EXPECT_EQ(carom.balls.R, 0.03075);
+    EXPECT_EQ(carom.balls.m, 0.2);
+    EXPECT_EQ(carom::make_ball_params("carom").m, 0.21);
+    EXPECT_THROW(carom::make_ball_params("marble"), std::invalid_argument);
+}
+
+// The rounding of 0.5 + 0.05715 is far below the tolerance; 1e-9 m is far above it.
+TEST(Scenes, TouchingIsNotOverlapping) {
+    const auto two = [](const char* x) {
+        return error_of(
+            std::string("[[ball]]\nid = \"a\"\nposition = [0.5, 0.5]\n[[ball]]\nid = \"b\"\nposition = [") +
+            x + ", 0.5]\n");
+    };
+    EXPECT_EQ(two("0.55715"), "");
+    EXPECT_EQ(two("0.5571499999991"), "");
+    EXPECT_EQ(two("0.557149999"), "s.toml:4:1: balls \"a\" and \"b\" overlap by 1e-09 m; move one of them");
+    const auto at_rail = [](const char* x) {
+        return error_of(std::string("[[ball]]\nposition = [") + x + ", 0.6]\n");
+    };
+    EXPECT_EQ(at_rail("0.028575"), "");
+    EXPECT_EQ(at_rail("0.0285749999991"), "");
+    EXPECT_EQ(at_rail("0.028574999"),
+              "s.toml:1:1: ball \"cue\" reaches 1e-09 m into cushion c3; move it away");
+}
+
+// At 1e5 m the spacing of doubles, 1.5e-11 m, is wider than the touch tolerance.
+TEST(Scenes, TouchingFarFromTheOrigin) {
+    const std::string far =
+        "[table]\ncushion = []\n[[ball]]\nid = \"a\"\nposition = [1e5, 1e5]\n[[ball]]\nid = \"b\"\nposition "
+        "= ";
+    EXPECT_EQ(error_of(far + "[100000.05715, 1e5]\n"), "");
+    EXPECT_NE(error_of(far + "[100000.0571499, 1e5]\n"), "");
+}
+
+TEST(Scenes, BallsMayStandInAPocketMouthOrOffTheTable) {
+    EXPECT_EQ(error_of("[[ball]]\nposition = [0.01, 0.01]\n"), "");
+    EXPECT_EQ(error_of("[[ball]]\nposition = [-3, 1e5]\n"), "");
+}
+
+TEST(Scenes, CushionsActOnBothSides) {
+    const std::string wall = "[[table.cushion]]\nfrom = [0, 0]\nto = [1, 0]\n[[ball]]\nposition = ";
+    EXPECT_NE(error_of(wall + "[0.5, 0.028]\n"), "");
+    EXPECT_NE(error_of(wall + "[0.5, -0.028]\n"), "");
+    EXPECT_NE(error_of(wall + "[-0.02, -0.02]\n"), "") << "the round end";
+    EXPECT_EQ(error_of(wall + "[-0.021, -0.021]\n"), "");
+    EXPECT_EQ(error_of(wall + "[0.5, -0.029]\n"), "");
+}
+
+TEST(Scenes, CustomOutline) {
+    const Scene s = parse_scene(R"([[table.cushion]]
+from = [-1, 2]
+to = [1, 2]
+[[table.cushion]]
+from = [1, 2]
+to = [1, 6]
+height = 0.03
+[[table.jaw]]
+center = [0, 9]
+radius = 0.02
+[[table.pocket]]
+center = [5, 5]
+radius = 0.06
+[[ball]]
+)",
+                                "s.toml");
+    const carom::Table& t = s.table;
+    EXPECT_EQ(t.preset, "");
+    ASSERT_EQ(t.cushions.size(), 2u);
+    EXPECT_EQ(t.cushions[0].id, "c1");
+    EXPECT_EQ(t.cushions[0].height, 1.28 * 0.028575);
+    EXPECT_EQ(t.cushions[1].from, Vec2(1, 2));
+    EXPECT_EQ(t.cushions[1].to, Vec2(1, 6));
+    EXPECT_EQ(t.cushions[1].height, 0.03);
+    ASSERT_EQ(t.jaws.size(), 1u);
+    EXPECT_EQ(t.jaws[0].id, "j1");
+    EXPECT_EQ(t.jaws[0].radius, 0.02);
+    ASSERT_EQ(t.pockets.size(), 1u);
+    EXPECT_EQ(t.pockets[0].id, "p1");
+    EXPECT_EQ(t.pockets[0].center, Vec2(5, 5));
+    EXPECT_EQ(t.corner, Vec2(-1, 2));
+    EXPECT_EQ(t.width, 2.0);
+    EXPECT_EQ(t.length, 4.0);
+    EXPECT_EQ(foot_spot(t), Vec2(0, 5));
+}
+
+TEST(Scenes, EndlessCloth) {
+    const Scene s = parse_scene("table.cushion = []\n[[ball]]\n", "s.toml");
+    EXPECT_TRUE(s.table.cushions.empty() && s.table.jaws.empty() && s.table.pockets.empty());
+    EXPECT_EQ(s.table.width, 0.0);
+    EXPECT_EQ(s.table.length, 0.0);
+}
+
+TEST(Scenes, MiscueLimitIsInclusive) {
+    EXPECT_EQ(error_of(kBall + "[cue]\noffset = [0.3, 0.4]\n"), "");
+    EXPECT_EQ(error_of(kBall + "[cue]\noffset = [0, -0.5]\n"), "");
+    EXPECT_NE(error_of(kBall + "[cue]\noffset = [0, 0.5001]\n"), "");
+    EXPECT_EQ(error_of(kBall + "[cue]\nelevation_deg = 89.9\n"), "");
+}
+
+TEST(Scenes, ManyBallsUpToTheLimit) {
+    const std::string line = "table.cushion = []\n[rack]\ngame = \"line\"\ngap = 0\ncount = ";
+    EXPECT_EQ(parse_scene(line + "4096\n", "s.toml").ball.size(), 4096u);
+    EXPECT_NE(error_of(line + "4097\n"), "");
+}
+
+TEST(Rest, NothingThatMovesNeedsNoStop) {
+    EXPECT_EQ(error_of("[balls]\nmu_s = 0\nmu_r = 0\nmu_sp = 0\n[physics]\ngravity = 0\n" + kBall), "");
+    EXPECT_EQ(error_of("[balls]\nmu_r = 0\n" + kBall + "[cue]\nspeed = 0\n"), "");
+}
+
+TEST(Rest, AnyStopWillDo) {
+    const std::string endless = "[balls]\nmu_s = 0\n[[ball]]\nvelocity = [0, 1]\n";
+    EXPECT_NE(error_of(endless), "");
+    EXPECT_EQ(error_of(endless + "[stop]\ntime = 1\n"), "");
+    EXPECT_EQ(error_of(endless + "[stop]\nevents = 10\n"), "");
+    EXPECT_NE(error_of(endless + "[stop]\n"), "");
+}
+
+TEST(Rest, OnlyWhatCanHappenCounts) {
+    const std::string cloth = "[table]\ncushion = []\n";
+    // A rolling ball with nothing to hit never slides; with a second ball it may.
+    const std::string rolling =
+        cloth + "[balls]\nmu_s = 0\n[[ball]]\nvelocity = [0, 1]\nspin = [-34.99562554680665, 0, 0]\n";
+    EXPECT_EQ(error_of(rolling), "");
+    EXPECT_NE(error_of(rolling + "[[ball]]\nid = \"other\"\nposition = [2, 2]\n"), "");
+    // Vertical spin needs a side offset, ball-ball friction or cushion friction.
+    const std::string straight = "[balls]\nmu_sp = 0\nmu_b = 0\n[[ball]]\n[cue]\n";
+    EXPECT_EQ(error_of(cloth + straight), "");
+    EXPECT_NE(error_of(straight), "");
+    EXPECT_EQ(error_of(straight + "[physics]\ncushion = \"smooth\"\n"), "");
+    EXPECT_NE(error_of(cloth + straight + "offset = [0.1, 0]\n"), "");
+    EXPECT_NE(error_of(cloth + "[balls]\nmu_sp = 0\n[[ball]]\nspin = [0, 0, 5]\n"), "");
+    // A ball that only spins in place does not roll.
+    EXPECT_EQ(error_of("[balls]\nmu_r = 0\n[[ball]]\nspin = [0, 0, 5]\n"), "");
+}
+
+// Whatever is in a file, it is read or refused with a place in it; it never crashes and nothing else is
+// thrown.
+TEST(Scenes, BrokenTextIsRefusedInTheSameForm) {
+    const std::string good =
+        read_file(std::filesystem::path(CAROM_SOURCE_DIR) / "scenes" / "eight_ball_break.toml");
+    ASSERT_EQ(error_of(good), "");
+    std::uint64_t state = 11;
+    const auto random = [&state](std::size_t n) {
+        state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+        return static_cast<std::size_t>((state >> 33) % n);
+    };
+    const std::string alphabet = "[]{}=.,\"'#\n\t\\ -+0159eaxntf\xff\xc3\x01";
+    int refused = 0;
+    for (int i = 0; i < 5000; ++i) {
+        std::string text = good;
+        for (std::size_t k = 0, n = 1 + random(4); k < n; ++k) {
+            const std::size_t at = random(text.size());
+            switch (random(3)) {
+                case 0:
+                    text[at] = alphabet[random(alphabet.size())];
+                    break;
+                case 1:
+                    text.insert(at, 1, alphabet[random(alphabet.size())]);
+                    break;
+                default:
+                    text.erase(at, 1 + random(8));
+            }
+        }
+        const std::string message = error_of(text);
+        if (message.empty()) continue;
+        ++refused;
+        EXPECT_EQ(message.rfind("s.toml:", 0), 0u) << message;
+    }
+    EXPECT_GT(refused, 1000);
+}
+
+}  // namespace

@@ -1,0 +1,101 @@
+// The scenes of the repository do what their comments say.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "carom/engine/simulate.h"
+
+namespace {
+
+using carom::EventType;
+using carom::Record;
+using carom::Vec2;
+
+/// The portable instruction set: the records are the same on all.
+Record run(const std::string& text, const std::string& name) {
+    return simulate(make_plan(carom::parse_scene(text, name), carom::kernel::Isa::kScalar));
+}
+
+Record run(const std::string& name) {
+    const std::string path = std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml";
+    return simulate(make_plan(carom::read_scene(path), carom::kernel::Isa::kScalar));
+}
+
+Vec2 place(const Record& r, int ball, double t) {
+    return r.state_at(ball, t).position.head<2>();
+}
+
+/// Time of the first event of a type, or -1.
+double first(const Record& r, EventType type) {
+    for (const carom::Event& e : r.events) {
+        if (e.type == type) return e.time;
+    }
+    return -1.0;
+}
+
+/// How far the cue ball ends in front of where it was when the balls met, along the diagonal of the three
+/// straight-in shots.
+double advance_after_contact(const Record& r) {
+    const double hit = first(r, EventType::kBallBall);
+    EXPECT_GT(hit, 0.0);
+    return (place(r, 0, r.duration) - place(r, 0, hit)).dot(Vec2(-std::sqrt(0.5), std::sqrt(0.5)));
+}
+
+TEST(SceneShots, StopFollowDraw) {
+    const Record stop = run("stop"), follow = run("follow"), draw = run("draw");
+    EXPECT_NEAR(advance_after_contact(stop), 0.0, 1e-3);
+    EXPECT_NEAR(advance_after_contact(follow), 0.30, 0.01);
+    EXPECT_NEAR(advance_after_contact(draw), -0.57, 0.01);
+    for (const Record& r : {stop, follow, draw}) {
+        ASSERT_GE(r.tracks[1].pocket, 0);
+        EXPECT_EQ(r.table.pockets[static_cast<std::size_t>(r.tracks[1].pocket)].id, "p3");
+        EXPECT_EQ(r.tracks[0].pocket, -1);
+    }
+}
+
+double object_ball_angle(const Record& r) {
+    const Vec2 way = place(r, 1, r.duration) - place(r, 1, 0.0);
+    return std::atan2(way.y(), way.x()) * 180.0 / 3.14159265358979323846;
+}
+
+TEST(SceneShots, HalfBallThrow) {
+    EXPECT_NEAR(object_ball_angle(run("half_ball_throw")), 62.8, 0.05);
+    const std::string shot =
+        "[[ball]]\nposition = [0.635, 0.8]\nvelocity = [0, 0.5]\n[[ball]]\nid = \"1\"\nposition = [0.663575, "
+        "0.855]\n";
+    EXPECT_NEAR(object_ball_angle(run("[balls]\nmu_b = 0\n" + shot, "no throw")), 60.0, 1e-6);
+}
+
+TEST(SceneShots, ThreeCushionScores) {
+    const Record r = run("three_cushion");
+    std::vector<std::string> met;
+    for (const carom::Event& e : r.events) {
+        if (e.type == EventType::kBallCushion && e.a == 0) met.push_back(r.partner_id(e));
+        if (e.type == EventType::kBallBall && (e.a == 0 || e.b == 0))
+            met.push_back(r.tracks[static_cast<std::size_t>(e.a + e.b)].id);
+    }
+    EXPECT_EQ(met, (std::vector<std::string>{"yellow", "c4", "c3", "c1", "c2", "red"}));
+}
+
+TEST(SceneShots, NineBallBreakHitsTheOneFirst) {
+    const Record r = run("nine_ball_break");
+    for (const carom::Event& e : r.events) {
+        if (e.type != EventType::kBallBall && e.type != EventType::kBallCluster) continue;
+        EXPECT_EQ(r.tracks[static_cast<std::size_t>(e.a + e.b)].id, "1");
+        EXPECT_EQ(std::min(e.a, e.b), 0);
+        break;
+    }
+    EXPECT_EQ(r.stopped, carom::StopReason::kAtRest);
+}
+
+TEST(SceneShots, HelloMeetsTwice) {
+    const Record r = run("hello");
+    int meetings = 0;
+    for (const carom::Event& e : r.events) meetings += e.type == EventType::kBallBall;
+    EXPECT_EQ(meetings, 2);
+    EXPECT_EQ(r.duration, 4.0);
+}
+
+}  // namespace

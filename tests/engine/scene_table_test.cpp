@@ -1,0 +1,210 @@
+// The tables that come with the program.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "carom/engine/scene.h"
+
+namespace {
+
+using carom::make_table;
+using carom::Table;
+using carom::Vec2;
+
+Vec2 point(const nlohmann::json& p) {
+    return {p[0].get<double>(), p[1].get<double>()};
+}
+
+bool same(const Vec2& a, const Vec2& b) {
+    return (a - b).cwiseAbs().maxCoeff() <= 1e-15;
+}
+
+// tests/data/seven_foot_table.json holds the numbers (and where they are from). Its ids number the cushions
+// and jaws by their place; a straight cushion N and our c<N> are the same one.
+TEST(SevenFoot, AgreesWithTheReferenceTable) {
+    std::ifstream in(std::string(CAROM_TEST_DATA) + "/seven_foot_table.json");
+    const nlohmann::json want = nlohmann::json::parse(in);
+    const Table got = make_table("seven_foot");
+    EXPECT_EQ(got.width, want["width"].get<double>());
+    EXPECT_EQ(got.length, want["length"].get<double>());
+    ASSERT_EQ(got.cushions.size(), want["cushions"].size());
+    ASSERT_EQ(got.jaws.size(), want["jaws"].size());
+    ASSERT_EQ(got.pockets.size(), want["pockets"].size());
+    for (const auto& w : want["cushions"]) {
+        const auto index = static_cast<std::size_t>(std::stoi(w["id"].get<std::string>()) - 1);
+        ASSERT_LT(index, got.cushions.size());
+        const carom::Cushion& c = got.cushions[index];
+        const Vec2 p1 = point(w["p1"]), p2 = point(w["p2"]);
+        EXPECT_TRUE((same(c.from, p1) && same(c.to, p2)) || (same(c.from, p2) && same(c.to, p1)))
+            << c.id << " " << c.name << ": " << c.from.transpose() << " to " << c.to.transpose();
+        EXPECT_NEAR(c.height, w["height"].get<double>(), 1e-17);
+    }
+    for (const auto& w : want["jaws"]) {
+        int found = 0;
+        for (const carom::Jaw& j : got.jaws) {
+            if (!same(j.center, point(w["center"]))) continue;
+            ++found;
+            EXPECT_EQ(j.radius, w["radius"].get<double>());
+        }
+        EXPECT_EQ(found, 1) << w;
+    }
+    for (const auto& w : want["pockets"]) {
+        int found = 0;
+        for (const carom::Pocket& p : got.pockets) {
+            if (!same(p.center, point(w["center"]))) continue;
+            ++found;
+            EXPECT_EQ(p.radius, w["radius"].get<double>());
+            EXPECT_EQ(p.depth, w["depth"].get<double>());
+        }
+        EXPECT_EQ(found, 1) << w;
+    }
+}
+
+/// Smallest distance from a point to the ends of the cushions, of those whose index passes.
+double nearest_end(const Table& t, const Vec2& p) {
+    double best = 1e9;
+    for (const carom::Cushion& c : t.cushions) {
+        best = std::fmin(best, std::fmin((c.from - p).norm(), (c.to - p).norm()));
+    }
+    return best;
+}
+
+TEST(PocketTables, RailsAndFacingsMeetTheirJaws) {
+    for (const char* preset : {"seven_foot", "nine_foot"}) {
+        const Table t = make_table(preset);
+        ASSERT_EQ(t.cushions.size(), 18u);
+        ASSERT_EQ(t.jaws.size(), 12u);
+        ASSERT_EQ(t.pockets.size(), 6u);
+        for (const carom::Jaw& j : t.jaws) {
+            // Two cushion ends lie on each jaw circle: the rail's and the facing's.
+            int on_circle = 0;
+            for (const carom::Cushion& c : t.cushions) {
+                for (const Vec2& end : {c.from, c.to}) {
+                    if (std::abs((end - j.center).norm() - j.radius) < 1e-14) ++on_circle;
+                }
+            }
+            EXPECT_EQ(on_circle, 2) << preset << " " << j.id;
+        }
+    }
+}
+
+TEST(NineFoot, FacingsAreTangentToTheirJaws) {
+    const Table t = make_table("nine_foot");
+    int facings = 0;
+    for (const carom::Cushion& c : t.cushions) {
+        if (c.name.find("facing") == std::string::npos) continue;
+        ++facings;
+        const Vec2 along = (c.to - c.from).normalized();
+        double best = 1e9;
+        for (const carom::Jaw& j : t.jaws) {
+            if (std::abs((c.to - j.center).norm() - j.radius) < 1e-14) {
+                best = std::fmin(best, std::abs((c.to - j.center).dot(along)) / j.radius);
+            }
+        }
+        EXPECT_LT(best, 1e-12) << c.id << " " << c.name;
+    }
+    EXPECT_EQ(facings, 12);
+}
+
+TEST(NineFoot, MouthsAndAnglesAreThoseOfTheSpecification) {
+    const Table t = make_table("nine_foot");
+    EXPECT_EQ(t.width, 1.27);
+    EXPECT_EQ(t.length, 2.54);
+    // Where the line of a facing meets the nose lines x = 0 and y = 0.
+    const auto on_axis = [](const carom::Cushion& c, int axis) {
+        const double s = -c.from[axis] / (c.to[axis] - c.from[axis]);
+        return Vec2(c.from + s * (c.to - c.from));
+    };
+    const Vec2 a = on_axis(t.cushions[0], 1), b = on_axis(t.cushions[1], 0);
+    EXPECT_NEAR((a - b).norm(), 4.5625 * 0.0254, 1e-14);
+    const Vec2 c = on_axis(t.cushions[3], 0), d = on_axis(t.cushions[4], 0);
+    EXPECT_NEAR((c - d).norm(), 5.0625 * 0.0254, 1e-14);
+    const auto angle_to_rail = [](const carom::Cushion& facing, const Vec2& rail) {
+        return std::acos((facing.from - facing.to).normalized().dot(rail)) * 180.0 / 3.14159265358979323846;
+    };
+    EXPECT_NEAR(angle_to_rail(t.cushions[0], Vec2(1, 0)), 142.0, 1e-9);
+    EXPECT_NEAR(angle_to_rail(t.cushions[3], Vec2(0, -1)), 104.0, 1e-9);
+    const double nose = t.cushions[0].height / 0.05715;
+    EXPECT_GE(nose, 0.625);
+    EXPECT_LE(nose, 0.645);
+}
+
+TEST(PocketTables, AreTheirOwnMirrorImages) {
+    for (const char* preset : {"seven_foot", "nine_foot"}) {
+        const Table t = make_table(preset);
+        for (const carom::Cushion& c : t.cushions) {
+            for (const Vec2& end : {c.from, c.to}) {
+                EXPECT_LT(nearest_end(t, Vec2(t.width - end.x(), end.y())), 1e-15);
+                EXPECT_LT(nearest_end(t, Vec2(end.x(), t.length - end.y())), 1e-15);
+            }
+        }
+    }
+}
+
+TEST(PocketTables, OrderIsClockwiseFromTheOrigin) {
+    const Table t = make_table("nine_foot");
+    EXPECT_EQ(t.cushions[2].id, "c3");
+    EXPECT_EQ(t.cushions[2].name, "left rail, head half");
+    EXPECT_EQ(t.cushions[2].from.x(), 0.0);
+    EXPECT_EQ(t.cushions[8].name, "foot rail");
+    EXPECT_EQ(t.cushions[8].from.y(), 2.54);
+    EXPECT_EQ(t.cushions[17].name, "head rail");
+    EXPECT_EQ(t.cushions[17].from.y(), 0.0);
+    const double x[6] = {0, 0, 0, 1, 1, 1}, y[6] = {0, 0.5, 1, 1, 0.5, 0};
+    for (std::size_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(t.pockets[i].id, std::string("p").append(std::to_string(i + 1)));
+        EXPECT_NEAR(t.pockets[i].center.x() / t.width, x[i], 0.06) << i;
+        EXPECT_NEAR(t.pockets[i].center.y() / t.length, y[i], 0.06) << i;
+    }
+    std::set<std::string> ids, names;
+    for (const auto& c : t.cushions) ids.insert(c.id), names.insert(c.name);
+    for (const auto& j : t.jaws) ids.insert(j.id), names.insert(j.name);
+    for (const auto& p : t.pockets) ids.insert(p.id), names.insert(p.name);
+    EXPECT_EQ(ids.size(), 36u);
+    EXPECT_EQ(names.size(), 36u);
+}
+
+TEST(PocketTables, ABallFitsIntoEveryPocket) {
+    for (const char* preset : {"seven_foot", "nine_foot"}) {
+        const Table t = make_table(preset);
+        for (const carom::Pocket& p : t.pockets) {
+            // Straight from the middle of the table (or of its half) to where the pocket takes the ball.
+            const Vec2 middle(t.width / 2, std::abs(p.center.y() - t.length / 2) < 0.1 ? t.length / 2
+                                           : p.center.y() < 0                          ? t.width / 2
+                                                              : t.length - t.width / 2);
+            const Vec2 way = p.center - middle;
+            const double length = way.norm() - p.radius;
+            for (int i = 0; i <= 1000; ++i) {
+                const Vec2 at = middle + way.normalized() * (length * i / 1000.0);
+                for (const carom::Jaw& j : t.jaws)
+                    EXPECT_GT((at - j.center).norm(), j.radius + 0.028575) << preset << p.id;
+                EXPECT_GT(nearest_end(t, at), 0.028575) << preset << p.id;
+            }
+        }
+    }
+}
+
+TEST(CaromTable, HasFourRailsAndNothingElse) {
+    const Table t = make_table("carom");
+    EXPECT_EQ(t.width, 1.42);
+    EXPECT_EQ(t.length, 2.84);
+    ASSERT_EQ(t.cushions.size(), 4u);
+    EXPECT_TRUE(t.jaws.empty());
+    EXPECT_TRUE(t.pockets.empty());
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(t.cushions[i].id, std::string("c").append(std::to_string(i + 1)));
+        EXPECT_EQ(t.cushions[i].height, 0.037);
+        EXPECT_EQ(t.cushions[i].to, t.cushions[(i + 1) % 4].from);
+    }
+}
+
+TEST(Tables, UnknownPresetIsRefused) {
+    EXPECT_THROW(make_table("ten_foot"), std::invalid_argument);
+    EXPECT_THROW(make_table(""), std::invalid_argument);
+}
+
+}  // namespace

@@ -1,0 +1,34 @@
+// The bound on the 40 000 impacts that the project's claims name, both signs of the cloth slip, and more hard
+// ones.
+#include <gtest/gtest.h>
+
+#include "tolerance_bound.h"
+
+namespace carom::test {
+namespace {
+
+using kernel::ClothSlip;
+
+TEST(ToleranceSlow, FortyThousandConsistent) {
+    expect_bound(random_impacts(2026, 40000), {1e-3, 1e-6, 1e-10});
+}
+
+TEST(ToleranceSlow, FortyThousandAsPublished) {
+    std::vector<Impact> impacts = random_impacts(2027, 40000);
+    for (Impact& i : impacts) i.params.cloth_slip = ClothSlip::kAsPublished;
+    expect_bound(impacts, {1e-3, 1e-6, 1e-10});
+}
+
+TEST(ToleranceSlow, HardConsistent) {
+    SplitMix64 rng(2028);
+    std::vector<Impact> impacts;
+    for (int n = 0; n < 40000; ++n) {
+        const bool usual = n % 2 == 0;
+        impacts.push_back(
+            hard_random_impact(rng, usual ? 0.12 : 1.0, usual ? 0.4 : 1.0, ClothSlip::kConsistent));
+    }
+    expect_bound(impacts, {1e-3, 1e-6, 1e-10});
+}
+
+}  // namespace
+}  // namespace carom::test

@@ -1,0 +1,238 @@
+// What the pixels show, checked by statistics of the image.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "carom/render/renderer.h"
+#include "render/hand_made.h"
+
+namespace carom::render {
+namespace {
+
+using render_test::add_ball;
+using render_test::kR;
+
+Image draw(const Record& record, FrameSize size, double t = 0.0, Backend backend = Backend::kOsmesa) {
+    const Stage stage(record, "top", size);
+    Renderer renderer(backend);
+    DrawList list = stage.at(t);
+    list.table_samples = 4;
+    renderer.draw(list);
+    Image image;
+    renderer.read(image);
+    return image;
+}
+
+struct Color {
+    int r, g, b;
+};
+
+Color at(const Image& image, double x, double y) {
+    const std::uint8_t* p = image.pixel(static_cast<int>(x), static_cast<int>(y));
+    return {p[0], p[1], p[2]};
+}
+
+bool is_green(Color c) {
+    return c.g > c.r + 30 && c.g > c.b + 10 && c.g > 60;
+}
+
+// Share of a pixel that differs from the cloth towards white: how much of it a white ball covers.
+double whiteness(const Image& image, int x, int y) {
+    return image.pixel(x, y)[0] / 255.0;
+}
+
+TEST(Picture, ClothInTheMiddleWoodAroundRoomOutside) {
+    Record record = render_test::rectangle_record();
+    add_ball(record, "cue", 0.2, 0.3);
+    const Image image = draw(record, {640, 360});
+    EXPECT_TRUE(is_green(at(image, 320, 180)));
+    const Camera camera = Stage(record, "top", {640, 360}).at(0.0).camera;
+    const Vec2 rail = *camera.project({-0.09, 1.3, 0.045});
+    const Color wood = at(image, rail.x(), rail.y());
+    EXPECT_GT(wood.r, wood.g);
+    EXPECT_GT(wood.g, wood.b);
+    const Color corner = at(image, 1, 1);
+    EXPECT_LT(corner.r + corner.g + corner.b, 120);
+}
+
+TEST(Picture, LongSideAlongTheWideSideOfTheImage) {
+    Record record = render_test::rectangle_record(1.0, 2.0);
+    add_ball(record, "cue", 0.5, 0.2);
+    for (FrameSize size : {FrameSize{640, 360}, FrameSize{360, 640}, FrameSize{400, 400}}) {
+        const Camera camera = Stage(record, "top", size).at(0.0).camera;
+        const Vec2 a = *camera.project({0.5, 0.0, 0.0}), b = *camera.project({0.5, 2.0, 0.0});
+        const Vec2 along = (b - a).cwiseAbs();
+        if (size.width > size.height) {
+            EXPECT_GT(along.x(), 100.0 * along.y());
+        } else if (size.width < size.height) {
+            EXPECT_GT(along.y(), 100.0 * along.x());
+        }
+        // Everything is inside, and fills one direction.
+        for (double x : {-0.145, 1.145}) {
+            for (double y : {-0.145, 2.145}) {
+                const Vec2 corner = *camera.project({x, y, 0.04});
+                EXPECT_GT(corner.minCoeff(), 0.0);
+                EXPECT_LT(corner.x(), size.width);
+                EXPECT_LT(corner.y(), size.height);
+            }
+        }
+        EXPECT_GT(along.maxCoeff() * 2.29 / 2.0, 0.93 * (size.width == size.height ? 400 : 640));
+    }
+}
+
+// Centre of a white ball from its pixels, weighted by how white they are, against the camera's projection.
+TEST(Picture, BallAtTheRightPixel) {
+    for (FrameSize size : {FrameSize{640, 360}, FrameSize{1280, 720}, FrameSize{450, 800}}) {
+        for (const Vec2& place : {Vec2(0.5, 1.0), Vec2(0.1234, 0.3), Vec2(0.91, 1.877)}) {
+            Record with = render_test::rectangle_record(), without = with;
+            add_ball(with, "cue", place.x(), place.y());
+            add_ball(without, "cue", place.x() < 0.5 ? place.x() + 0.3 : place.x() - 0.3, place.y());
+            const Camera camera = Stage(with, "top", size).at(0.0).camera;
+            const Vec2 expected = *camera.project({place.x(), place.y(), kR});
+            const double radius = kR * camera.scale({place.x(), place.y(), kR});
+            const Image image = draw(with, size), empty = draw(without, size);
+            double weight = 0.0;
+            Vec2 sum(0.0, 0.0);
+            const int reach = static_cast<int>(radius) + 3;
+            for (int y = static_cast<int>(expected.y()) - reach; y <= static_cast<int>(expected.y()) + reach;
+                 ++y) {
+                for (int x = static_cast<int>(expected.x()) - reach;
+                     x <= static_cast<int>(expected.x()) + reach; ++x) {
+                    // Red tells ball from cloth; shadows only darken. 0.5 of the ball's red is saturation for
+                    // its middle.
+                    const double w =
+                        std::clamp((whiteness(image, x, y) - whiteness(empty, x, y)) / 0.3, 0.0, 1.0);
+                    weight += w;
+                    sum += w * Vec2(x + 0.5, y + 0.5);
+                }
+            }
+            ASSERT_GT(weight, 0.7 * 3.14 * radius * radius) << size.width << " " << place.transpose();
+            EXPECT_LT((sum / weight - expected).norm(), 0.5) << size.width << " " << place.transpose();
+        }
+    }
+}
+
+TEST(Picture, EdgesAreSmooth) {
+    Record record = render_test::rectangle_record();
+    add_ball(record, "cue", 0.5, 1.0);
+    const FrameSize size{1280, 720};
+    const Image image = draw(record, size);
+    const Camera camera = Stage(record, "top", size).at(0.0).camera;
+    const Vec2 center = *camera.project({0.5, 1.0, kR});
+    const double radius = kR * camera.scale({0.5, 1.0, kR});
+    // Around the rim, pixels between cloth and ball take many values, not two.
+    std::set<int> values;
+    int between = 0;
+    for (int i = 0; i < 360; ++i) {
+        const double angle = i * 3.14159265358979 / 180.0;
+        const int red =
+            at(image, center.x() + radius * std::cos(angle), center.y() + radius * std::sin(angle)).r;
+        values.insert(red);
+        if (red > 40 && red < 150) ++between;
+    }
+    EXPECT_GT(values.size(), 15U);
+    EXPECT_GT(between, 60);
+}
+
+Record spinning(const std::string& id, const Vec3& spin) {
+    Record record = render_test::rectangle_record();
+    Segment segment = render_test::still({0.5, 1.0, kR});
+    segment.w = spin;
+    segment.state = MotionState::kSliding;
+    add_ball(record, id, segment);
+    return record;
+}
+
+TEST(Picture, ABallThatTurnsChangesItsPixels) {
+    for (const char* id : {"cue", "3", "12", "red", "thing"}) {
+        const Record record = spinning(id, {3.0, 2.0, 1.0});
+        const Image before = draw(record, {640, 360}, 0.0), after = draw(record, {640, 360}, 0.4);
+        int changed = 0;
+        for (std::size_t i = 0; i < before.rgbx.size(); ++i) {
+            if (std::abs(before.rgbx[i] - after.rgbx[i]) > 25) ++changed;
+        }
+        EXPECT_GT(changed, 30) << id;
+    }
+}
+
+TEST(Picture, AFullTurnBringsThePixelsBack) {
+    const double pi = 3.14159265358979323846;
+    const Record record = spinning("12", {0.0, 0.0, 2.0 * pi});
+    const Image start = draw(record, {320, 180}, 0.0), quarter = draw(record, {320, 180}, 0.25);
+    const Image full = draw(record, {320, 180}, 1.0);
+    int worst = 0, moved = 0;
+    for (std::size_t i = 0; i < start.rgbx.size(); ++i) {
+        worst = std::max(worst, std::abs(start.rgbx[i] - full.rgbx[i]));
+        moved = std::max(moved, std::abs(start.rgbx[i] - quarter.rgbx[i]));
+    }
+    EXPECT_LE(worst, 2);
+    EXPECT_GT(moved, 60);
+}
+
+// A turn about +x (right-hand rule) carries the top towards -y, which is to the left of a lying image.
+TEST(Picture, BallsTurnTheRightWay) {
+    const Record record = spinning("8", {1.0, 0.0, 0.0});
+    const FrameSize size{1600, 900};
+    const Camera camera = Stage(record, "top", size).at(0.0).camera;
+    const Vec2 center = *camera.project({0.5, 1.0, kR});
+    const double radius = kR * camera.scale({0.5, 1.0, kR});
+    const auto spot = [&](double t) {
+        const Image image = draw(record, size, t);
+        double weight = 0.0;
+        Vec2 sum(0.0, 0.0);
+        for (int y = -20; y <= 20; ++y) {
+            for (int x = -20; x <= 20; ++x) {
+                const double w =
+                    at(image, center.x() + x, center.y() + y).r > 110 && std::hypot(x, y) < 0.95 * radius;
+                weight += w;
+                sum += w * Vec2(x, y);
+            }
+        }
+        return Vec2(sum / weight);
+    };
+    const Vec2 move = spot(0.6) - spot(0.0);
+    EXPECT_LT(move.x(), -0.3 * radius);
+    EXPECT_LT(std::abs(move.y()), 0.15 * radius);
+}
+
+TEST(Picture, BallsThrowSoftShadowsOnTheClothAlone) {
+    Record with = render_test::rectangle_record(), without = with;
+    add_ball(with, "cue", 0.5, 1.0);
+    add_ball(without, "cue", 0.5, 0.4);
+    const FrameSize size{1280, 720};
+    const Image shaded = draw(with, size), plain = draw(without, size);
+    const Camera camera = Stage(with, "top", size).at(0.0).camera;
+    const auto green = [&](const Image& image, double away) {
+        const Vec2 p = *camera.project({0.5 + away * kR, 1.0, 0.0});
+        return at(image, p.x(), p.y()).g;
+    };
+    EXPECT_LT(green(shaded, 1.25), 0.8 * green(plain, 1.25));
+    EXPECT_LT(green(shaded, 1.25), green(shaded, 2.2));
+    EXPECT_LT(green(shaded, 2.2), green(plain, 2.2));
+    EXPECT_EQ(green(shaded, 5.0), green(plain, 5.0));
+}
+
+TEST(Picture, TheSameListGivesTheSamePixels) {
+    Record record = render_test::rectangle_record();
+    add_ball(record, "1", 0.5, 1.0);
+    const Stage stage(record, "top", {320, 180});
+    Renderer renderer;
+    Image first, second;
+    const DrawList list = stage.at(0.0);
+    renderer.draw(list);
+    renderer.read(first);
+    renderer.draw(list);
+    renderer.read(second);
+    EXPECT_TRUE(render_test::same_pixels(first, second));
+    EXPECT_TRUE(render_test::same_pixels(first, [&] {
+        Renderer other;
+        Image image;
+        other.draw(list);
+        other.read(image);
+        return image;
+    }()));
+}
+
+}  // namespace
+}  // namespace carom::render

@@ -1,0 +1,195 @@
+// Runs a program the way a shell would, and keeps all it said. For tests of the command line.
+#pragma once
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace carom::test {
+
+/// A folder of one test's own, removed with all that is in it.
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::string pattern = (std::filesystem::temp_directory_path() / "carom_test_XXXXXX").string();
+        if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
+        path_ = pattern;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    std::string file(const std::string& name) const { return (path_ / name).string(); }
+    const std::filesystem::path& path() const { return path_; }
+
+    /// Writes a file and returns its path.
+    std::string write(const std::string& name, const std::string& text) const {
+        std::ofstream(path_ / name, std::ios::binary) << text;
+        return file(name);
+    }
+
+    /// Names of all files in it, in folders too.
+    std::vector<std::string> names() const {
+        std::vector<std::string> found;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path_)) {
+            if (entry.is_regular_file()) found.push_back(entry.path().filename().string());
+        }
+        return found;
+    }
+
+  private:
+    std::filesystem::path path_;
+};
+
+inline std::string read_file(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) throw std::runtime_error("cannot read " + path);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+struct ProcessOptions {
+    std::string input;                                             ///< for its standard input
+    std::vector<std::pair<std::string, std::string>> environment;  ///< set in addition
+    std::string folder;                                            ///< to run in; empty: as the test
+    std::string output_to;                                         ///< file or device for its standard output
+    bool close_output = false;  ///< read nothing: its standard output is a broken pipe
+};
+
+struct ProcessResult {
+    int status = -1;  ///< exit status; 128 + signal if a signal ended it
+    std::string out, err;
+};
+
+/// A child with its three standard streams held by us.
+class Process {
+  public:
+    Process(const std::vector<std::string>& arguments, const ProcessOptions& options) {
+        // A child that does not read its input must not end the test.
+        std::signal(SIGPIPE, SIG_IGN);
+        int in[2], out[2], err[2];
+        if (::pipe2(in, O_CLOEXEC) != 0 || ::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(err, O_CLOEXEC) != 0) {
+            throw std::runtime_error("pipe2 failed");
+        }
+        pid_ = ::fork();
+        if (pid_ < 0) throw std::runtime_error("fork failed");
+        if (pid_ == 0) become(arguments, options, in[0], out[1], err[1]);
+        ::close(in[0]);
+        ::close(out[1]);
+        ::close(err[1]);
+        to_ = in[1];
+        from_[0] = out[0];
+        from_[1] = err[0];
+        if (options.close_output) close_one(from_[0]);
+    }
+    ~Process() {
+        close_one(to_);
+        for (int& fd : from_) close_one(fd);
+        if (pid_ > 0) {
+            ::kill(pid_, SIGKILL);
+            ::waitpid(pid_, nullptr, 0);
+        }
+    }
+    Process(const Process&) = delete;
+    Process& operator=(const Process&) = delete;
+
+    void interrupt() const { ::kill(pid_, SIGINT); }
+
+    /// Sends text, and reads standard output up to the next line end; "" at its end or after `milliseconds`.
+    std::string ask(const std::string& text, int milliseconds) {
+        if (::write(to_, text.data(), text.size()) != static_cast<ssize_t>(text.size())) return "";
+        std::string line;
+        for (char c = 0; c != '\n'; line += c) {
+            pollfd ready{from_[0], POLLIN, 0};
+            if (::poll(&ready, 1, milliseconds) <= 0 || ::read(from_[0], &c, 1) != 1) return "";
+        }
+        return line;
+    }
+
+    /// Sends the input, reads all, waits.
+    ProcessResult finish(const std::string& input) {
+        ProcessResult result;
+        std::string* const texts[2] = {&result.out, &result.err};
+        std::size_t sent = 0;
+        if (input.empty()) close_one(to_);
+        while (from_[0] >= 0 || from_[1] >= 0) {
+            pollfd ready[3] = {{from_[0], POLLIN, 0}, {from_[1], POLLIN, 0}, {to_, POLLOUT, 0}};
+            if (::poll(ready, 3, 120000) <= 0) break;  // two minutes of silence: ended by the destructor
+            for (int i = 0; i < 2; ++i) {
+                if (ready[i].revents != 0) read_some(from_[i], *texts[i]);
+            }
+            if (to_ >= 0 && ready[2].revents != 0) {
+                // Small enough that a pipe that is ready takes it at once.
+                const std::size_t count = std::min<std::size_t>(input.size() - sent, 4096);
+                const ssize_t done = ::write(to_, input.data() + sent, count);
+                if (done > 0) sent += static_cast<std::size_t>(done);
+                if (done <= 0 || sent == input.size()) close_one(to_);
+            }
+        }
+        if (from_[0] >= 0 || from_[1] >= 0) ::kill(pid_, SIGKILL);
+        int status = 0;
+        ::waitpid(pid_, &status, 0);
+        pid_ = -1;
+        result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        return result;
+    }
+
+  private:
+    [[noreturn]] static void become(const std::vector<std::string>& arguments, const ProcessOptions& options,
+                                    int in, int out, int err) {
+        std::signal(SIGPIPE, SIG_DFL);
+        std::signal(SIGINT, SIG_DFL);
+        if (!options.output_to.empty()) {
+            out = ::open(options.output_to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+        }
+        ::dup2(in, 0);
+        ::dup2(out, 1);
+        ::dup2(err, 2);
+        for (const auto& [key, value] : options.environment) ::setenv(key.c_str(), value.c_str(), 1);
+        if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(126);
+        std::vector<char*> argv;
+        for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+        argv.push_back(nullptr);
+        ::execvp(argv[0], argv.data());
+        ::_exit(127);
+    }
+
+    static void close_one(int& fd) {
+        if (fd >= 0) ::close(fd);
+        fd = -1;
+    }
+
+    static void read_some(int& fd, std::string& text) {
+        char buffer[4096];
+        const ssize_t count = ::read(fd, buffer, sizeof buffer);
+        if (count > 0)
+            text.append(buffer, static_cast<std::size_t>(count));
+        else
+            close_one(fd);
+    }
+
+    pid_t pid_ = -1;
+    int to_ = -1;
+    int from_[2] = {-1, -1};
+};
+
+inline ProcessResult run_process(const std::vector<std::string>& arguments,
+                                 const ProcessOptions& options = {}) {
+    return Process(arguments, options).finish(options.input);
+}
+
+}  // namespace carom::test

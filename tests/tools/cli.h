@@ -1,0 +1,58 @@
+// What the tests of the command line share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "support/process.h"
+
+namespace carom::test {
+
+/// Runs the built program.
+inline ProcessResult carom(std::vector<std::string> arguments, ProcessOptions options = {}) {
+    arguments.insert(arguments.begin(), CAROM_PROGRAM);
+    // The tests decide about the instruction set, not the shell they are started from.
+    options.environment.insert(options.environment.begin(), {"CAROM_ISA", ""});
+    return run_process(arguments, options);
+}
+
+inline ProcessResult carom_isa(const std::string& isa, const std::vector<std::string>& arguments) {
+    ProcessOptions options;
+    options.environment = {{"CAROM_ISA", isa}};
+    return carom(arguments, options);
+}
+
+/// A shot with ball-ball, cushion and pocket events that takes milliseconds.
+inline constexpr char kSmallScene[] = R"(# a cut shot with side
+[table]
+preset = "nine_foot"
+[[ball]]
+id = "cue"
+position = [0.635, 0.50]
+[[ball]]
+id = "1"
+position = [0.66, 1.9]
+[[ball]]
+id = "ball 2"
+position = [0.60, 2.1]
+[cue]
+ball = "cue"
+speed = 4.0
+aim_deg = 90.0
+offset = [0.2, 0.1]
+[render]
+fps = 60
+size = [320, 180]
+)";
+
+inline std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::size_t start = 0;
+    for (std::size_t end; (end = text.find('\n', start)) != std::string::npos; start = end + 1) {
+        lines.push_back(text.substr(start, end - start));
+    }
+    if (start < text.size()) lines.push_back(text.substr(start));
+    return lines;
+}
+
+}  // namespace carom::test

@@ -1,0 +1,177 @@
+// carom render and carom margin: numbered whole frames, an interrupt that leaves no half, the margin's JSON.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "carom/engine/record.h"
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class CliRender : public ::testing::Test {
+  protected:
+    std::string pattern() const { return folder_.file("frames/%05d.png"); }
+    std::string frame(int k) const {
+        char name[32];
+        std::snprintf(name, sizeof name, "frames/%05d.png", k);
+        return folder_.file(name);
+    }
+
+    TemporaryFolder folder_;
+    std::string scene_ = folder_.write("s.toml", kSmallScene);
+};
+
+/// Width and height that a PNG file states; {0, 0} if it is none, or not whole.
+std::pair<unsigned, unsigned> png_size(const std::string& path) {
+    const std::string bytes = read_file(path);
+    const std::string end("IEND\xAE\x42\x60\x82", 8);
+    if (bytes.substr(0, 8) != "\x89PNG\r\n\x1a\n" || bytes.size() < 45) return {0, 0};
+    if (bytes.substr(bytes.size() - 8) != end) return {0, 0};
+    const auto number = [&bytes](std::size_t at) {
+        unsigned value = 0;
+        for (std::size_t i = at; i < at + 4; ++i) value = 256 * value + static_cast<unsigned char>(bytes[i]);
+        return value;
+    };
+    return {number(16), number(20)};
+}
+
+TEST_F(CliRender, FramesAreNumberedFromZeroAndWhole) {
+    const ProcessResult result =
+        carom({"render", scene_, "-o", pattern(), "--fps", "10", "--from", "0.5", "--to", "0.8"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    EXPECT_EQ(result.out, "4 frames, 320x180 at 10 fps: " + pattern() +
+                              "\nto make a film of them: ffmpeg -framerate 10 -i " + pattern() +
+                              " -pix_fmt yuv420p shot.mp4\n");
+    for (int k = 0; k < 4; ++k) EXPECT_EQ(png_size(frame(k)), std::make_pair(320u, 180u)) << k;
+    EXPECT_EQ(folder_.names().size(), 5u);
+    EXPECT_NE(read_file(frame(0)), read_file(frame(3)));
+}
+
+TEST_F(CliRender, ARecordGivesTheSameFramesAsItsScene) {
+    ASSERT_EQ(carom({"simulate", scene_, "-o", folder_.file("r.json")}).status, 0);
+    const std::vector<std::string> options = {"--fps", "10", "--to", "0.3", "--size", "160x90"};
+    for (const auto& [input, name] : {std::pair{scene_, "a"}, {folder_.file("r.json"), "b"}}) {
+        std::vector<std::string> arguments = {"render", input, "-o",
+                                              folder_.file(std::string(name) + "%d.png")};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const ProcessResult result = carom(arguments);
+        ASSERT_EQ(result.status, 0) << result.err;
+    }
+    for (const char* k : {"0", "1", "2", "3"}) {
+        EXPECT_EQ(read_file(folder_.file(std::string("a") + k + ".png")),
+                  read_file(folder_.file(std::string("b") + k + ".png")));
+    }
+}
+
+TEST_F(CliRender, OneFrameAndOneInstant) {
+    ProcessResult result = carom({"render", scene_, "-o", pattern(), "--fps", "10", "--frame", "7"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.out, "1 frame: " + frame(7) + "\n");
+    result = carom({"render", scene_, "-o", pattern(), "--at", "0.7"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.out, "1 frame: " + frame(0) + "\n");
+    EXPECT_EQ(folder_.names().size(), 3u);
+    EXPECT_EQ(read_file(frame(0)), read_file(frame(7)));  // 7 / 10 s is 0.7 s
+}
+
+TEST_F(CliRender, AFolderThatCannotBeMadeExits1) {
+    const ProcessResult result = carom({"render", scene_, "-o", folder_.file("a/b/%d.png"), "--to", "0"});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+}
+
+TEST_F(CliRender, AnInterruptKeepsFinishedFramesAndNothingElse) {
+    // Large and slow enough that the run is far from its end after the second frame.
+    Process process({CAROM_PROGRAM, "render", scene_, "-o", pattern(), "--fps", "2000", "--size", "1280x720"},
+                    {});
+    for (int wait = 0; wait < 3000 && !std::filesystem::exists(frame(2)); ++wait) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ASSERT_TRUE(std::filesystem::exists(frame(2)));
+    process.interrupt();
+    const ProcessResult result = process.finish("");
+    EXPECT_EQ(result.status, 130);
+    EXPECT_EQ(result.out, "");
+    int frames = 0;
+    for (const std::string& name : folder_.names()) {
+        if (name == "s.toml") continue;
+        EXPECT_EQ(name.substr(name.size() - 4), ".png") << name;
+        ++frames;
+    }
+    EXPECT_GE(frames, 3);
+    EXPECT_LT(frames, 2000);
+    for (int k = 0; k < frames; ++k) EXPECT_EQ(png_size(frame(k)), std::make_pair(1280u, 720u)) << k;
+}
+
+void expect_margin_json(const Json& json, bool rendered) {
+    ASSERT_EQ(json.size(), 6u);
+    EXPECT_EQ(json.at("fps"), 20.0);
+    EXPECT_EQ(json.at("budget_ms"), 50.0);
+    const Json& stages = json.at("stages");
+    ASSERT_EQ(stages.size(), 5u);
+    for (const char* stage : {"simulate", "kernel", "draw", "readback", "encode"}) {
+        const bool measured = rendered || std::string(stage) == "simulate" || std::string(stage) == "kernel";
+        if (!measured) {
+            EXPECT_TRUE(stages.at(stage).is_null()) << stage;
+            continue;
+        }
+        const Json& values = stages.at(stage);
+        ASSERT_EQ(values.size(), 4u) << stage;
+        EXPECT_LE(values.at("p50").get<double>(), values.at("p95").get<double>());
+        EXPECT_LE(values.at("p95").get<double>(), values.at("p99").get<double>());
+        EXPECT_LE(values.at("p99").get<double>(), values.at("max").get<double>());
+        EXPECT_GT(values.at("max").get<double>(), 0.0) << stage;
+    }
+    EXPECT_LE(stages["kernel"]["max"].get<double>(), stages["simulate"]["max"].get<double>());
+    const Json& worst = json.at("worst");
+    ASSERT_EQ(worst.size(), 4u);
+    EXPECT_EQ(worst.at("time").get<double>(), worst.at("frame").get<double>() / 20.0);
+    EXPECT_GT(worst.at("ms").get<double>(), 0.0);
+    for (const Json& event : worst.at("events")) EXPECT_TRUE(event.at("type").is_string());
+}
+
+TEST_F(CliRender, MarginJsonIsTheDesigns) {
+    const ProcessResult result =
+        carom({"margin", scene_, "--fps", "20", "--json", "--repeat", "2", "--csv", folder_.file("m.csv")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const Json json = Json::parse(result.out);
+    expect_margin_json(json, true);
+    const std::vector<std::string> lines = lines_of(read_file(folder_.file("m.csv")));
+    EXPECT_EQ(lines.at(0),
+              "frame,time,events,simulate_ms,kernel_ms,draw_ms,readback_ms,encode_ms,total_ms,missed");
+    EXPECT_EQ(lines.size(), json.at("frames").get<std::size_t>() + 1);
+}
+
+TEST_F(CliRender, MarginWithoutRenderingCountsEveryEventOnce) {
+    const ProcessResult result =
+        carom({"margin", scene_, "--fps", "20", "--json", "--no-render", "--csv", folder_.file("m.csv")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    expect_margin_json(Json::parse(result.out), false);
+    const std::vector<std::string> lines = lines_of(read_file(folder_.file("m.csv")));
+    EXPECT_EQ(lines.at(0), "frame,time,events,simulate_ms,kernel_ms,total_ms,missed");
+    int events = 0;
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+        int here = -1;
+        ASSERT_EQ(std::sscanf(lines[i].c_str(), "%*d,%*f,%d,", &here), 1) << lines[i];
+        events += here;
+    }
+    EXPECT_EQ(events, Json::parse(carom({"simulate", scene_, "--json"}).out).at("events").get<int>());
+}
+
+TEST_F(CliRender, MarginForPeople) {
+    const ProcessResult result = carom({"margin", scene_, "--size", "160x90"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    for (const char* part : {" missed\n", "\n  simulate ", "\n  kernel ", "\n  draw ", "\n  readback ",
+                             "\n  encode ", "\n  all ", "kernel is a part of simulate", "worst frame: "}) {
+        EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
+    }
+}
+
+}  // namespace
+}  // namespace carom::test

@@ -1,0 +1,52 @@
+// A scene malformed in each of ten ways prints its exact message and exits 2.
+#include <gtest/gtest.h>
+
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+struct Malformed {
+    const char* text;
+    const char* message;  ///< behind "carom: FILE"
+};
+
+const Malformed kScenes[] = {
+    {"[[ball]]\nid = \"cue\"\ncolor = \"white\"\n",
+     ":3:1: unknown key \"color\" in [ball]; the keys there are id, position, velocity, spin"},
+    {"[[ball]]\nposition = [0.5, \"x\"]\n", ":2:18: ball.position[1] must be a number, not a string"},
+    {"[balls]\nmass = -0.17\n[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n",
+     ":2:8: balls.mass = -0.17 is out of range; it must be at least 1e-09 and at most 1000000 kg"},
+    {"[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n[[ball]]\nid = \"1\"\nposition = [0.5, 0.55]\n",
+     ":4:1: balls \"cue\" and \"1\" overlap by 0.00715 m; move one of them"},
+    {"[[ball]]\nid = \"a\"\nposition = [0.5, 0.5]\n[[ball]]\nid = \"a\"\nposition = [0.5, 1.5]\n",
+     ":4:1: ball id \"a\" is already used in line 1; give each ball an id of its own"},
+    {"[[ball]]\nid = \"one\"\nposition = [0.5, 0.5]\n[cue]\nball = \"cue\"\nspeed = 1\n",
+     ":5:8: cue.ball: there is no ball \"cue\"; add a [[ball]] with this id or name another"},
+    {"[physics]\ncushion = \"stronge\"\n[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n",
+     ":2:11: physics.cushion \"stronge\" is not there yet; use han_2005 or smooth"},
+    {"[table]\npreset = \"nine_foot\"\n", ": there is no ball; add a [[ball]] or a [rack]"},
+    {"[render]\nfps = 0\n[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n",
+     ":2:7: render.fps = 0 is out of range; it must be more than 0 and at most 100000 frames per second"},
+    {"[table]\npreset = \"nine_foot\"\npreset = \"carom\"\n",
+     ":3:10: this key or section is there already; keep one of the two (Error while parsing key-value pair: "
+     "cannot "
+     "redefine existing string 'preset')"},
+};
+
+TEST(CliScene, TenMalformedScenesPrintTenExactMessages) {
+    ASSERT_EQ(std::size(kScenes), 10u);
+    const TemporaryFolder folder;
+    for (const Malformed& scene : kScenes) {
+        const std::string path = folder.write("bad.toml", scene.text);
+        for (const char* command : {"simulate", "render", "margin", "check"}) {
+            const ProcessResult result = carom({command, path});
+            EXPECT_EQ(result.status, 2) << scene.text;
+            EXPECT_EQ(result.out, "") << scene.text;
+            EXPECT_EQ(result.err, "carom: " + path + scene.message + "\n") << scene.text;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace carom::test

@@ -1,0 +1,186 @@
+// carom simulate: one hash, exact headers, the JSON of the design, files that are whole or absent.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "carom/engine/record.h"
+#include "carom/kernel/isa.h"
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class CliSimulate : public ::testing::Test {
+  protected:
+    ProcessResult run(std::vector<std::string> options = {}) {
+        options.insert(options.begin(), {"simulate", scene_});
+        return carom(options);
+    }
+
+    TemporaryFolder folder_;
+    std::string scene_ = folder_.write("s.toml", kSmallScene);
+};
+
+TEST_F(CliSimulate, HashAloneIsOneLineTheSameEveryTimeAndOnEveryInstructionSet) {
+    const ProcessResult first = run({"--hash"});
+    ASSERT_EQ(first.status, 0) << first.err;
+    ASSERT_EQ(first.out.size(), 17u) << first.out;
+    EXPECT_EQ(first.out.find_first_not_of("0123456789abcdef"), 16u);
+    EXPECT_EQ(first.err, "");
+    EXPECT_EQ(run({"--hash"}).out, first.out);
+    for (const kernel::Isa isa : {kernel::Isa::kScalar, kernel::Isa::kV3, kernel::Isa::kV4}) {
+        if (!kernel::available(isa)) continue;
+        EXPECT_EQ(carom_isa(kernel::name(isa), {"simulate", scene_, "--hash"}).out, first.out)
+            << kernel::name(isa);
+    }
+    // Measuring changes nothing, and a file does not either.
+    EXPECT_EQ(lines_of(run({"--hash", "--profile"}).out).at(0) + "\n", first.out);
+    EXPECT_EQ(run({"--hash", "-o", folder_.file("r.json")}).out, first.out);
+    EXPECT_EQ(read_record(folder_.file("r.json")).hash() + "\n", first.out);
+}
+
+TEST_F(CliSimulate, AnotherSceneHasAnotherHash) {
+    std::string text = kSmallScene;
+    text.replace(text.find("speed = 4.0"), 11, "speed = 4.1");
+    const std::string other = folder_.write("other.toml", text);
+    EXPECT_NE(carom({"simulate", other, "--hash"}).out, run({"--hash"}).out);
+}
+
+TEST_F(CliSimulate, JsonIsTheDesigns) {
+    const ProcessResult result = run({"--json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const Json json = Json::parse(result.out);
+    ASSERT_EQ(json.size(), 4u);
+    EXPECT_GT(json.at("duration").get<double>(), 1.0);
+    EXPECT_GT(json.at("events").get<int>(), 5);
+    EXPECT_EQ(json.at("hash").get<std::string>() + "\n", run({"--hash"}).out);
+    ASSERT_EQ(json.at("balls").size(), 3u);
+    for (const Json& ball : json.at("balls")) {
+        ASSERT_EQ(ball.size(), 6u);
+        const std::string state = ball.at("state");
+        EXPECT_TRUE(state == "stationary" || state == "pocketed") << state;
+        EXPECT_EQ(ball.at("pocket").is_string(), state == "pocketed");
+        for (const char* key : {"position", "velocity", "spin"}) {
+            ASSERT_EQ(ball.at(key).size(), 3u);
+            for (const Json& number : ball.at(key)) EXPECT_TRUE(number.is_number());
+        }
+    }
+    EXPECT_EQ(json.at("balls")[2].at("id"), "ball 2");
+}
+
+TEST_F(CliSimulate, JsonNumbersReadBackToTheBitsOfTheRecord) {
+    const Json json = Json::parse(run({"--json", "-o", folder_.file("r.json")}).out);
+    const Record record = read_record(folder_.file("r.json"));
+    EXPECT_EQ(json.at("duration").get<double>(), record.duration);
+    EXPECT_EQ(json.at("events").get<std::size_t>(), record.events.size());
+    for (std::size_t i = 0; i < record.tracks.size(); ++i) {
+        const BallState s = record.state_at(static_cast<int>(i), record.duration);
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_EQ(json.at("balls")[i].at("position")[k].get<double>(), s.position[static_cast<int>(k)]);
+            EXPECT_EQ(json.at("balls")[i].at("spin")[k].get<double>(), s.spin[static_cast<int>(k)]);
+        }
+    }
+}
+
+TEST_F(CliSimulate, SummarySaysWhatHappened) {
+    const ProcessResult result = run();
+    ASSERT_EQ(result.status, 0) << result.err;
+    for (const char* part :
+         {": 3 balls, ", " events; everything is at rest", "\n  cue_strike ", "\n  ball_ball ",
+          "\npocketed\n", "\nballs at the end (m)\n", "\n  cue ", "\n  1 "}) {
+        EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
+    }
+}
+
+TEST_F(CliSimulate, UntilStops) {
+    const Json json = Json::parse(run({"--json", "--until", "0.125"}).out);
+    EXPECT_EQ(json.at("duration").get<double>(), 0.125);
+    EXPECT_EQ(json.at("balls")[0].at("state"), "sliding");
+    EXPECT_NE(run({"--until", "0.125"}).out.find("stopped at its time"), std::string::npos);
+}
+
+TEST_F(CliSimulate, EventsFile) {
+    ASSERT_EQ(run({"--events", folder_.file("e.csv"), "-o", folder_.file("r.json")}).status, 0);
+    const std::vector<std::string> lines = lines_of(read_file(folder_.file("e.csv")));
+    const Record record = read_record(folder_.file("r.json"));
+    ASSERT_EQ(lines.size(), record.events.size() + 1);
+    EXPECT_EQ(lines[0], "time,type,a,b");
+    EXPECT_EQ(lines[1], "0,cue_strike,cue,");
+    for (std::size_t i = 0; i < record.events.size(); ++i) {
+        EXPECT_EQ(std::stod(lines[i + 1]), record.events[i].time);
+    }
+}
+
+TEST_F(CliSimulate, ProfileAddsColumnsAndAReport) {
+    const ProcessResult result = run({"--profile", "--events", folder_.file("e.csv")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("\ncost by kind of event"), std::string::npos);
+    EXPECT_NE(result.out.find("\nkernel by ball-ball event"), std::string::npos);
+    const std::vector<std::string> lines = lines_of(read_file(folder_.file("e.csv")));
+    EXPECT_EQ(lines.at(0), "time,type,a,b,detect_ns,resolve_ns,kernel_ns,steps,method");
+    int marches = 0;
+    for (const std::string& line : lines) {
+        if (line.find(",ball_ball,") == std::string::npos) continue;
+        ++marches;
+        EXPECT_EQ(line.substr(line.rfind(',')), ",march") << line;
+    }
+    EXPECT_GT(marches, 0);
+    const Json json = Json::parse(run({"--profile", "--json"}).out);
+    EXPECT_TRUE(json.at("profile").at("kinds").is_array());
+}
+
+TEST_F(CliSimulate, SamplesFile) {
+    ASSERT_EQ(
+        run({"--samples", folder_.file("s.csv"), "--sample-dt", "0.1", "-o", folder_.file("r.json")}).status,
+        0);
+    const std::vector<std::string> lines = lines_of(read_file(folder_.file("s.csv")));
+    const Record record = read_record(folder_.file("r.json"));
+    EXPECT_EQ(lines.at(0), "time,ball,state,x,y,z,vx,vy,vz,wx,wy,wz");
+    std::size_t times = 0;
+    while (static_cast<double>(times) * 0.1 <= record.duration) ++times;
+    ASSERT_EQ(lines.size(), 1 + 3 * times);
+    // Row k of the cue ball holds the bits of state_at(k dt).
+    for (std::size_t k = 0; k < times; ++k) {
+        const double time = static_cast<double>(k) * 0.1;
+        const BallState s = record.state_at(0, time);
+        double x = NAN, y = NAN, row_time = NAN;
+        char state[32];
+        ASSERT_EQ(std::sscanf(lines[1 + 3 * k].c_str(), "%lf,cue,%31[a-z],%lf,%lf", &row_time, state, &x, &y),
+                  4);
+        EXPECT_EQ(row_time, time);
+        EXPECT_EQ(x, s.position.x());
+        EXPECT_EQ(y, s.position.y());
+        EXPECT_STREQ(state, name(s.state));
+    }
+}
+
+TEST_F(CliSimulate, AFileThatCannotBeWrittenExits1AndLeavesNothing) {
+    const std::string nowhere = folder_.file("none/file");
+    for (const char* option : {"-o", "--events", "--samples"}) {
+        std::vector<std::string> arguments = {option, nowhere};
+        if (std::string(option) == "--samples") arguments.insert(arguments.end(), {"--sample-dt", "1"});
+        const ProcessResult result = run(arguments);
+        EXPECT_EQ(result.status, 1) << option;
+        EXPECT_EQ(result.out, "") << option;
+        EXPECT_EQ(result.err, "carom: " + nowhere + ": cannot open for writing: No such file or directory\n");
+    }
+    const ProcessResult full = run({"-o", "/dev/full"});
+    EXPECT_EQ(full.status, 1);
+    EXPECT_EQ(full.err, "carom: /dev/full: cannot write: No space left on device\n");
+    EXPECT_EQ(folder_.names(), std::vector<std::string>{"s.toml"});
+}
+
+TEST_F(CliSimulate, FilesAreReplacedWholeThroughLinksToo) {
+    folder_.write("real.json", "old");
+    std::filesystem::create_symlink(folder_.file("real.json"), folder_.file("link.json"));
+    ASSERT_EQ(run({"-o", folder_.file("link.json")}).status, 0);
+    EXPECT_TRUE(std::filesystem::is_symlink(folder_.file("link.json")));
+    EXPECT_NO_THROW(read_record(folder_.file("real.json")));
+    for (const std::string& name : folder_.names()) EXPECT_EQ(name.find(".tmp"), std::string::npos) << name;
+}
+
+}  // namespace
+}  // namespace carom::test

@@ -1,0 +1,196 @@
+// carom impact, line by line: right answers for right lines, an error and no crash for all others.
+#include "impact_line.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "carom/engine/cushion.h"
+#include "support/random_impacts.h"
+
+namespace carom::tools {
+namespace {
+
+using Json = nlohmann::json;
+
+ImpactSettings settings(ImpactSettings::Method method = ImpactSettings::Method::kMathavan) {
+    ImpactSettings s;
+    s.method = method;
+    s.march = kernel::march_function(kernel::Isa::kScalar);
+    return s;
+}
+
+Json ball_ball_line() {
+    return {{"kind", "ball_ball"},
+            {"params",
+             {{"R", 0.028575}, {"m", 0.17}, {"mu_s1", 0.2}, {"mu_s2", 0.2}, {"mu_b", 0.05}, {"e_b", 0.95}}},
+            {"r1", {0.0, 0.0, 0.028575}},
+            {"v1", {1, 0.25, 0}},
+            {"w1", {0.0, 3.0, 4.0}},
+            {"r2", {0.05715, 0.0, 0.028575}},
+            {"v2", {0.0, 0.0, 0.0}},
+            {"w2", {0.0, 0.0, 0.0}}};
+}
+
+Json cushion_line() {
+    return {{"kind", "cushion"},
+            {"model", "han_2005"},
+            {"params",
+             {{"R", 0.028575}, {"m", 0.17}, {"mu_s", 0.2}, {"e_c", 0.85}, {"f_c", 0.2}, {"height", 0.0365}}},
+            {"normal", {-1.0, 0.0}},
+            {"v", {1.0, 0.5, 0.0}},
+            {"w", {0.0, 2.0, 3.0}}};
+}
+
+TEST(ImpactLine, BallBallIsTheKernelsResult) {
+    const ImpactAnswer answer = answer_impact(ball_ball_line().dump(), settings());
+    ASSERT_TRUE(answer.ok) << answer.json;
+    const Json out = Json::parse(answer.json);
+    kernel::Ball ball1{{0.0, 0.0, 0.028575}, {1.0, 0.25, 0.0}, {0.0, 3.0, 4.0}};
+    kernel::Ball ball2{{0.05715, 0.0, 0.028575}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    kernel::ImpactParams p{0.028575, 0.17, 0.2, 0.2, 0.05, 0.95};
+    kernel::ImpactResult expected{};
+    kernel::march_function(kernel::Isa::kScalar)(ball1, ball2, p, 1000, expected);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(out["v1"][i].get<double>(), expected.v1[i]);
+        EXPECT_EQ(out["w1"][i].get<double>(), expected.w1[i]);
+        EXPECT_EQ(out["v2"][i].get<double>(), expected.v2[i]);
+        EXPECT_EQ(out["w2"][i].get<double>(), expected.w2[i]);
+    }
+    EXPECT_EQ(out["steps"], expected.steps);
+    EXPECT_GT(out["ns"].get<double>(), 0.0);
+    EXPECT_EQ(out.size(), 6u);
+}
+
+TEST(ImpactLine, ElasticExchangesTheNormalVelocities) {
+    const Json out =
+        Json::parse(answer_impact(ball_ball_line().dump(), settings(ImpactSettings::Method::kElastic)).json);
+    EXPECT_EQ(out["v1"], (Json{0.0, 0.25, 0.0}));
+    EXPECT_EQ(out["v2"], (Json{1.0, 0.0, 0.0}));
+    EXPECT_EQ(out["w1"], (Json{0.0, 3.0, 4.0}));
+}
+
+TEST(ImpactLine, CushionIsTheEnginesResult) {
+    const ImpactAnswer answer = answer_impact(cushion_line().dump(), settings());
+    ASSERT_TRUE(answer.ok) << answer.json;
+    Vec3 v(1.0, 0.5, 0.0), w(0.0, 2.0, 3.0);
+    resolve_cushion(CushionModel::kHan2005, {0.028575, 0.17, 0.2, 0.85, 0.2, 0.0365}, Vec2(-1.0, 0.0), v, w);
+    const Json out = Json::parse(answer.json);
+    ASSERT_EQ(out.size(), 2u);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(out["v"][static_cast<std::size_t>(i)].get<double>(), v[i]);
+        EXPECT_EQ(out["w"][static_cast<std::size_t>(i)].get<double>(), w[i]);
+    }
+    EXPECT_LT(v.x(), 0.0);
+}
+
+TEST(ImpactLine, BallsThatDoNotApproachLeaveAsTheyCame) {
+    Json line = ball_ball_line();
+    line["v1"] = {-1.0, 0.0, 0.0};
+    const ImpactAnswer answer = answer_impact(line.dump(), settings());
+    ASSERT_TRUE(answer.ok) << answer.json;
+    EXPECT_EQ(Json::parse(answer.json)["v1"], line["v1"]);
+    EXPECT_EQ(Json::parse(answer.json)["steps"], 0);
+}
+
+TEST(ImpactLine, HandsTheIdBack) {
+    Json line = cushion_line();
+    line["id"] = {"any", 1};
+    EXPECT_EQ(Json::parse(answer_impact(line.dump(), settings()).json)["id"], line["id"]);
+}
+
+/// The error of a line, or "no error".
+std::string error_of(const std::string& line) {
+    const ImpactAnswer answer = answer_impact(line, settings());
+    const Json json = Json::parse(answer.json);
+    if (answer.ok) return "no error";
+    EXPECT_EQ(json.size(), 1u);
+    EXPECT_EQ(answer.json.find('\n'), std::string::npos);
+    return json["error"];
+}
+
+std::string changed(Json line, const std::string& pointer, const Json& value) {
+    line[Json::json_pointer(pointer)] = value;
+    return line.dump();
+}
+
+TEST(ImpactLine, SaysWhatIsWrong) {
+    EXPECT_EQ(error_of(""), "this is not JSON (at byte 1)");
+    EXPECT_EQ(error_of("[1, 2]"), "expected an object");
+    EXPECT_EQ(error_of("{}"), "the key \"kind\" is missing");
+    EXPECT_EQ(error_of("{\"kind\": 3}"), "\"kind\": expected \"ball_ball\" or \"cushion\"");
+    const Json line = ball_ball_line();
+    EXPECT_EQ(error_of(changed(line, "/params", 1)), "\"params\": expected an object");
+    EXPECT_EQ(error_of(changed(line, "/params/R", 0)), "\"R\": expected a number greater than 0");
+    EXPECT_EQ(error_of(changed(line, "/params/R", true)), "\"R\": expected a number");
+    EXPECT_EQ(error_of(changed(line, "/params/mu_b", -0.1)), "\"mu_b\": expected a number at least 0");
+    EXPECT_EQ(error_of(changed(line, "/params/e_b", 1.5)), "\"e_b\": expected a number from 0 to 1");
+    EXPECT_EQ(error_of(changed(line, "/params/e_n", 1)), "unknown key \"e_n\"");
+    EXPECT_EQ(error_of(changed(line, "/v1", {1, 2})), "\"v1\": expected a list of 3 numbers");
+    EXPECT_EQ(error_of(changed(line, "/v1/2", nullptr)), "\"v1\": expected a number");
+    EXPECT_EQ(error_of(changed(line, "/tolerance", 1)), "unknown key \"tolerance\"");
+    EXPECT_EQ(error_of(changed(line, "/r2", line["r1"])), kernel::describe(kernel::ImpactStatus::kBadState));
+    const Json cushion = cushion_line();
+    EXPECT_EQ(error_of(changed(cushion, "/model", "stronge")),
+              "\"model\": this is no cushion model of this version; there are: han_2005, smooth");
+    EXPECT_EQ(error_of(changed(cushion, "/normal", {2, 0})),
+              "\"normal\": expected a vector of length 1, this one has 2");
+    EXPECT_EQ(error_of(changed(cushion, "/normal", {0, 0, 1})), "\"normal\": expected a list of 2 numbers");
+    EXPECT_EQ(error_of(changed(cushion, "/params/height", 1)),
+              "\"height\": expected a number inside 0 to 0.05715");
+    for (const Json& whole : {line, cushion}) {
+        for (const auto& item : whole.items()) {
+            Json less = whole;
+            less.erase(item.key());
+            EXPECT_EQ(error_of(less.dump()), "the key \"" + item.key() + "\" is missing");
+        }
+        for (const auto& item : whole["params"].items()) {
+            Json less = whole;
+            less["params"].erase(item.key());
+            EXPECT_EQ(error_of(less.dump()), "the key \"" + item.key() + "\" is missing");
+        }
+    }
+}
+
+TEST(ImpactLine, HostileLinesAreErrors) {
+    const std::string whole = ball_ball_line().dump();
+    EXPECT_EQ(error_of(std::string(500000, '[')), "nested more than 8 deep");
+    std::string deep;
+    for (int i = 0; i < 100000; ++i) deep += "{\"a\":";
+    EXPECT_EQ(error_of(deep), "nested more than 8 deep");
+    EXPECT_NE(error_of("NaN").find("not JSON"), std::string::npos);
+    EXPECT_NE(error_of("{\"kind\":\"\xff\xfe\"}").find("not JSON"), std::string::npos);
+    EXPECT_NE(error_of(std::string("{\"kind\":\0\"x\"}", 13)).find("not JSON"), std::string::npos);
+    EXPECT_EQ(error_of("{\"kind\":1e999}"), "a number is too large");
+    std::string nan = whole;
+    nan.replace(nan.find("0.95"), 4, "NaN");
+    EXPECT_NE(error_of(nan).find("not JSON"), std::string::npos);
+    EXPECT_NE(error_of(whole + whole).find("not JSON"), std::string::npos);
+    // Finite, but its square is not: the answer is an error or finite, never NaN.
+    const std::string huge = changed(ball_ball_line(), "/v1/0", 1e300);
+    const ImpactAnswer answer = answer_impact(huge, settings());
+    EXPECT_EQ(answer.json.find("null"), std::string::npos) << answer.json;
+}
+
+TEST(ImpactLine, AnyChangedLineIsAnsweredInOneLine) {
+    test::SplitMix64 rng(21);
+    const std::string wholes[] = {ball_ball_line().dump(), cushion_line().dump()};
+    int refused = 0;
+    for (int i = 0; i < 5000; ++i) {
+        std::string line = wholes[rng.next() % 2];
+        for (std::uint64_t n = rng.next() % 3; n-- > 0;)
+            line.erase(rng.next() % line.size(), 1 + rng.next() % 8);
+        line[rng.next() % line.size()] = static_cast<char>(rng.next());
+        const ImpactAnswer answer = answer_impact(line, settings());
+        const Json json = Json::parse(answer.json);  // throws if it is no JSON
+        ASSERT_TRUE(json.is_object());
+        ASSERT_EQ(answer.json.find('\n'), std::string::npos);
+        ASSERT_EQ(answer.ok, !json.contains("error"));
+        if (!answer.ok) ++refused;
+    }
+    EXPECT_GT(refused, 2500);
+}
+
+}  // namespace
+}  // namespace carom::tools

@@ -1,0 +1,94 @@
+// No include points upwards; and the check that says so sees one that does.
+#include "layers.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "support/process.h"
+
+namespace carom::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Layers, NoIncludePointsUpwards) {
+    for (const char* layer : {"kernel", "engine", "render", "tools"}) {
+        ASSERT_TRUE(fs::exists(fs::path(CAROM_SOURCE_DIR) / layer)) << layer;
+    }
+    for (const std::string& violation : layer_violations(CAROM_SOURCE_DIR)) ADD_FAILURE() << violation;
+}
+
+/// A small tree with all four layers, to which a test adds one line.
+class LayersSelfTest : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        put("kernel/include/carom/kernel/k.h", "#include <cmath>\n");
+        put("kernel/src/k.cpp",
+            "#include \"carom/kernel/k.h\"\n#include <immintrin.h>\n#include \"inner.h\"\n");
+        put("kernel/src/inner.h", "#pragma once\n");
+        put("engine/src/e.cpp", "#include <Eigen/Core>\n#include \"carom/kernel/k.h\"\n");
+        put("engine/CMakeLists.txt",
+            "target_link_libraries(carom_engine PUBLIC carom::kernel) # carom::tools\n");
+        put("render/src/r.cpp", "#include <png.h>\n#include <GL/gl.h>\n#include \"carom/engine/e.h\"\n");
+        put("tools/t.cpp", "#include <CLI/CLI.hpp>\n#include \"carom/render/r.h\"\n#include \"u.h\"\n");
+        put("tools/u.h", "#pragma once\n");
+        put("tests/support/s.h", "#pragma once\n");
+    }
+
+    void put(const std::string& name, const std::string& text) {
+        const fs::path file = folder_.path() / name;
+        fs::create_directories(file.parent_path());
+        std::ofstream(file, std::ios::app) << text;
+    }
+
+    std::vector<std::string> check() const { return layer_violations(folder_.path()); }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(LayersSelfTest, AcceptsWhatPointsDownwards) {
+    for (const std::string& violation : check()) ADD_FAILURE() << violation;
+}
+
+TEST_F(LayersSelfTest, SeesEveryKindOfViolation) {
+    const struct {
+        const char* file;
+        const char* line;
+        const char* message;
+    } kCases[] = {
+        {"kernel/src/k.cpp", "#include \"carom/engine/e.h\"\n", "upwards to engine"},
+        {"kernel/src/k.cpp", "#include <carom/engine/e.h>\n", "upwards to engine"},
+        {"kernel/src/k.cpp", "  #  include\t<Eigen/Core>\n", "standard library only"},
+        {"kernel/src/k.cpp", "#include <unistd.h>\n", "standard library only"},
+        {"engine/src/e.cpp", "#include \"carom/render/r.h\"\n", "upwards to render"},
+        {"engine/src/e.cpp", "#include \"../../render/src/r.cpp\"\n", "upwards to render"},
+        {"engine/src/e.cpp", "#include<png.h>\n", "not for this layer"},
+        {"engine/src/e.cpp", "#include \"support/s.h\"\n", "outside the layers"},
+        {"engine/src/e.cpp", "#include \"u.h\"\n", "upwards to tools"},
+        {"render/src/r.cpp", "#import \"../../tools/u.h\"\n", "upwards to tools"},
+        {"render/src/r.cpp", "#include \"carom/tools/u.h\"\n", "upwards to tools"},
+        {"render/src/r.cpp", "#include \"gone.h\"\n", "cannot be resolved"},
+        {"render/src/r.cpp", "#include HEADER\n", "not a literal name"},
+        {"engine/CMakeLists.txt", "target_link_libraries(carom_engine PUBLIC carom::render)\n",
+         "links carom::render"},
+        {"kernel/CMakeLists.txt", "target_link_libraries(carom_kernel carom_engine)\n", "links carom_engine"},
+    };
+    for (const auto& c : kCases) {
+        const fs::path file = folder_.path() / c.file;
+        const bool existed = fs::exists(file);
+        const std::string before = existed ? read_file(file.string()) : "";
+        put(c.file, c.line);
+        const std::vector<std::string> found = check();
+        ASSERT_EQ(found.size(), 1u) << c.file << ": " << c.line;
+        EXPECT_NE(found[0].find(c.message), std::string::npos) << found[0];
+        EXPECT_NE(found[0].find(c.file), std::string::npos) << found[0];
+        if (existed)
+            std::ofstream(file) << before;
+        else
+            fs::remove(file);
+    }
+}
+
+}  // namespace
+}  // namespace carom::test

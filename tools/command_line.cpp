@@ -1,0 +1,202 @@
+// The program: reads the command line, runs one sub-command, turns what it throws into an exit status.
+// The only file that includes CLI11, which takes seconds to compile.
+#include <CLI/CLI.hpp>
+
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <new>
+
+#include "carom/engine/scene.h"
+#include "commands.h"
+#include "console.h"
+
+namespace carom::tools {
+namespace {
+
+/// What the sub-command that was named will do.
+using Action = std::function<int()>;
+
+void add_simulate(CLI::App& app, Action& action) {
+    auto args = std::make_shared<SimulateArgs>();
+    CLI::App* sub =
+        app.add_subcommand("simulate", "Run a scene: what happened, events, record, sampled states, hash");
+    sub->add_option("SCENE", args->scene, "Scene file (TOML)")->required();
+    sub->add_option("-o,--output", args->record, "Write the record, for carom render (default: not written)")
+        ->type_name("FILE.json");
+    sub->add_option("--events", args->events, "Write the events (default: not written)")
+        ->type_name("FILE.csv");
+    sub->add_option("--samples", args->samples,
+                    "Write sampled states; needs --sample-dt (default: not written)")
+        ->type_name("FILE.csv");
+    sub->add_option("--sample-dt", args->sample_dt, "Time between samples in s (default: none)")
+        ->type_name("S");
+    sub->add_option("--until", args->until, "Stop at this time in s at the latest (default: the scene's end)")
+        ->type_name("S");
+    sub->add_flag("--hash", args->hash,
+                  "Print the hash of all bits of the record instead of the summary (default: off)");
+    sub->add_flag("--profile", args->profile,
+                  "Time every event: cost by kind, kernel by ball-ball event, columns in the events file "
+                  "(default: off)");
+    sub->add_flag("--json", args->json, "Print JSON (default: off)");
+    sub->callback([args, &action] { action = [args] { return run_simulate(*args); }; });
+}
+
+void add_gl(CLI::App& sub, std::string& gl) {
+    sub.add_option("--gl", gl, "OpenGL without a display: osmesa, or egl (surfaceless)")
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"osmesa", "egl"}))
+        ->capture_default_str();
+}
+
+void add_render(CLI::App& app, Action& action) {
+    auto args = std::make_shared<RenderArgs>();
+    CLI::App* sub = app.add_subcommand(
+        "render", "Numbered PNG frames of a scene or a record; frame k shows from + k/fps");
+    sub->add_option("SCENE", args->input, "Scene file (TOML), or a record (.json) of carom simulate -o")
+        ->required();
+    sub->add_option("-o,--output", args->pattern,
+                    "Files to write, with one %d or %05d for the number of the frame")
+        ->type_name("PATTERN")
+        ->capture_default_str();
+    sub->add_option("--fps", args->fps,
+                    "Frames per second (default: the scene's, which is 60 unless it says otherwise)")
+        ->type_name("F");
+    sub->add_option("--size", args->size,
+                    "Pixels (default: the scene's, which is 1280x720 unless it says otherwise)")
+        ->type_name("WxH");
+    sub->add_option("--from", args->from, "First instant in s")->type_name("S")->capture_default_str();
+    sub->add_option("--to", args->to, "Last instant in s (default: the end of the shot)")->type_name("S");
+    sub->add_option("--frame", args->frame, "Only frame K (default: all)")->type_name("K");
+    sub->add_option("--at", args->at, "Only this instant in s, as frame 0 (default: all)")->type_name("S");
+    sub->add_option("--camera", args->camera,
+                    "Camera (default: the scene's, which is top unless it says otherwise)")
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"top"}));
+    add_gl(*sub, args->gl);
+    sub->add_option("--png-level", args->png_level, "Compression, 0 (large, fast) to 9 (small, slow)")
+        ->type_name("L")
+        ->check(CLI::Range(0, 9))
+        ->capture_default_str();
+    sub->callback([args, &action] { action = [args] { return run_render(*args); }; });
+}
+
+void add_margin(CLI::App& app, Action& action) {
+    auto args = std::make_shared<MarginArgs>();
+    CLI::App* sub = app.add_subcommand("margin", "Real-time margin: what every frame costs against 1/fps");
+    sub->add_option("SCENE", args->scene, "Scene file (TOML)")->required();
+    sub->add_option("--fps", args->fps,
+                    "Frames per second (default: the scene's, which is 60 unless it says otherwise)")
+        ->type_name("F");
+    sub->add_option("--size", args->size,
+                    "Pixels (default: the scene's, which is 1280x720 unless it says otherwise)")
+        ->type_name("WxH");
+    sub->add_option("--repeat", args->repeat, "Runs; every frame's cost is the median over them")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    sub->add_flag("--no-render", args->no_render, "Measure the simulation only (default: off)");
+    add_gl(*sub, args->gl);
+    sub->add_option("--csv", args->csv, "Write the costs of every frame (default: not written)")
+        ->type_name("FILE.csv");
+    sub->add_flag("--json", args->json, "Print JSON (default: off)");
+    sub->footer("kernel is a part of simulate. A frame costs simulate + draw + readback + encode.");
+    sub->callback([args, &action] { action = [args] { return run_margin(*args); }; });
+}
+
+void add_check(CLI::App& app, Action& action) {
+    auto args = std::make_shared<CheckArgs>();
+    CLI::App* sub =
+        app.add_subcommand("check", "Validate a scene; print its plan: effects, models, kernel, names");
+    sub->add_option("SCENE", args->scene, "Scene file (TOML)")->required();
+    sub->callback([args, &action] { action = [args] { return run_check(*args); }; });
+}
+
+void add_impact(CLI::App& app, Action& action) {
+    auto args = std::make_shared<ImpactArgs>();
+    CLI::App* sub =
+        app.add_subcommand("impact", "One impact per line of standard input, its result per line (JSON)");
+    sub->add_option("--method", args->method, "Ball-ball model")
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"mathavan", "inelastic", "elastic"}))
+        ->capture_default_str();
+    sub->add_option("--substeps", args->substeps, "N of the published march (mathavan)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 100000000))
+        ->capture_default_str();
+    sub->add_option("--cloth-slip", args->cloth_slip, "Sign of the cloth slip inside the impact (mathavan)")
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"consistent", "as_published"}))
+        ->capture_default_str();
+    sub->callback([args, &action] { action = [args] { return run_impact(*args); }; });
+}
+
+void add_commands(CLI::App& app, Action& action) {
+    add_simulate(app, action);
+    add_render(app, action);
+    add_margin(app, action);
+    add_check(app, action);
+    add_impact(app, action);
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("carom, a billiards table simulator", "carom");
+    app.set_version_flag("--version", "carom " CAROM_VERSION);
+    app.require_subcommand(0, 1);  // none is an error too, but one with a better message than CLI11's
+    app.footer(
+        "CAROM_ISA=scalar|v3|v4 in the environment forces the instruction set (default: the widest "
+        "available).\n"
+        "Exit status: 0, 1 failed while running, 2 bad usage or bad scene, 130 interrupted.");
+    Action action;
+    add_commands(app, action);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        print(app.help());
+        return kOk;
+    } catch (const CLI::CallForVersion& version) {
+        print(std::string(version.what()) + "\n");
+        return kOk;
+    } catch (const CLI::ParseError& error) {
+        const std::vector<CLI::App*> named = app.get_subcommands();
+        const std::string command = named.empty() ? "" : " " + named.front()->get_name();
+        throw UsageError(std::string(error.what()) + "; see carom" + command + " --help");
+    }
+    if (!action)
+        throw UsageError("a command is missing: simulate, render, margin, check or impact; see carom --help");
+    return action();
+}
+
+/// Runs, and turns what was thrown into a message and an exit status.
+int guarded(int argc, char** argv) {
+    try {
+        const int status = run(argc, argv);
+        flush_output();
+        return status;
+    } catch (const Interrupted&) {
+        return kInterrupted;
+    } catch (const OutputClosed&) {
+        return kFailed;
+    } catch (const UsageError& error) {
+        message(error.what());
+        return kBadUsage;
+    } catch (const SceneError& error) {
+        message(error.what());
+        return kBadUsage;
+    } catch (const std::bad_alloc&) {
+        message("out of memory");
+        return kFailed;
+    } catch (const std::exception& error) {
+        message(error.what());
+        return kFailed;
+    }
+}
+
+}  // namespace
+}  // namespace carom::tools
+
+int main(int argc, char** argv) {
+    carom::tools::prepare_process();
+    return carom::tools::guarded(argc, argv);
+}

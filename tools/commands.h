@@ -1,0 +1,65 @@
+// The sub-commands: what each takes from the command line, and the function that does it. Each returns an
+// exit status.
+//
+// A new one needs: a struct and a run_ function here, a file of its own, and an add_ function in
+// command_line.cpp.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace carom::tools {
+
+struct SimulateArgs {
+    std::string scene;
+    std::string record;  ///< file names; empty: not asked for
+    std::string events;
+    std::string samples;
+    std::optional<double> sample_dt;  ///< [s]
+    std::optional<double> until;      ///< [s]
+    bool hash = false;
+    bool profile = false;
+    bool json = false;
+};
+int run_simulate(const SimulateArgs& args);
+
+struct RenderArgs {
+    std::string input;  ///< a scene, or a record (.json)
+    std::string pattern = "frames/%05d.png";
+    std::optional<double> fps;
+    std::string size;  ///< "1280x720"; empty: the scene's
+    double from = 0.0;
+    std::optional<double> to;
+    std::optional<long> frame;
+    std::optional<double> at;
+    std::string camera;  ///< empty: the scene's
+    std::string gl = "osmesa";
+    int png_level = 1;
+};
+int run_render(const RenderArgs& args);
+
+struct MarginArgs {
+    std::string scene;
+    std::optional<double> fps;
+    std::string size;
+    int repeat = 1;
+    bool no_render = false;
+    std::string gl = "osmesa";
+    std::string csv;
+    bool json = false;
+};
+int run_margin(const MarginArgs& args);
+
+struct CheckArgs {
+    std::string scene;
+};
+int run_check(const CheckArgs& args);
+
+struct ImpactArgs {
+    std::string method = "mathavan";
+    int substeps = 1000;
+    std::string cloth_slip = "consistent";
+};
+int run_impact(const ImpactArgs& args);
+
+}  // namespace carom::tools

@@ -1,0 +1,219 @@
+// One line of carom impact: JSON in, JSON out. Keys are those of the design, section 7, and "id", which is
+// handed back.
+#include "impact_line.h"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "carom/engine/cushion.h"
+#include "carom/kernel/closed_forms.h"
+
+namespace carom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Impacts nest three deep; deeper is no impact.
+constexpr int kDeepest = 8;
+/// A normal typed with four digits is a unit vector; one that is further off is a mistake.
+constexpr double kUnitSlack = 1e-3;
+
+/// What is wrong with a line.
+class LineError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+const Json& need(const Json& object, const char* key) {
+    const auto it = object.find(key);
+    if (it == object.end()) throw LineError(fmt::format("the key \"{}\" is missing", key));
+    return *it;
+}
+
+/// A key that nothing reads is a slip that would change the result silently.
+void refuse_unknown(const Json& object, std::initializer_list<const char*> known) {
+    for (const auto& item : object.items()) {
+        bool found = false;
+        for (const char* key : known) found = found || item.key() == key;
+        if (!found) throw LineError(fmt::format("unknown key \"{}\"", item.key().substr(0, 40)));
+    }
+}
+
+double number(const Json& json, const char* key) {
+    if (!json.is_number()) throw LineError(fmt::format("\"{}\": expected a number", key));
+    return json.get<double>();
+}
+
+template <int kSize>
+void read_vector(const Json& line, const char* key, double (&out)[kSize]) {
+    const Json& json = need(line, key);
+    if (!json.is_array() || json.size() != kSize) {
+        throw LineError(fmt::format("\"{}\": expected a list of {} numbers", key, kSize));
+    }
+    for (int i = 0; i < kSize; ++i) out[i] = number(json[static_cast<std::size_t>(i)], key);
+}
+
+/// A parameter within [least, most], its ends left out where `open`.
+double parameter(const Json& params, const char* key, double least, double most, bool open = false) {
+    const double value = number(need(params, key), key);
+    const bool inside = open ? value > least && value < most : value >= least && value <= most;
+    if (!(inside && std::isfinite(value))) {
+        const std::string range = std::isinf(most)
+                                      ? fmt::format("{} {}", open ? "greater than" : "at least", least)
+                                      : fmt::format("{} {} to {}", open ? "inside" : "from", least, most);
+        throw LineError(fmt::format("\"{}\": expected a number {}", key, range));
+    }
+    return value;
+}
+
+Json list(const double (&v)[3]) {
+    return Json::array({v[0], v[1], v[2]});
+}
+
+double nanoseconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count();
+}
+
+const Json& params_of(const Json& line) {
+    const Json& params = need(line, "params");
+    if (!params.is_object()) throw LineError("\"params\": expected an object");
+    return params;
+}
+
+Json ball_ball(const Json& line, const ImpactSettings& settings) {
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    refuse_unknown(line, {"kind", "id", "params", "r1", "v1", "w1", "r2", "v2", "w2"});
+    const Json& params = params_of(line);
+    refuse_unknown(params, {"R", "m", "mu_s1", "mu_s2", "mu_b", "e_b"});
+    kernel::ImpactParams p{};
+    p.R = parameter(params, "R", 0.0, kInfinite, true);
+    p.m = parameter(params, "m", 0.0, kInfinite, true);
+    p.mu_s1 = parameter(params, "mu_s1", 0.0, kInfinite);
+    p.mu_s2 = parameter(params, "mu_s2", 0.0, kInfinite);
+    p.mu_b = parameter(params, "mu_b", 0.0, kInfinite);
+    p.e_b = parameter(params, "e_b", 0.0, 1.0);
+    p.cloth_slip = settings.cloth_slip;
+    kernel::Ball ball1{}, ball2{};
+    read_vector(line, "r1", ball1.r);
+    read_vector(line, "v1", ball1.v);
+    read_vector(line, "w1", ball1.w);
+    read_vector(line, "r2", ball2.r);
+    read_vector(line, "v2", ball2.v);
+    read_vector(line, "w2", ball2.w);
+
+    kernel::ImpactResult result{};
+    const auto start = std::chrono::steady_clock::now();
+    switch (settings.method) {
+        case ImpactSettings::Method::kMathavan:
+            settings.march(ball1, ball2, p, settings.substeps, result);
+            break;
+        case ImpactSettings::Method::kInelastic:
+            kernel::collide_inelastic(ball1, ball2, p, result);
+            break;
+        case ImpactSettings::Method::kElastic:
+            kernel::collide_elastic(ball1, ball2, p, result);
+            break;
+    }
+    const double ns = nanoseconds_since(start);
+    const std::string wrong = kernel::describe(result.status);
+    if (!wrong.empty()) throw LineError(wrong);
+    return {{"v1", list(result.v1)}, {"w1", list(result.w1)}, {"v2", list(result.v2)},
+            {"w2", list(result.w2)}, {"steps", result.steps}, {"ns", ns}};
+}
+
+CushionModel cushion_model(const Json& line) {
+    const Json& json = need(line, "model");
+    if (!json.is_string()) throw LineError("\"model\": expected a string");
+    std::string known;
+    for (const CushionModel model : {CushionModel::kHan2005, CushionModel::kSmooth}) {
+        if (json.get_ref<const std::string&>() == name(model)) return model;
+        known += (known.empty() ? "" : ", ") + std::string(name(model));
+    }
+    throw LineError(fmt::format("\"model\": this is no cushion model of this version; there are: {}", known));
+}
+
+Vec2 unit_normal(const Json& line) {
+    double n[2];
+    read_vector(line, "normal", n);
+    const double length = std::sqrt(n[0] * n[0] + n[1] * n[1]);
+    if (!(std::abs(length - 1.0) <= kUnitSlack)) {
+        throw LineError(fmt::format("\"normal\": expected a vector of length 1, this one has {}", length));
+    }
+    // Already as good as doubles get: left alone, so that the result has the bits that the caller expects.
+    if (std::abs(length - 1.0) <= 4.0 * std::numeric_limits<double>::epsilon()) return {n[0], n[1]};
+    return {n[0] / length, n[1] / length};
+}
+
+Json cushion(const Json& line) {
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    refuse_unknown(line, {"kind", "id", "model", "params", "normal", "v", "w"});
+    const CushionModel model = cushion_model(line);
+    const Json& params = params_of(line);
+    refuse_unknown(params, {"R", "m", "mu_s", "e_c", "f_c", "height"});
+    CushionContact contact{};
+    contact.R = parameter(params, "R", 0.0, kInfinite, true);
+    contact.m = parameter(params, "m", 0.0, kInfinite, true);
+    contact.mu_s = parameter(params, "mu_s", 0.0, kInfinite);
+    contact.e_c = parameter(params, "e_c", 0.0, 1.0);
+    contact.f_c = parameter(params, "f_c", 0.0, kInfinite);
+    contact.height = parameter(params, "height", 0.0, 2.0 * contact.R, true);
+    double v_in[3], w_in[3];
+    read_vector(line, "v", v_in);
+    read_vector(line, "w", w_in);
+    Vec3 v(v_in[0], v_in[1], v_in[2]), w(w_in[0], w_in[1], w_in[2]);
+    resolve_cushion(model, contact, unit_normal(line), v, w);
+    if (!(v.allFinite() && w.allFinite())) throw LineError("the result is too large for a number");
+    return {{"v", {v.x(), v.y(), v.z()}}, {"w", {w.x(), w.y(), w.z()}}};
+}
+
+Json parse(std::string_view line) {
+    const Json::parser_callback_t depth_limit = [](int depth, Json::parse_event_t, Json&) {
+        if (depth > kDeepest) throw LineError(fmt::format("nested more than {} deep", kDeepest));
+        return true;
+    };
+    try {
+        return Json::parse(line, depth_limit);
+    } catch (const Json::parse_error& error) {
+        throw LineError(fmt::format("this is not JSON (at byte {})", error.byte));
+    } catch (const Json::out_of_range&) {
+        throw LineError("a number is too large");
+    }
+}
+
+Json compute(std::string_view text, const ImpactSettings& settings) {
+    const Json line = parse(text);
+    if (!line.is_object()) throw LineError("expected an object");
+    const Json& kind = need(line, "kind");
+    Json result;
+    if (kind == "ball_ball")
+        result = ball_ball(line, settings);
+    else if (kind == "cushion")
+        result = cushion(line);
+    else
+        throw LineError("\"kind\": expected \"ball_ball\" or \"cushion\"");
+    if (line.contains("id")) result["id"] = line["id"];
+    return result;
+}
+
+}  // namespace
+
+ImpactAnswer impact_error(const std::string& what) {
+    const Json json = {{"error", what}};
+    return {json.dump(-1, ' ', false, Json::error_handler_t::replace), false};
+}
+
+ImpactAnswer answer_impact(std::string_view line, const ImpactSettings& settings) {
+    try {
+        return {compute(line, settings).dump(-1, ' ', false, Json::error_handler_t::replace), true};
+    } catch (const std::exception& error) {
+        return impact_error(error.what());
+    }
+}
+
+}  // namespace carom::tools

@@ -1,0 +1,35 @@
+// One line of carom impact: JSON in, JSON out.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "carom/kernel/impact.h"
+#include "carom/kernel/march.h"
+
+namespace carom::tools {
+
+/// A longer line is an error: an impact takes less than one kilobyte.
+inline constexpr std::size_t kLongestImpactLine = 1 << 20;
+
+/// How ball-ball lines are computed.
+struct ImpactSettings {
+    enum class Method : unsigned char { kMathavan, kInelastic, kElastic };
+    Method method = Method::kMathavan;
+    int substeps = 1000;
+    kernel::ClothSlip cloth_slip = kernel::ClothSlip::kConsistent;
+    kernel::MarchFunction march = nullptr;
+};
+
+struct ImpactAnswer {
+    std::string json;  ///< one line, without its end
+    bool ok = false;   ///< false: json is {"error": ...}
+};
+
+/// Computes one line. Whatever the line holds, the answer is a result or an error.
+ImpactAnswer answer_impact(std::string_view line, const ImpactSettings& settings);
+
+/// The answer that says why a line was not computed.
+ImpactAnswer impact_error(const std::string& what);
+
+}  // namespace carom::tools

@@ -1,0 +1,100 @@
+// Steps that several sub-commands begin with.
+#include "setup.h"
+
+#include <fmt/core.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+
+#include "console.h"
+
+namespace carom::tools {
+namespace {
+
+/// More frames than this (46 hours at 60 fps) is a slip of the keyboard, and would fill any disk.
+constexpr double kMostFrames = 1e7;
+/// Pixels per side; what OpenGL implementations draw.
+constexpr int kLargestSide = 16384;
+constexpr double kFastestFps = 1e6;
+
+}  // namespace
+
+std::string available_isas() {
+    std::string names;
+    for (const kernel::Isa isa : {kernel::Isa::kScalar, kernel::Isa::kV3, kernel::Isa::kV4}) {
+        if (!kernel::available(isa)) continue;
+        if (!names.empty()) names += ", ";
+        names += kernel::name(isa);
+    }
+    return names;
+}
+
+kernel::Isa chosen_isa() {
+    kernel::Isa isa = kernel::Isa::kScalar;
+    const char* text = std::getenv("CAROM_ISA");
+    switch (kernel::isa_from_environment(isa)) {
+        case kernel::IsaChoice::kOk:
+            break;
+        case kernel::IsaChoice::kUnknownName:
+            throw UsageError(fmt::format("CAROM_ISA={}: no such instruction set; available here: {}",
+                                         text != nullptr ? text : "", available_isas()));
+        case kernel::IsaChoice::kUnavailable:
+            throw UsageError(
+                fmt::format("CAROM_ISA={}: this processor or this build cannot run it; available here: {}",
+                            text != nullptr ? text : "", available_isas()));
+    }
+    return isa;
+}
+
+Plan plan_scene(const std::string& path) {
+    const kernel::Isa isa = chosen_isa();
+    Plan plan = make_plan(read_scene(path), isa);
+    for (const std::string& warning : plan.warnings) message("warning: " + warning);
+    return plan;
+}
+
+Record simulate_plan(const Plan& plan, SimulateOptions options) {
+    ProgressLine line("simulating:");
+    options.progress = [&line](std::size_t events, double time) {
+        throw_if_interrupted();
+        if (line.due()) line.show_text(fmt::format("{} events, {:.3f} s", events, time));
+    };
+    Record record = simulate(plan, options);
+    throw_if_interrupted();
+    return record;
+}
+
+render::FrameSize parse_size(const std::string& text) {
+    render::FrameSize size{};
+    const char* const end = text.data() + text.size();
+    const auto [middle, bad_width] = std::from_chars(text.data(), end, size.width);
+    if (bad_width == std::errc() && middle != end && *middle == 'x') {
+        const auto [last, bad_height] = std::from_chars(middle + 1, end, size.height);
+        const bool fits =
+            size.width >= 1 && size.width <= kLargestSide && size.height >= 1 && size.height <= kLargestSide;
+        if (bad_height == std::errc() && last == end && fits) return size;
+    }
+    throw UsageError(fmt::format("--size {}: expected WIDTHxHEIGHT in pixels, 1 to {} each, as in 1280x720",
+                                 text, kLargestSide));
+}
+
+double chosen_fps(std::optional<double> asked, const RenderSettings& settings) {
+    const double fps = asked.value_or(settings.fps);
+    if (!(fps > 0.0 && fps <= kFastestFps)) {
+        throw UsageError(
+            fmt::format("--fps {}: expected a number greater than 0, up to {}", fps, kFastestFps));
+    }
+    return fps;
+}
+
+long checked_frame_count(double from, double to, double fps) {
+    const double estimate = (to - from) * fps;
+    if (!(estimate <= kMostFrames)) {
+        throw UsageError(fmt::format("from {} s to {} s at {} fps would be more than {:.0f} frames", from, to,
+                                     fps, kMostFrames));
+    }
+    return render::frame_count(from, to, fps);
+}
+
+}  // namespace carom::tools

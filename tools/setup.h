@@ -1,0 +1,35 @@
+// Steps that several sub-commands begin with.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/record.h"
+#include "carom/engine/simulate.h"
+#include "carom/render/sequence.h"
+
+namespace carom::tools {
+
+/// CAROM_ISA, or the widest one. @throws UsageError for an unknown or unavailable name
+kernel::Isa chosen_isa();
+
+/// "scalar, v3": what this machine and build can run.
+std::string available_isas();
+
+/// Reads a scene and plans it; its warnings go to standard error. @throws SceneError
+Plan plan_scene(const std::string& path);
+
+/// simulate() with a progress line; SIGINT ends it. @throws SimulationError, Interrupted
+Record simulate_plan(const Plan& plan, SimulateOptions options);
+
+/// "1280x720". @throws UsageError
+render::FrameSize parse_size(const std::string& text);
+
+/// Frames per second: the one asked for, else the scene's. @throws UsageError
+double chosen_fps(std::optional<double> asked, const RenderSettings& settings);
+
+/// Frames k with from + k / fps <= to; more than this program can number is a UsageError.
+long checked_frame_count(double from, double to, double fps);
+
+}  // namespace carom::tools
