@@ -8,6 +8,7 @@
 #include <memory>
 #include <new>
 
+#include "bench_kernel.h"
 #include "carom/engine/scene.h"
 #include "carom/kernel/tolerance.h"
 #include "commands.h"
@@ -138,12 +139,40 @@ void add_impact(CLI::App& app, Action& action) {
     sub->callback([args, &action] { action = [args] { return run_impact(*args); }; });
 }
 
+void add_bench(CLI::App& app, Action& action) {
+    CLI::App* bench = app.add_subcommand("bench", "Ratios measured side by side in one run");
+    bench->require_subcommand(1);
+    auto args = std::make_shared<BenchOptions>();
+    CLI::App* sub = bench->add_subcommand(
+        "kernel", "Every form of the ball-ball march, and every tolerance, against the plain march");
+    sub->add_flag("--json", args->json, "Print JSON (default: off)");
+    sub->add_option("--random", args->random, "Seeded random impacts beside the five states of the paper")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
+    sub->add_option("--seed", args->seed, "Seed of the random impacts")
+        ->type_name("S")
+        ->capture_default_str();
+    sub->add_option("--repeat", args->repeats, "Interleaved rounds; minimum and median are over them")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    sub->add_option("--cloth-slip", args->cloth_slip, "Sign of the cloth slip inside the impact")
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"consistent", "as_published"}))
+        ->capture_default_str();
+    sub->add_flag("!--no-growth", args->growth, "Leave out N = 100 and 10000 (default: measured)");
+    sub->footer("Without CAROM_ISA all instruction sets that this processor has run in one call.");
+    sub->callback([args, &action] { action = [args] { return run_bench_kernel(*args); }; });
+}
+
 void add_commands(CLI::App& app, Action& action) {
     add_simulate(app, action);
     add_render(app, action);
     add_margin(app, action);
     add_check(app, action);
     add_impact(app, action);
+    add_bench(app, action);
 }
 
 int run(int argc, char** argv) {
@@ -170,7 +199,8 @@ int run(int argc, char** argv) {
         throw UsageError(std::string(error.what()) + "; see carom" + command + " --help");
     }
     if (!action)
-        throw UsageError("a command is missing: simulate, render, margin, check or impact; see carom --help");
+        throw UsageError(
+            "a command is missing: simulate, render, margin, check, impact or bench; see carom --help");
     return action();
 }
 

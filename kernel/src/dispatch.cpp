@@ -15,21 +15,26 @@ void march_v4(const Ball&, const Ball&, const ImpactParams&, int, ImpactResult&)
 const char* describe(ImpactStatus status) noexcept {
     switch (status) {
         case ImpactStatus::kOk:
-        case ImpactStatus::kNotApproaching: return "";
+        case ImpactStatus::kNotApproaching:
+            return "";
         case ImpactStatus::kBadState:
             return "a state is not finite, or the centres coincide or are not at one height";
         case ImpactStatus::kBadParameter:
             return "a parameter is out of range: R, m > 0, frictions >= 0, 0 <= e_b <= 1, substeps >= 1";
-        case ImpactStatus::kStepLimit: return "the march did not end within its bound on steps";
+        case ImpactStatus::kStepLimit:
+            return "the march did not end within its bound on steps";
     }
     return "unknown status";
 }
 
 const char* name(Isa isa) noexcept {
     switch (isa) {
-        case Isa::kScalar: return "scalar";
-        case Isa::kV3: return "v3";
-        case Isa::kV4: return "v4";
+        case Isa::kScalar:
+            return "scalar";
+        case Isa::kV3:
+            return "v3";
+        case Isa::kV4:
+            return "v4";
     }
     return "unknown";
 }
@@ -80,9 +85,12 @@ IsaChoice isa_from_environment(Isa& isa) noexcept {
 
 MarchFunction march_function(Isa isa) noexcept {
     switch (isa) {
-        case Isa::kScalar: return march_scalar;
-        case Isa::kV3: return march_v3;
-        case Isa::kV4: return march_v4;
+        case Isa::kScalar:
+            return march_scalar;
+        case Isa::kV3:
+            return march_v3;
+        case Isa::kV4:
+            return march_v4;
     }
     return march_scalar;
 }

@@ -42,6 +42,16 @@ inline double absolute(double x) {
     return x < 0.0 ? -x : x;
 }
 
+// A cloth slip up to here is rounding of a rolling ball's v and R w: it has no direction, and the step takes no cloth
+// friction, as at a slip of exactly zero. With the consistent sign only: there rolling balls meet u = 0 as a rule, and two
+// correct marches would otherwise differ by a whole step's friction. The published code has no such floor.
+inline double cloth_slip_floor(const FrameState& s, double R, int sign) {
+    if (sign > 0) return 0.0;
+    const double v = absolute(s.v1x) + absolute(s.v1y) + absolute(s.v2x) + absolute(s.v2y);
+    const double w = absolute(s.w1x) + absolute(s.w1y) + absolute(s.w2x) + absolute(s.w2y);
+    return 8.0 * 0x1p-52 * (v + R * w);
+}
+
 // The result of "nothing happens": velocities as they came.
 inline void copy_input(const Ball& b1, const Ball& b2, ImpactStatus status, ImpactResult& out) {
     for (int k = 0; k < 3; ++k) {

@@ -20,6 +20,7 @@ long march_loop(FrameState& s, const ImpactParams& p, int n) {
     const double R = p.R, m = p.m;
     const double dP = 0.5 * (1.0 + p.e_b) * m * absolute(s.v2y - s.v1y) / n;
     const double C = 5.0 / (2.0 * m * R);
+    const double u_floor = cloth_slip_floor(s, R, kSign);
     const long limit = kMarchStepLimit * static_cast<long>(n);
     double W = 0.0, W_f = 0.0;
     bool compressing = true;
@@ -39,14 +40,14 @@ long march_loop(FrameState& s, const ImpactParams& p, int n) {
                 if (dP2 > 0.0) {  // ball 2 is pressed down
                     const double u_x = s.v2x + kSign * R * s.w2y, u_y = s.v2y - kSign * R * s.w2x;
                     const double u = square_root(u_x * u_x + u_y * u_y);
-                    if (u != 0.0) {
+                    if (u > u_floor) {
                         dPjx = -p.mu_s2 * (u_x / u) * dP2;
                         dPjy = -p.mu_s2 * (u_y / u) * dP2;
                     }
                 } else {  // ball 1 is
                     const double u_x = s.v1x + kSign * R * s.w1y, u_y = s.v1y - kSign * R * s.w1x;
                     const double u = square_root(u_x * u_x + u_y * u_y);
-                    if (u != 0.0) {
+                    if (u > u_floor) {
                         dPix = p.mu_s1 * (u_x / u) * dP2;
                         dPiy = p.mu_s1 * (u_y / u) * dP2;
                     }

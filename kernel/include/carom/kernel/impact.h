@@ -1,7 +1,7 @@
 // Ball-ball impact: the types that every kernel shares.
 //
-// Units are SI. The frame is right-handed, z up from the cloth. An impact is planar: both centres are at one height and
-// the vertical velocities are left as they are.
+// Units are SI. The frame is right-handed, z up from the cloth. An impact is planar: both centres are at one
+// height and the vertical velocities are left as they are.
 #pragma once
 
 namespace carom::kernel {
@@ -26,16 +26,17 @@ struct ImpactParams {
     double mu_s1;  ///< sliding friction of ball 1 on the cloth, >= 0
     double mu_s2;  ///< sliding friction of ball 2 on the cloth, >= 0
     double mu_b;   ///< friction between the balls, >= 0
-    double e_b;    ///< coefficient of restitution, 0..1 (mathavan: energetic, W_restitution = e_b^2 W_compression)
+    double
+        e_b;  ///< coefficient of restitution, 0..1 (mathavan: energetic, W_restitution = e_b^2 W_compression)
     ClothSlip cloth_slip = ClothSlip::kConsistent;
 };
 
 enum class ImpactStatus : unsigned char {
     kOk,              ///< computed
     kNotApproaching,  ///< approach speed <= 0 (or too small to be a number): the balls leave as they came
-    kBadState,        ///< a state is not finite, the centres coincide or are not at one height: result = input
-    kBadParameter,    ///< a parameter or setting is out of range: result = input
-    kStepLimit,       ///< the march met its bound on steps (see march.h): result = input
+    kBadState,      ///< a state is not finite, the centres coincide or are not at one height: result = input
+    kBadParameter,  ///< a parameter or setting is out of range: result = input
+    kStepLimit,     ///< the march met its bound on steps (see march.h): result = input
 };
 
 /// What is wrong, in words; "" for kOk and kNotApproaching.

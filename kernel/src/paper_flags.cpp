@@ -1,0 +1,18 @@
+// The baseline's loop under the paper's flags: compiled with -Ofast -march=znver3 -ffp-contract=fast, alone,
+// so that nothing else sees them. The link line never has -Ofast: no start-up code that switches the process
+// to flush-to-zero.
+#include "ladder/paper_flags.h"
+#include "ladder/branch_hints.h"
+
+namespace carom::kernel {
+
+long paper_flags_loop(int sign, double* a, const ImpactParams& params, int n) noexcept {
+    FrameState s{a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9]};
+    const long steps = sign > 0 ? single_loop<BranchHintsStep, +1>(s, params, n)
+                                : single_loop<BranchHintsStep, -1>(s, params, n);
+    const double out[10] = {s.v1x, s.v1y, s.w1x, s.w1y, s.w1z, s.v2x, s.v2y, s.w2x, s.w2y, s.w2z};
+    for (int i = 0; i < 10; ++i) a[i] = out[i];
+    return steps;
+}
+
+}  // namespace carom::kernel

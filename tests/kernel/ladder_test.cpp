@@ -1,0 +1,160 @@
+// Every rung of the ladder against the baseline.
+#include "carom/kernel/ladder.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "support/impact_cases.h"
+#include "support/random_impacts.h"
+#include "support/rung_runner.h"
+
+namespace carom::test {
+namespace {
+
+using namespace kernel;
+
+class EveryRung : public testing::TestWithParam<Rung> {
+  protected:
+    void SetUp() override {
+        if (!available(GetParam().isa)) GTEST_SKIP() << name(GetParam().isa) << " is not available here";
+    }
+};
+
+std::string rung_name(const testing::TestParamInfo<Rung>& rung) {
+    std::string text = std::string(rung.param.name) + "_" + name(rung.param.isa);
+    for (char& c : text)
+        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+    return text;
+}
+
+INSTANTIATE_TEST_SUITE_P(Ladder, EveryRung, testing::ValuesIn(ladder().begin(), ladder().end()), rung_name);
+
+std::vector<Impact> five_states() {
+    std::vector<Impact> impacts;
+    for (const ReferenceImpact& r : reference_impacts("paper_states.json"))
+        impacts.push_back({r.ball1, r.ball2, r.params});
+    return impacts;
+}
+
+TEST_P(EveryRung, DoesTheBaselinesStepsOnTheFiveStates) {
+    const std::vector<Impact> impacts = five_states();
+    for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
+        const auto expected = run_rung(baseline_rung(), impacts, 1000, slip);
+        const auto got = run_rung(GetParam(), impacts, 1000, slip);
+        for (std::size_t i = 0; i < impacts.size(); ++i) {
+            EXPECT_EQ(got[i].steps, expected[i].steps) << "state " << i;
+            EXPECT_LE(difference(got[i], expected[i], impacts[i].params.R),
+                      GetParam().bound_five * approach_speed(impacts[i].ball1, impacts[i].ball2))
+                << "state " << i;
+        }
+    }
+}
+
+TEST_P(EveryRung, DoesTheBaselinesStepsOnRandomImpacts) {
+    const std::vector<Impact> impacts = random_impacts(1, 2000);
+    for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
+        const auto expected = run_rung(baseline_rung(), impacts, 1000, slip);
+        const auto got = run_rung(GetParam(), impacts, 1000, slip);
+        int same = 0;
+        for (std::size_t i = 0; i < impacts.size(); ++i) {
+            ASSERT_EQ(got[i].status, ImpactStatus::kOk);
+            const double off = difference(got[i], expected[i], impacts[i].params.R) /
+                               approach_speed(impacts[i].ball1, impacts[i].ball2);
+            // Where the last step is another one, the result is off by up to that step.
+            EXPECT_LE(off, got[i].steps == expected[i].steps ? GetParam().bound_random : 3e-3)
+                << "impact " << i;
+            same += got[i].steps == expected[i].steps;
+        }
+        EXPECT_GE(same, 1990);
+    }
+}
+
+TEST_P(EveryRung, FollowsTheBaselineAtOtherN) {
+    const std::vector<Impact> impacts = random_impacts(2, 60);
+    for (int n : {1, 2, 7, 40, 100, 333, 5000}) {
+        const auto expected = run_rung(baseline_rung(), impacts, n, ClothSlip::kConsistent);
+        const auto got = run_rung(GetParam(), impacts, n, ClothSlip::kConsistent);
+        int same = 0;
+        for (std::size_t i = 0; i < impacts.size(); ++i) {
+            ASSERT_EQ(got[i].status, expected[i].status) << "impact " << i << ", N = " << n;
+            if (got[i].steps != expected[i].steps) continue;
+            ++same;
+            EXPECT_LE(
+                difference(got[i], expected[i], impacts[i].params.R),
+                // At small N a step is a large share of the slip, and what rounding decides weighs as much.
+                (GetParam().bound_random + 1e-12 * n) * approach_speed(impacts[i].ball1, impacts[i].ball2))
+                << "impact " << i << ", N = " << n;
+        }
+        EXPECT_GE(same, 59) << "N = " << n;
+    }
+}
+
+TEST_P(EveryRung, GivesTheSameBitsAsScalarWhereItPromisesTo) {
+    if (!GetParam().portable_bits) return;
+    const Rung* scalar = nullptr;
+    for (const Rung& rung : ladder())
+        if (std::string(rung.name) == GetParam().name && rung.isa == Isa::kScalar) scalar = &rung;
+    ASSERT_NE(scalar, nullptr);
+    const std::vector<Impact> impacts = random_impacts(3, 500);
+    const auto expected = run_rung(*scalar, impacts, 1000, ClothSlip::kConsistent);
+    const auto got = run_rung(GetParam(), impacts, 1000, ClothSlip::kConsistent);
+    for (std::size_t i = 0; i < impacts.size(); ++i)
+        EXPECT_TRUE(same_bits(got[i], expected[i])) << "impact " << i;
+}
+
+// Batches of any length, and an impact's result does not depend on its neighbours.
+TEST_P(EveryRung, BatchesOfAnyLength) {
+    if (GetParam().batch == nullptr) return;
+    const std::vector<Impact> impacts = random_impacts(4, 67);
+    const auto whole = run_rung(GetParam(), impacts, 200, ClothSlip::kConsistent);
+    for (std::size_t length : {0u, 1u, 2u, 3u, 4u, 5u, 7u, 8u, 9u, 15u, 16u, 17u, 31u, 33u, 66u}) {
+        const std::vector<Impact> part(impacts.begin(), impacts.begin() + static_cast<long>(length));
+        const auto got = run_rung(GetParam(), part, 200, ClothSlip::kConsistent);
+        for (std::size_t i = 0; i < length; ++i)
+            EXPECT_TRUE(same_bits(got[i], whole[i])) << "impact " << i << " of " << length;
+    }
+    std::vector<Impact> reversed(impacts.rbegin(), impacts.rend());
+    const auto got = run_rung(GetParam(), reversed, 200, ClothSlip::kConsistent);
+    for (std::size_t i = 0; i < impacts.size(); ++i)
+        EXPECT_TRUE(same_bits(got[impacts.size() - 1 - i], whole[i])) << "impact " << i;
+}
+
+TEST(Ladder, TheTableIsWhole) {
+    std::set<std::pair<std::string, Isa>> seen;
+    std::map<std::string, std::string> sections;
+    for (const Rung& rung : ladder()) {
+        EXPECT_TRUE(seen.insert({rung.name, rung.isa}).second) << rung.name << " twice";
+        EXPECT_NE(rung.march == nullptr, rung.batch == nullptr) << rung.name;
+        EXPECT_NE(std::string(rung.idea), "");
+        EXPECT_EQ(sections.emplace(rung.name, rung.section).first->second, rung.section) << rung.name;
+    }
+    for (const char* needed :
+         {"baseline",     "fewer square roots",  "rsqrt",          "rsqrt newton",     "branch hints",
+          "branch order", "unconditional roots", "masks",          "two stages",       "precomputed",
+          "fma",          "packed blocks",       "simd around",    "simd loop",        "simd ssa",
+          "combined",     "four lanes",          "four lanes fma", "four lanes rsqrt", "reduced state",
+          "packed",       "extrapolated seed",   "pipelined",      "carried roots",    "2x4 lanes"})
+        EXPECT_TRUE(seen.count({needed, Isa::kV3})) << needed;
+    for (const char* needed : {"8 lanes", "2x8 lanes"}) EXPECT_TRUE(seen.count({needed, Isa::kV4})) << needed;
+    EXPECT_STREQ(baseline_rung().name, "baseline");
+}
+
+// The one lossy rung says by how much: the difference is there, and within the bound of the table.
+TEST(Ladder, RawRsqrtIsLossy) {
+    for (const Rung& rung : ladder()) {
+        if (std::string(rung.name) != "rsqrt" || !available(rung.isa)) continue;
+        const std::vector<Impact> impacts = five_states();
+        const auto expected = run_rung(baseline_rung(), impacts, 1000, ClothSlip::kAsPublished);
+        const auto got = run_rung(rung, impacts, 1000, ClothSlip::kAsPublished);
+        double most = 0.0;
+        for (std::size_t i = 0; i < impacts.size(); ++i)
+            most = std::max(most, difference(got[i], expected[i], impacts[i].params.R));
+        EXPECT_GT(most, 1e-9);
+    }
+}
+
+}  // namespace
+}  // namespace carom::test
