@@ -80,7 +80,7 @@ vec3 wood_albedo(vec2 uv) {
 }
 
 vec3 lit(vec3 albedo, vec3 n) {
-    float sky = 0.5 + 0.5 * n.z;
+    float sky = 0.65 + 0.35 * n.z;
     return albedo * (1.05 * lamp_light(v_position, n) + 0.16 * sky);
 }
 
@@ -101,7 +101,9 @@ vec3 pocket_wall(vec3 p, vec3 n, float bottom) {
 vec3 floor_color(vec3 p) {
     vec2 half_size = 0.5 * (u_inner.zw - u_inner.xy), e = abs(p.xy - 0.5 * (u_inner.xy + u_inner.zw)) - half_size;
     float away = length(max(e, 0.0));
-    return from_screen(vec3(0.16, 0.145, 0.135)) * (0.10 + 0.9 * smoothstep(0.0, 1.0, away)) / (1.0 + 0.25 * away * away);
+    vec3 near = from_screen(vec3(0.16, 0.145, 0.135)) * (0.10 + 0.9 * smoothstep(0.0, 1.0, away));
+    // Into the dark of the room, which is the background's colour.
+    return mix(vec3(0.004), near, 1.0 / (1.0 + 0.25 * away * away));
 }
 
 void main() {
