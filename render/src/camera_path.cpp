@@ -81,7 +81,8 @@ Camera fitting_camera(const Bounds& bounds, const Vec3& direction, double fov_y_
     camera.fov_y_deg = fov_y_deg;
     camera.up = Vec3::UnitZ();
     const Vec3 along = direction.normalized();
-    const Vec3 middle(0.5 * (bounds.low.x() + bounds.high.x()), 0.5 * (bounds.low.y() + bounds.high.y()), 0.0);
+    const Vec3 middle(0.5 * (bounds.low.x() + bounds.high.x()), 0.5 * (bounds.low.y() + bounds.high.y()),
+                      0.0);
     const double extent = (bounds.high - bounds.low).norm();
     Vec3 target = middle;
     // Worst overshoot of a corner from distance d, and the middle of what is seen, in the units of the image.
@@ -90,9 +91,9 @@ Camera fitting_camera(const Bounds& bounds, const Vec3& direction, double fov_y_
         camera.eye = target - d * along;
         Vec2 low(1e9, 1e9), high(-1e9, -1e9);
         for (int i = 0; i < 8; ++i) {
-            const std::optional<Vec2> pixel = camera.project({(i & 1) ? bounds.high.x() : bounds.low.x(),
-                                                              (i & 2) ? bounds.high.y() : bounds.low.y(),
-                                                              (i & 4) ? bounds.top : -0.1});
+            const std::optional<Vec2> pixel =
+                camera.project({(i & 1) ? bounds.high.x() : bounds.low.x(),
+                                (i & 2) ? bounds.high.y() : bounds.low.y(), (i & 4) ? bounds.top : -0.1});
             if (!pixel) return 1e9;
             low = low.cwiseMin(*pixel);
             high = high.cwiseMax(*pixel);
@@ -116,16 +117,18 @@ Camera fitting_camera(const Bounds& bounds, const Vec3& direction, double fov_y_
     return camera;
 }
 
-CameraPath::CameraPath(const Record& record, const TableMesh& table, const std::string& name, const FreeCamera& free,
-                       FrameSize size)
+CameraPath::CameraPath(const Record& record, const TableMesh& table, const std::string& name,
+                       const FreeCamera& free, FrameSize size)
     : record_(record) {
-    if (free.eye.has_value() != free.target.has_value()) throw RenderError("a free camera needs both eye and target");
+    if (free.eye.has_value() != free.target.has_value())
+        throw RenderError("a free camera needs both eye and target");
     if (free.eye) {
         const Vec3 view = *free.target - *free.eye;
         if (!free.eye->allFinite() || !free.target->allFinite() || !(view.norm() > 1e-6)) {
             throw RenderError("the eye and the target of a free camera must be different, finite places");
         }
-        if (!(free.fov_deg > 0.0 && free.fov_deg < 170.0)) throw RenderError("the field of view must be 0 to 170 degrees");
+        if (!(free.fov_deg > 0.0 && free.fov_deg < 170.0))
+            throw RenderError("the field of view must be 0 to 170 degrees");
         fixed_.eye = *free.eye;
         fixed_.target = *free.target;
         fixed_.fov_y_deg = free.fov_deg;
@@ -147,13 +150,15 @@ CameraPath::CameraPath(const Record& record, const TableMesh& table, const std::
         fixed_.fov_y_deg = size.width >= size.height ? 42.0 : 64.0;
         fixed_.up = Vec3::UnitZ();
     } else {
-        throw RenderError("unknown camera '" + name + "'; use top, rail, player, follow, or give eye and target");
+        throw RenderError("unknown camera '" + name +
+                          "'; use top, rail, player, follow, or give eye and target");
     }
 }
 
 Camera CameraPath::at(double t) const {
     if (follow_ball_ < 0) return fixed_;
-    // A raised cosine over the ball's past and future: the camera starts before the ball does and never jerks.
+    // A raised cosine over the ball's past and future: the camera starts before the ball does and never
+    // jerks.
     Vec3 sum = Vec3::Zero();
     double weights = 0.0;
     for (int i = -kFollowSteps; i <= kFollowSteps; ++i) {

@@ -49,7 +49,8 @@ bool is_covered(const Record& record, std::size_t ball, double t) {
 Stage::Stage(const Record& record, const StageOptions& options)
     : record_(record),
       options_(options),
-      table_(std::make_shared<const TableMesh>(make_table_mesh(record.table, record.balls.R, visited_places(record)))),
+      table_(std::make_shared<const TableMesh>(
+          make_table_mesh(record.table, record.balls.R, visited_places(record)))),
       camera_(record, *table_, options.camera, options.view, options.size) {
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         styles_.push_back(ball_style(record.tracks[i].id, record.table.preset, static_cast<int>(i)));

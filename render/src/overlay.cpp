@@ -9,17 +9,20 @@
 namespace carom::render {
 
 Overlay parse_overlay(std::string_view list) {
-    constexpr std::array<std::pair<std::string_view, bool Overlay::*>, 6> kNames{{{"trails", &Overlay::trails},
-                                                                                  {"events", &Overlay::events},
-                                                                                  {"spin", &Overlay::spin},
-                                                                                  {"ghost", &Overlay::ghost},
-                                                                                  {"clock", &Overlay::clock},
-                                                                                  {"margin", &Overlay::margin}}};
+    constexpr std::array<std::pair<std::string_view, bool Overlay::*>, 6> kNames{
+        {{"trails", &Overlay::trails},
+         {"events", &Overlay::events},
+         {"spin", &Overlay::spin},
+         {"ghost", &Overlay::ghost},
+         {"clock", &Overlay::clock},
+         {"margin", &Overlay::margin}}};
     Overlay overlay;
-    while (!list.empty()) {
+    bool more = !list.empty();
+    while (more) {
         const std::size_t comma = list.find(',');
         const std::string_view word = list.substr(0, comma);
-        list = comma == std::string_view::npos ? std::string_view() : list.substr(comma + 1);
+        more = comma != std::string_view::npos;
+        if (more) list.remove_prefix(comma + 1);
         bool known = word == "all";
         for (const auto& [name, member] : kNames) {
             if (word != name && word != "all") continue;

@@ -13,9 +13,10 @@ namespace {
 constexpr Rgba kPanel{0.0F, 0.0F, 0.0F, 0.60F};
 constexpr Rgba kInk{0.97F, 0.97F, 0.95F, 1.0F};
 
-// Height of a capital: readable on a phone-sized frame, not large on a big one.
+// Height of a capital: readable on a small frame, not large on a big one, and both panels fit beside each
+// other.
 double text_height(const DrawList& list) {
-    return std::clamp(list.camera.size.height / 48.0, 7.0, 28.0);
+    return std::clamp(std::min(list.camera.size.height / 48.0, list.camera.size.width / 36.0), 5.0, 28.0);
 }
 
 // Width of one character over the height of a capital.
@@ -44,7 +45,8 @@ void add_text(DrawList& list, const Vec2& at, double height, std::string_view te
 void add_clock(DrawList& list, double t) {
     const double height = text_height(list), room = 0.6 * height;
     const std::string text = fmt::format("{:.3f} S", t);
-    list.boxes.push_back({{room, room}, {3.0 * room + text_width(height, text), 3.0 * room + height}, kPanel, -1});
+    list.boxes.push_back(
+        {{room, room}, {3.0 * room + text_width(height, text), 3.0 * room + height}, kPanel, -1});
     add_text(list, {2.0 * room, 2.0 * room}, height, text, kInk);
 }
 

@@ -57,8 +57,10 @@ void OverlayLayer::draw_lines(const DrawList& list, const View& view, GLuint occ
         if (line.over_balls != over_balls) continue;
         const Vec3 a = line.a - origin, b = line.b - origin;
         const Rgba& c = line.color;
-        instances.push_back({{f(a.x()), f(a.y()), f(a.z())}, {f(b.x()), f(b.y()), f(b.z())},
-                             {c[0], c[1], c[2], c[3]}, line.width});
+        instances.push_back({{f(a.x()), f(a.y()), f(a.z())},
+                             {f(b.x()), f(b.y()), f(b.z())},
+                             {c[0], c[1], c[2], c[3]},
+                             line.width});
     }
     if (instances.empty()) return;
     api_.BindVertexArray(line_array_);
@@ -76,7 +78,8 @@ void OverlayLayer::draw_boxes(const DrawList& list, const View& view) {
     for (const DrawBox& box : list.boxes) {
         const Rgba& c = box.color;
         instances.push_back({{f(box.low.x()), f(box.low.y()), f(box.high.x()), f(box.high.y())},
-                             {c[0], c[1], c[2], c[3]}, static_cast<float>(box.glyph)});
+                             {c[0], c[1], c[2], c[3]},
+                             static_cast<float>(box.glyph)});
     }
     api_.BindVertexArray(box_array_);
     api_.BindBuffer(GL_ARRAY_BUFFER, box_buffer_);

@@ -46,8 +46,11 @@ void add_trail(DrawList& list, const BallTrack& track, double t, float width) {
         Vec3 before = segment.r;
         for (int piece = 1; piece <= pieces; ++piece) {
             const Vec3 next = position_at(segment, lasts * piece / pieces);
-            list.lines.push_back({{before.x(), before.y(), kOnCloth}, {next.x(), next.y(), kOnCloth}, width,
-                                  state_color(segment.state), false});
+            list.lines.push_back({{before.x(), before.y(), kOnCloth},
+                                  {next.x(), next.y(), kOnCloth},
+                                  width,
+                                  state_color(segment.state),
+                                  false});
             before = next;
         }
     }
@@ -64,8 +67,9 @@ void add_circle(DrawList& list, const Vec3& center, double radius, double from, 
 }
 
 bool is_impact(EventType type) {
-    return type == EventType::kBallBall || type == EventType::kBallCluster || type == EventType::kBallCushion ||
-           type == EventType::kBallJaw || type == EventType::kBallPocket || type == EventType::kCueStrike;
+    return type == EventType::kBallBall || type == EventType::kBallCluster ||
+           type == EventType::kBallCushion || type == EventType::kBallJaw || type == EventType::kBallPocket ||
+           type == EventType::kCueStrike;
 }
 
 Rgba event_color(EventType type) {
@@ -88,7 +92,8 @@ void add_events(DrawList& list, const Record& record, double t) {
         if (!is_impact(event.type) || event.a < 0) continue;
         const double when = std::nextafter(event.time, -1.0);  // before a pocket takes the ball away
         Vec3 place = record.state_at(event.a, when).position;
-        const bool pair = event.b >= 0 && (event.type == EventType::kBallBall || event.type == EventType::kBallCluster);
+        const bool pair =
+            event.b >= 0 && (event.type == EventType::kBallBall || event.type == EventType::kBallCluster);
         if (pair) place = 0.5 * (place + record.state_at(event.b, when).position);
         place.z() = kOnCloth;
         const Rgba color = event_color(event.type);
@@ -97,11 +102,13 @@ void add_events(DrawList& list, const Record& record, double t) {
         if (age >= 1.0) continue;
         Rgba fading = color;
         fading[3] = static_cast<float>(1.0 - age);
-        add_circle(list, place, record.balls.R * (1.0 + 2.0 * age), 0.0, 2.0 * kPi, line_width(list, 2.0), fading, true);
+        add_circle(list, place, record.balls.R * (1.0 + 2.0 * age), 0.0, 2.0 * kPi, line_width(list, 2.0),
+                   fading, true);
     }
 }
 
-void add_arrow_head(DrawList& list, const Vec3& tip, const Vec3& along, double size, float width, const Rgba& color) {
+void add_arrow_head(DrawList& list, const Vec3& tip, const Vec3& along, double size, float width,
+                    const Rgba& color) {
     const Vec3 side(-along.y(), along.x(), 0.0);
     for (double sign : {-1.0, 1.0}) {
         list.lines.push_back({tip, tip - size * (along + sign * 0.6 * side), width, color, true});
@@ -131,31 +138,38 @@ void add_spin(DrawList& list, const Record& record, double t) {
             add_circle(list, level_center, 1.4 * R, 0.0, arc, width, vertical, true);
             const Vec3 tip = level_center + 1.4 * R * Vec3(std::cos(arc), std::sin(arc), 0.0);
             const double sign = arc > 0.0 ? 1.0 : -1.0;
-            add_arrow_head(list, tip, sign * Vec3(-std::sin(arc), std::cos(arc), 0.0), 0.4 * R, width, vertical);
+            add_arrow_head(list, tip, sign * Vec3(-std::sin(arc), std::cos(arc), 0.0), 0.4 * R, width,
+                           vertical);
         }
     }
 }
 
 void add_ghost(DrawList& list, const Record& record, double t) {
     const auto next = std::find_if(record.events.begin(), record.events.end(), [t](const Event& event) {
-        return event.time > t && (event.type == EventType::kBallBall || event.type == EventType::kBallCluster);
+        return event.time > t &&
+               (event.type == EventType::kBallBall || event.type == EventType::kBallCluster);
     });
     if (next == record.events.end()) return;
-    const auto speed = [&](int ball) { return record.state_at(ball, std::nextafter(next->time, -1.0)).velocity.norm(); };
+    const auto speed = [&](int ball) {
+        return record.state_at(ball, std::nextafter(next->time, -1.0)).velocity.norm();
+    };
     const int striker = next->b >= 0 && speed(next->b) > speed(next->a) ? next->b : next->a;
-    const Vec3 there = record.state_at(striker, next->time).position, here = record.state_at(striker, t).position;
+    const Vec3 there = record.state_at(striker, next->time).position,
+               here = record.state_at(striker, t).position;
     const Rgba color{1.0F, 1.0F, 1.0F, 0.85F};
     const float width = line_width(list, 1.6);
     add_circle(list, there, record.balls.R, 0.0, 2.0 * kPi, width, color, true);
     if ((there - here).norm() > 2.0 * record.balls.R) {
         const Vec3 along = (there - here).normalized();
-        list.lines.push_back({here + record.balls.R * along, there - record.balls.R * along, width, color, false});
+        list.lines.push_back(
+            {here + record.balls.R * along, there - record.balls.R * along, width, color, false});
     }
 }
 
 }  // namespace
 
-void add_overlay(DrawList& list, const Record& record, const Overlay& overlay, double t, std::optional<FrameCost> cost) {
+void add_overlay(DrawList& list, const Record& record, const Overlay& overlay, double t,
+                 std::optional<FrameCost> cost) {
     if (overlay.trails) {
         for (const BallTrack& track : record.tracks) add_trail(list, track, t, line_width(list, 2.0));
     }

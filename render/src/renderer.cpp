@@ -64,7 +64,9 @@ PixelBox box_of(const DrawBall& ball, const Camera& camera) {
         low = low.cwiseMin(*pixel);
         high = high.cwiseMax(*pixel);
     }
-    const auto inside = [](double value, int limit) { return static_cast<int>(std::clamp(value, 0.0, double(limit))); };
+    const auto inside = [](double value, int limit) {
+        return static_cast<int>(std::clamp(value, 0.0, double(limit)));
+    };
     return {inside(low.x() - 2.0, all.x1), inside(low.y() - 2.0, all.y1), inside(high.x() + 3.0, all.x1),
             inside(high.y() + 3.0, all.y1)};
 }
@@ -139,8 +141,8 @@ struct Renderer::Impl {
                 api.DeleteFramebuffers(1, &target.framebuffer);
                 api.DeleteTextures(1, &target.color);
             }
-            target.color =
-                gl::make_texture(api, wanted.width, wanted.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+            target.color = gl::make_texture(api, wanted.width, wanted.height, GL_RGBA8, GL_RGBA,
+                                            GL_UNSIGNED_BYTE, nullptr);
             target.framebuffer = gl::make_framebuffer(api, target.color, 0);
         }
         size = wanted;
@@ -171,8 +173,8 @@ struct Renderer::Impl {
         api.BindFramebuffer(GL_READ_FRAMEBUFFER, table_layer->framebuffer());
         api.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
         for (const PixelBox& box : target.drawn) {
-            api.BlitFramebuffer(box.x0, box.y0, box.x1, box.y1, box.x0, box.y0, box.x1, box.y1, GL_COLOR_BUFFER_BIT,
-                                GL_NEAREST);
+            api.BlitFramebuffer(box.x0, box.y0, box.x1, box.y1, box.x0, box.y0, box.x1, box.y1,
+                                GL_COLOR_BUFFER_BIT, GL_NEAREST);
         }
         target.drawn = touched_boxes(list);
     }
@@ -196,14 +198,17 @@ struct Renderer::Impl {
         api.BindFramebuffer(GL_FRAMEBUFFER, targets[current].framebuffer);
         api.Disable(GL_DEPTH_TEST);
         api.Enable(GL_BLEND);
-        api.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+        api.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
         const GLsizei balls = upload_balls(list);
         if (balls > 0) {
             api.BindVertexArray(ball_array);
+            // Shadows only darken: one factor for all channels is the driver's fast way.
+            api.BlendFuncSeparate(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
             view.set(api, shadow_program);
             gl::bind_texture(api, shadow_program, 0, "u_background", table_layer->color());
             api.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 8, balls);
         }
+        api.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
         overlay_layer->draw_lines(list, view, table_layer->occluders(), false);
         if (balls > 0) {
             api.BindVertexArray(ball_array);

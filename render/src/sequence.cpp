@@ -37,19 +37,21 @@ bool is_frame_of_size(const std::string& path, FrameSize size) {
     const bool whole = std::fread(head.data(), 1, head.size(), file) == head.size();
     std::fclose(file);
     const auto number = [&](std::size_t i) {
-        return (unsigned{head[i]} << 24U) | (unsigned{head[i + 1]} << 16U) | (unsigned{head[i + 2]} << 8U) | head[i + 3];
+        return (unsigned{head[i]} << 24U) | (unsigned{head[i + 1]} << 16U) | (unsigned{head[i + 2]} << 8U) |
+               head[i + 3];
     };
     // Signature, then the header chunk with width and height.
     constexpr std::array<unsigned char, 8> kSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
     return whole && std::equal(kSignature.begin(), kSignature.end(), head.begin()) &&
-           number(16) == static_cast<unsigned>(size.width) && number(20) == static_cast<unsigned>(size.height);
+           number(16) == static_cast<unsigned>(size.width) &&
+           number(20) == static_cast<unsigned>(size.height);
 }
 
 std::vector<FrameTiming> frames_to_do(const Record& record, const SequenceOptions& options) {
     const long count = frame_count(options.from, options.to.value_or(record.duration), options.fps);
     if (options.frame && (*options.frame < 0 || *options.frame >= count)) {
-        throw RenderError("no frame " + std::to_string(*options.frame) + ": there are " + std::to_string(count) +
-                          ", counted from 0");
+        throw RenderError("no frame " + std::to_string(*options.frame) + ": there are " +
+                          std::to_string(count) + ", counted from 0");
     }
     std::vector<FrameTiming> frames;
     for (long k = options.frame.value_or(0); k < (options.frame ? *options.frame + 1 : count); ++k) {
@@ -78,7 +80,8 @@ StageOptions stage_options(const SequenceOptions& options) {
 
 void check_options(const SequenceOptions& options) {
     if (options.png_level < 0 || options.png_level > 9) throw RenderError("the PNG level must be 0 to 9");
-    if (options.size.width < 1 || options.size.height < 1) throw RenderError("an image needs at least one pixel");
+    if (options.size.width < 1 || options.size.height < 1)
+        throw RenderError("an image needs at least one pixel");
     if (options.resume && (options.pattern.empty() || options.raw)) {
         throw RenderError("only frames in files can be resumed");
     }
@@ -103,8 +106,10 @@ class FrameLoop {
         renderer_.finish();
         for (std::size_t i = 0; i < frames_.size(); ++i) {
             draw(i);
-            if (threads_ == 0) read(i, false);
-            else if (i > 0) read(i - 1, true);
+            if (threads_ == 0)
+                read(i, false);
+            else if (i > 0)
+                read(i - 1, true);
             if (options_.progress) options_.progress(skipped + static_cast<long>(i) + 1, total);
         }
         if (threads_ > 0) read(frames_.size() - 1, false);
@@ -115,7 +120,8 @@ class FrameLoop {
     DrawList list_of(std::size_t i) const {
         std::optional<FrameCost> cost;
         if (options_.overlay.margin) {
-            // The time that the frame itself takes is not known while it is drawn: that of the last one stands for it.
+            // The time that the frame itself takes is not known while it is drawn: that of the last one
+            // stands for it.
             const FrameTiming& last = frames_[i > 0 ? i - 1 : 0];
             cost = FrameCost{options_.frame_cost_ms ? options_.frame_cost_ms(frames_[i].frame)
                                                     : last.draw_ms + last.readback_ms,
@@ -154,20 +160,23 @@ std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOpt
     const bool files = !options.pattern.empty() && !options.raw;
     if (files) frame_path(options.pattern, 0);
     std::vector<FrameTiming> frames = frames_to_do(record, options);
-    const long count = options.frame ? 1 : frame_count(options.from, options.to.value_or(record.duration), options.fps);
+    const long count =
+        options.frame ? 1 : frame_count(options.from, options.to.value_or(record.duration), options.fps);
     if (files) make_folder(options.pattern);
     FrameLoop(record, options, frames).run(count - static_cast<long>(frames.size()));
     return frames;
 }
 
-void render_sheet(const Record& record, const SequenceOptions& options, int columns, int rows, const std::string& path) {
+void render_sheet(const Record& record, const SequenceOptions& options, int columns, int rows,
+                  const std::string& path) {
     check_options(options);
     if (columns < 1 || rows < 1 || columns > options.size.width / 16 || rows > options.size.height / 16) {
         throw RenderError("a sheet needs at least one column and one row, and 16 pixels for each");
     }
     constexpr int kGap = 2;  // pixels between the pictures
     StageOptions cell = stage_options(options);
-    cell.size = {(options.size.width - kGap * (columns - 1)) / columns, (options.size.height - kGap * (rows - 1)) / rows};
+    cell.size = {(options.size.width - kGap * (columns - 1)) / columns,
+                 (options.size.height - kGap * (rows - 1)) / rows};
     cell.overlay.clock = true;
     const Stage stage(record, cell);
     Renderer renderer(options.backend);
@@ -178,10 +187,12 @@ void render_sheet(const Record& record, const SequenceOptions& options, int colu
     for (int i = 0; i <= last; ++i) {
         renderer.draw(stage.at(last == 0 ? options.from : options.from + (to - options.from) * i / last));
         renderer.read(picture);
-        const int left = i % columns * (cell.size.width + kGap), top = i / columns * (cell.size.height + kGap);
+        const int left = i % columns * (cell.size.width + kGap),
+                  top = i / columns * (cell.size.height + kGap);
         for (int y = 0; y < cell.size.height; ++y) {
-            const std::size_t at = 4 * (static_cast<std::size_t>(top + y) * static_cast<std::size_t>(sheet.size.width) +
-                                        static_cast<std::size_t>(left));
+            const std::size_t at =
+                4 * (static_cast<std::size_t>(top + y) * static_cast<std::size_t>(sheet.size.width) +
+                     static_cast<std::size_t>(left));
             std::copy_n(picture.pixel(0, y), std::size_t{4} * static_cast<std::size_t>(cell.size.width),
                         sheet.rgbx.begin() + static_cast<std::ptrdiff_t>(at));
         }

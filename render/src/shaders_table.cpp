@@ -21,8 +21,8 @@ void main() {
 }
 )";
 
-// A software renderer runs both sides of every branch: so there is one program per kind of surface. The floor's has no
-// discard, so that what the table hides of it costs nothing.
+// A software renderer runs both sides of every branch: so there is one program per kind of surface. The
+// floor's has no discard, so that what the table hides of it costs nothing.
 const char* const kClothOnly = "#define CLOTH\n";
 const char* const kWoodOnly = "#define WOOD\n";
 const char* const kFloorOnly = "#define FLOOR\n";
@@ -113,7 +113,7 @@ void main() {
     // Cushions reach over the rims of the holes; the playing surface ends there.
     bool playing = v_material == 0;
     if (playing && in_hole(p)) discard;
-    color = vec4(lit(cloth_albedo(p) * (playing ? 1.0 : 0.93), n), playing ? 1.0 : 0.0);
+    color = vec4(lit(cloth_albedo(p) * (playing ? 1.0 : 1.12), n), playing ? 1.0 : 0.0);
 #elif defined(WOOD)
     if (in_hole(p)) discard;
     color = vec4(glossy(lit(wood_albedo(v_uv), n), n, 5.0, 0.25), 0.0);

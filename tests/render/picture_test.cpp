@@ -220,7 +220,7 @@ TEST(Picture, BallsThrowSoftShadowsOnTheClothAlone) {
 TEST(Picture, TheSameListGivesTheSamePixels) {
     Record record = render_test::rectangle_record();
     add_ball(record, "1", 0.5, 1.0);
-        Renderer renderer;
+    Renderer renderer;
     Image first, second;
     const DrawList list = list_of(record, {320, 180});
     renderer.draw(list);

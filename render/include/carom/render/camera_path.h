@@ -15,11 +15,11 @@ namespace carom::render {
 struct FreeCamera {
     std::optional<Vec3> eye, target;  ///< [m]; both, or neither for a named camera
     double fov_deg = 45.0;            ///< of the free camera, over the height of the image
-    std::string ball;                 ///< id of the ball that "follow" follows; default: the one that moves first
+    std::string ball;  ///< id of the ball that "follow" follows; default: the one that moves first
 };
 
-/// top: from above, the table filling the image. rail: from behind the head rail, the whole table. player: over the
-/// ball that moves first, along its way. follow: behind a ball, moving smoothly with it.
+/// top: from above, the table filling the image. rail: from behind the head rail, the whole table. player:
+/// over the ball that moves first, along its way. follow: behind a ball, moving smoothly with it.
 class CameraPath {
   public:
     /// Both must outlive the path. @throws RenderError for an unknown camera or ball, naming those there are

@@ -45,7 +45,8 @@ struct DrawBall {
 
 using Rgba = std::array<float, 4>;  ///< as on the screen, 0..1; the last is opacity
 
-/// A straight line in the table's space, of a width in pixels, with round ends. What stands before it hides it.
+/// A straight line in the table's space, of a width in pixels, with round ends. What stands before it hides
+/// it.
 struct DrawLine {
     Vec3 a{0.0, 0.0, 0.0}, b{0.0, 0.0, 0.0};
     float width = 2.0F;
@@ -66,7 +67,8 @@ struct DrawList {
     std::vector<DrawBall> balls;
     std::vector<DrawLine> lines;
     std::vector<DrawBox> boxes;
-    int table_samples = 16;  ///< per pixel of the table; it is drawn anew only when the camera or the table changes
+    int table_samples =
+        16;  ///< per pixel of the table; it is drawn anew only when the camera or the table changes
 };
 
 /// Appends a line of text with its upper left corner at `at`; height of a capital in pixels.

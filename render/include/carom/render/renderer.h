@@ -27,8 +27,8 @@ class Renderer {
     /// Copies the pixels of the last draw().
     void read(Image& image);
 
-    /// Copies those of the draw() before, while the last one goes on in the driver's threads. Needs two draws of one
-    /// size before.
+    /// Copies those of the draw() before, while the last one goes on in the driver's threads. Needs two draws
+    /// of one size before.
     void read_previous(Image& image);
 
     /// "4.5 (Core Profile) Mesa 22.3.6, llvmpipe ..."

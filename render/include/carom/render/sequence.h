@@ -15,11 +15,13 @@
 
 namespace carom::render {
 
-/// Receives one frame as packed RGB rows, top row first. Frames come in order, from one thread (not the caller's).
+/// Receives one frame as packed RGB rows, top row first. Frames come in order, from one thread (not the
+/// caller's).
 using RawSink = std::function<void(const std::uint8_t* rgb, std::size_t bytes)>;
 
 struct SequenceOptions {
-    std::string pattern = "frames/%05d.png";  ///< exactly one %d or %0Nd; empty: frames are encoded, thrown away
+    std::string pattern =
+        "frames/%05d.png";  ///< exactly one %d or %0Nd; empty: frames are encoded, thrown away
     double fps = 60.0;
     double from = 0.0;          ///< s
     std::optional<double> to;   ///< s; default: the record's duration
@@ -30,11 +32,12 @@ struct SequenceOptions {
     Overlay overlay;
     /// What frame k cost, simulation included [ms], for the margin bar; default: what drawing it took.
     std::function<double(long k)> frame_cost_ms;
-    int table_samples = 16;  ///< per pixel of the table, drawn once per camera; a camera that moves takes at most 4
-    int png_level = 1;       ///< zlib level 0..9
+    int table_samples =
+        16;  ///< per pixel of the table, drawn once per camera; a camera that moves takes at most 4
+    int png_level = 1;  ///< zlib level 0..9
     Backend backend = Backend::kOsmesa;
-    /// Threads that encode and write. 1: no thread but the caller's, so that the timings do not disturb each other.
-    /// 0: one per core, and 1 with an empty pattern, which is for measuring.
+    /// Threads that encode and write. 1: no thread but the caller's, so that the timings do not disturb each
+    /// other. 0: one per core, and 1 with an empty pattern, which is for measuring.
     int jobs = 0;
     bool resume = false;  ///< leave out frames whose finished file is there; it must be a PNG of this size
     RawSink raw;          ///< instead of PNG files; the pattern is not used
@@ -63,9 +66,11 @@ std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOpt
 /// The file of frame k; @throws RenderError for a pattern without exactly one integer conversion.
 std::string frame_path(const std::string& pattern, long k);
 
-/// A contact sheet: columns x rows pictures of the shot, evenly spread from `from` to `to` with both ends, row by row,
-/// each with its clock. options.size is the size of the whole sheet; pattern, frame, jobs and raw are not used.
+/// A contact sheet: columns x rows pictures of the shot, evenly spread from `from` to `to` with both ends,
+/// row by row, each with its clock. options.size is the size of the whole sheet; pattern, frame, jobs and raw
+/// are not used.
 /// @throws RenderError
-void render_sheet(const Record& record, const SequenceOptions& options, int columns, int rows, const std::string& path);
+void render_sheet(const Record& record, const SequenceOptions& options, int columns, int rows,
+                  const std::string& path);
 
 }  // namespace carom::render
