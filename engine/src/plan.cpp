@@ -98,6 +98,8 @@ Plan make_plan(const Scene& scene, kernel::Isa isa) {
     plan.balls = scene.balls;
     plan.gravity = scene.physics.gravity;
     add_geometry(scene.table, plan);
+    plan.cushion = &cushion_model(scene.physics.cushion);
+    plan.jaw = &cushion_model(scene.physics.jaw_model());
     decide_effects(scene, plan);
     plan.isa = isa;
     if (scene.physics.substeps) plan.march = kernel::march_function(isa);

@@ -1,6 +1,7 @@
 // How models are spelt in files, and the text of a scene error.
 #include <fmt/format.h>
 
+#include "carom/engine/cushion.h"
 #include "carom/engine/scene.h"
 
 namespace carom {
@@ -22,13 +23,7 @@ const char* name(BallBallModel model) {
 }
 
 const char* name(CushionModel model) {
-    switch (model) {
-        case CushionModel::kSmooth:
-            return "smooth";
-        case CushionModel::kHan2005:
-            return "han_2005";
-    }
-    return "?";
+    return cushion_model(model).name;
 }
 
 const char* name(ClusterModel model) {

@@ -24,9 +24,9 @@ constexpr Choice<BallBallModel> kBallBallModels[] = {{"mathavan", BallBallModel:
                                                      {"elastic", BallBallModel::kElastic}};
 constexpr Choice<CushionModel> kCushionModels[] = {{"han_2005", CushionModel::kHan2005},
                                                    {"smooth", CushionModel::kSmooth},
-                                                   {"mathavan_2010", std::nullopt},
-                                                   {"stronge", std::nullopt},
-                                                   {"impulse", std::nullopt}};
+                                                   {"mathavan_2010", CushionModel::kMathavan2010},
+                                                   {"stronge", CushionModel::kStronge},
+                                                   {"impulse", CushionModel::kImpulse}};
 constexpr Choice<ClothSlipSign> kClothSlipSigns[] = {{"consistent", ClothSlipSign::kConsistent},
                                                      {"as_published", ClothSlipSign::kAsPublished}};
 constexpr Choice<ClusterModel> kClusterModels[] = {
@@ -184,11 +184,12 @@ void read_physics(const Section& top, Scene& scene) {
     const toml::table* table = top.table("physics");
     if (!table) return;
     const Section s(*table, top.file(), "physics",
-                    {"gravity", "ball_ball", "cushion", "cloth_slip", "clusters", "tolerance", "substeps"});
+                    {"gravity", "ball_ball", "cushion", "jaw", "cloth_slip", "clusters", "tolerance", "substeps"});
     Physics& p = scene.physics;
     p.gravity = s.number("gravity", p.gravity, at_least(0.0, kMaxGravity, "m/s^2"));
     p.ball_ball = s.choice("ball_ball", p.ball_ball, kBallBallModels);
     p.cushion = s.choice("cushion", p.cushion, kCushionModels);
+    if (s.has("jaw")) p.jaw = s.choice("jaw", p.cushion, kCushionModels);
     p.cloth_slip = s.choice("cloth_slip", p.cloth_slip, kClothSlipSigns);
     p.clusters = s.choice("clusters", p.clusters, kClusterModels);
     p.tolerance = s.number("tolerance", p.tolerance, at_least(kernel::kTightestTolerance, kernel::kLoosestTolerance));

@@ -109,8 +109,9 @@ void Shot::resolve_nose(const Candidate& c) {
     if (hold_instead(contact, v_n, -(normal.x() * pull.x() + normal.y() * pull.y()) - curving, plan_.balls.e_c)) return;
 
     const BallParams& p = plan_.balls;
-    resolve_cushion(plan_.scene.physics.cushion, {p.R, p.m, p.mu_s, p.e_c, p.f_c, height}, normal, v, w);
-    if constexpr (kProfile) cost_.method = name(plan_.scene.physics.cushion);
+    const CushionModelInfo& model = contact.jaw ? *plan_.jaw : *plan_.cushion;
+    model.resolve({p.R, p.m, p.mu_s, p.e_c, p.f_c, height}, normal, v, w);
+    if constexpr (kProfile) cost_.method = model.name;
     free_ball(c.a);
     begin(c.a, start_segment(now_, r, v, w, motion_));
     record_event(c.type, c.a, c.b, c.nose);

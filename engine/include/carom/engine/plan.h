@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/cushion.h"
 #include "carom/engine/record.h"
 #include "carom/engine/scene.h"
 #include "carom/kernel/closed_forms.h"
@@ -44,6 +45,8 @@ struct Plan {
     std::vector<CushionLine> cushions;
     std::vector<Nose> noses;
     std::vector<Pocket> pockets;
+    const CushionModelInfo* cushion = nullptr;  ///< of straight noses and their ends
+    const CushionModelInfo* jaw = nullptr;      ///< of round jaws
     std::vector<EffectDecision> effects;
     kernel::Isa isa = kernel::Isa::kScalar;
     kernel::MarchFunction march = nullptr;           ///< set where the scene asks for substeps

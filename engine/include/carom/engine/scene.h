@@ -58,14 +58,16 @@ struct Cue {
 };
 
 enum class BallBallModel : std::uint8_t { kMathavan, kInelastic, kElastic };
-enum class CushionModel : std::uint8_t { kSmooth, kHan2005 };
+enum class CushionModel : std::uint8_t { kSmooth, kHan2005, kMathavan2010, kImpulse, kStronge };
 enum class ClusterModel : std::uint8_t { kCompliant, kSequential, kRigid };
 enum class ClothSlipSign : std::uint8_t { kConsistent, kAsPublished };
 
 struct Physics {
     double gravity = 9.81;  ///< [m/s^2]
     BallBallModel ball_ball = BallBallModel::kMathavan;
-    CushionModel cushion = CushionModel::kHan2005;
+    CushionModel cushion = CushionModel::kHan2005;  ///< straight noses
+    std::optional<CushionModel> jaw;                ///< round jaws; nothing: as the straight noses
+    CushionModel jaw_model() const { return jaw.value_or(cushion); }
     ClothSlipSign cloth_slip = ClothSlipSign::kConsistent;
     ClusterModel clusters = ClusterModel::kCompliant;
     double tolerance = 1e-6;      ///< of the impact (mathavan), relative to the approach speed

@@ -55,6 +55,18 @@ inline constexpr double kHoldShortest = 1e-5;
 /// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the straight line.
 inline constexpr double kHoldStraight = 1e-9;
 
+/// [of the approach speed] Error per step of the cushion model mathavan_2010, and the slip at the nose or the cloth that counts
+/// as none. The direction of a slip near the tolerance is noise of the integration; a hundred times above it is not.
+inline constexpr double kCushionTolerance = 1e-10;
+inline constexpr double kCushionStick = 1e-8;
+/// A nose that has let go slips by less than this for a while, and its direction follows the drive at once (stiff): it is taken
+/// as driven. What that leaves out is of second order, about the square root of this times its square.
+inline constexpr double kCushionCreep = 1e-4;
+inline constexpr int kCushionSteps = 20000;  ///< [-] bound on its steps; a real impact takes 10 to 1000
+/// [-] Grid on which the cushion model stronge brackets the end of stick: a thirtieth of the restitution, far finer than the
+/// swing of its tangential spring.
+inline constexpr int kStrongeGrid = 32;
+
 /// [share of the jaw radius] A cushion end this close to a jaw's circle is rounded off by it and needs no tip of its own. The
 /// jaw is a full circle, so nothing can slip between the two.
 inline constexpr double kJawJoinShare = 1e-9;
