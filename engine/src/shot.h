@@ -77,6 +77,7 @@ class Shot {
     bool hold_instead(const HeldContact& contact, double v_n, double a_c, double restitution);
     void free_ball(int ball);
     void solve_group(int ball, bool transitions);
+    bool release_past_ends(HeldGroup& group);
     void refresh_normal(HeldContact& contact) const;
     void sort_by_place(std::vector<HeldContact>& contacts) const;
     void restore_held();
