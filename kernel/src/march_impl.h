@@ -7,6 +7,7 @@
 
 #include "carom/kernel/march.h"
 #include "frame.h"
+#include "ladder/loop_marks.h"
 
 namespace carom::kernel {
 namespace {
@@ -27,6 +28,7 @@ long march_loop(FrameState& s, const ImpactParams& p, int n) {
     double v_n = s.v2y - s.v1y;  // < 0 while approaching
     long steps = 0;
     while (v_n < 0.0 || compressing || W < W_f) {
+        CAROM_LOOP_BEGIN("baseline");
         if (++steps > limit) return -1;
         // Slip at the contact, between the balls, and at the cloth.
         const double c_x = s.v1x - s.v2x - R * (s.w1z + s.w2z);
@@ -72,6 +74,7 @@ long march_loop(FrameState& s, const ImpactParams& p, int n) {
             compressing = false;
             W_f = (1.0 + p.e_b * p.e_b) * W;
         }
+        CAROM_LOOP_END("baseline");
     }
     return steps;
 }

@@ -5,6 +5,7 @@
 
 #include "carom/kernel/batch.h"
 #include "lanes.h"
+#include "loop_marks.h"
 
 namespace carom::kernel {
 namespace {
@@ -145,8 +146,10 @@ class BatchMarch {
         Lanes<W> s[U];
         for (int u = 0; u < U; ++u) s[u] = g.lanes[u];
         for (long m = 0; m < steps; ++m) {
+            CAROM_LOOP_BEGIN("lanes");
 #pragma GCC unroll 4
             for (int u = 0; u < U; ++u) lane_step<W, Roots, Arithmetic, kSign>(s[u]);
+            CAROM_LOOP_END("lanes");
         }
         for (int u = 0; u < U; ++u) g.lanes[u] = s[u];
     }

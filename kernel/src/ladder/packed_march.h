@@ -15,6 +15,7 @@
 
 #include <immintrin.h>
 
+#include "loop_marks.h"
 #include "reduced.h"
 
 namespace carom::kernel {
@@ -108,6 +109,7 @@ class PackedMarch {
         // exact roots.
         __m256d R1 = _mm256_setzero_pd(), R2 = R1, R3 = R1, R4 = R1, R5 = R1, R6 = R1;
         for (long m = 0; m < count; ++m) {
+            CAROM_LOOP_BEGIN("packed march");
             const __m256d pushed = _mm256_add_pd(S, push);
             __m256d R, next;
             bool late = false;
@@ -148,9 +150,10 @@ class PackedMarch {
                     R = _mm256_fmadd_pd(_mm256_mul_pd(half, T), e, T);
                     late = all_within(e, kLateError);
                 }
-                if (!late) R = all_within(e, kSeriesError) ? series(T, e) : exact_roots(S);
+                if (!late) [[unlikely]]
+                    R = all_within(e, kSeriesError) ? series(T, e) : exact_roots(S);
             }
-            if (!late) {
+            if (!late) [[unlikely]] {
                 const __m256d SR = _mm256_mul_pd(S, R);
                 const __m256d z = _mm256_permute4x64_pd(SR, 0b10101010), aabb = _mm256_permute_pd(SR, 0b1111);
                 const __m256d q = _mm256_mul_pd(_mm256_mul_pd(mu, z), aabb);
@@ -165,6 +168,7 @@ class PackedMarch {
             R3 = R2;
             R2 = R1;
             R1 = R;
+            CAROM_LOOP_END("packed march");
         }
         alignas(32) double end[4], sum[4];
         _mm256_store_pd(end, S);

@@ -6,6 +6,7 @@
 // flips, a slip near zero, a ball that starts rolling) exact steps are taken.
 #pragma once
 
+#include "loop_marks.h"
 #include "reduced.h"
 #include "sum_tables.h"
 #include "vector8.h"
@@ -140,6 +141,7 @@ class SummedMarch {
         Vector8 a = a0 + at * (f0.xi - kKappa * f0.q_x);
         Vector8 b = b0 + push - at * ((2.5 * kSign) * f0.t + kKappa * f0.q_y);
         for (int sweep = 1;; ++sweep) {
+            CAROM_LOOP_BEGIN("summed sweep");
             f = rates(x, z, a, b, mu_s);
             const Vector8 next_x = combined(table.sums, all8(r.x), f.q_x - 7.0 * f.xi);
             const Vector8 next_z = combined(table.sums, all8(z0), 2.5 * f.q_y - 5.0 * f.t);
@@ -151,6 +153,7 @@ class SummedMarch {
             z = next_z;
             a = next_a;
             b = next_b;
+            CAROM_LOOP_END("summed sweep");
             if (change <= kSweepTolerance * scale) break;
             if (sweep == 2 && !resolved(table, f, 1e3)) return false;
             if (!(sweep < kMostSweeps)) return false;

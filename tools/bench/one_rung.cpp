@@ -1,0 +1,32 @@
+// Runs one rung on the paper's five states, for tools that watch a whole process: one_rung NAME ISA CALLS [N].
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "carom/kernel/ladder.h"
+#include "five_states.h"
+
+int main(int argc, char** argv) {
+    using namespace carom;
+    kernel::Isa isa{};
+    if (argc < 4 || !kernel::parse_isa(argv[2], isa) || !kernel::available(isa)) {
+        std::fprintf(stderr, "usage: one_rung NAME scalar|v3|v4 CALLS [N]\n");
+        return 2;
+    }
+    const int n = argc > 4 ? std::atoi(argv[4]) : 1000;
+    for (const kernel::Rung& rung : kernel::ladder()) {
+        if (std::strcmp(rung.name, argv[1]) != 0 || rung.isa != isa || rung.march == nullptr) continue;
+        long steps = 0;
+        for (long i = 0; i < std::atol(argv[3]); ++i) {
+            for (const tools::BenchImpact& s : tools::kFiveStates) {
+                kernel::ImpactResult out;
+                rung.march(s.ball1, s.ball2, s.params, n, out);
+                steps += out.steps;
+            }
+        }
+        std::printf("%ld\n", steps);
+        return 0;
+    }
+    std::fprintf(stderr, "one_rung: no rung \"%s\" for one impact on %s\n", argv[1], argv[2]);
+    return 2;
+}

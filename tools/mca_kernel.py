@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+"""Cycles, bottleneck and register use of the kernel's loops by llvm-mca.
+
+Compiles one loop a file with gcc (and clang where given), cuts its body out of the assembly at the marks of
+kernel/src/ladder/loop_marks.h, and simulates it. The fall-through path alone is taken: code that the compiler moved out of
+line (a step that falls back, a lane that flips) is not part of it. llvm-mca 14 knows znver1..3 and, for AArch64, apple-m1.
+
+    tools/mca_kernel.py [--cxx g++] [--json FILE]
+"""
+import argparse
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SINGLE = """#include "ladder/{header}"
+namespace carom::kernel {{
+void probe(const Ball& a, const Ball& b, const ImpactParams& p, int n, ImpactResult& out) noexcept {{
+    Frame frame; FrameState s;
+    if (enter_frame(a, b, p, frame, s, out) != ImpactStatus::kOk) return;
+    const long steps = {loop}::loop<-1>(s, p, n);
+    leave_frame(a, b, frame, s, steps, out);
+}} }}
+"""
+BATCH = """#include "ladder/batch_driver.h"
+namespace carom::kernel {{
+void probe(const ImpactBatch& b, int n, const ImpactBatchResult& r) noexcept {{
+    BatchMarch<{arguments}, -1>(b, n, r).run();
+}} }}
+"""
+PLAIN = """#define CAROM_MARCH_NAME probe
+#include "march_impl.h"
+"""
+# name, source, level, steps of one impact that one pass of the loop does
+LOOPS = [
+    ("baseline", PLAIN, "v3", 1),
+    ("packed", SINGLE.format(header="packed_march.h", loop="PackedExact"), "v3", 1),
+    ("extrapolated seed", SINGLE.format(header="packed_march.h", loop="ExtrapolatedSeed"), "v3", 1),
+    ("pipelined", SINGLE.format(header="packed_march.h", loop="Pipelined"), "v3", 1),
+    ("carried roots", SINGLE.format(header="packed_march.h", loop="CarriedRoots"), "v3", 1),
+    ("summed, one sweep", SINGLE.format(header="summed.h", loop="Summed"), "v3", 1),
+    ("four lanes", BATCH.format(arguments="4, 1, LaneExactRoots, SeparateArithmetic"), "v3", 4),
+    ("four lanes carried", BATCH.format(arguments="4, 1, LaneCarriedRoots, FusedArithmetic"), "v3", 4),
+    ("2x4 lanes", BATCH.format(arguments="4, 2, LaneCarriedRoots, FusedArithmetic"), "v3", 8),
+]
+
+
+def assembly(cxx, source, level, folder):
+    path = pathlib.Path(folder) / "probe.cpp"
+    path.write_text(source)
+    command = [cxx, "-std=c++20", "-O3", f"-march=x86-64-{level}", "-ffp-contract=off", "-DCAROM_LOOP_MARKS", "-w",
+               f"-I{ROOT}/kernel/include", f"-I{ROOT}/kernel/src", "-S", "-o", "-", str(path)]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
+
+
+def body(lines):
+    """The longest marked stretch, without labels, marks, and what belongs to the assembler."""
+    best, current = [], None
+    for line in lines:
+        if "LLVM-MCA-BEGIN" in line:
+            current = []
+        elif "LLVM-MCA-END" in line:
+            if current is not None and len(current) > len(best):
+                best = current
+            current = None
+        elif current is not None and re.match(r"\s+[a-z]", line) and not re.match(r"\s+\.", line):
+            current.append(line)
+    return best
+
+
+def simulate(code, cpu):
+    command = ["llvm-mca", f"-mcpu={cpu}", "-iterations=300", "-bottleneck-analysis", "-register-file-stats"]
+    run = subprocess.run(command, input="\n".join(code) + "\n", capture_output=True, text=True)
+    if run.returncode != 0:
+        return None
+    text = run.stdout
+
+    def number(pattern, default=0.0):
+        match = re.search(pattern, text)
+        return float(match.group(1)) if match else default
+
+    return {
+        "instructions": len(code),
+        "cycles": number(r"Total Cycles:\s+(\d+)") / 300,
+        "throughput_bound": number(r"Block RThroughput:\s+([\d.]+)"),
+        "resource_pressure": number(r"Resource Pressure\s+\[ ([\d.]+)%"),
+        "data_dependencies": number(r"Data Dependencies:\s+\[ ([\d.]+)%"),
+        "fp_registers_used": number(r"JFPRegisterFile.*|Zn3FpPRF[\s\S]*?Max number of mappings used:\s+(\d+)"),
+    }
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cxx", nargs="+", default=["g++"])
+    parser.add_argument("--cpu", nargs="+", default=["znver3"])
+    parser.add_argument("--json")
+    args = parser.parse_args()
+    rows = []
+    print(f"{'loop':<22}{'compiler':<12}{'cpu':<9}{'instr':>6}{'cycles':>8}{'/step':>8}{'bound':>7}{'data dep':>9}{'fp regs':>8}")
+    with tempfile.TemporaryDirectory() as folder:
+        for cxx in args.cxx:
+            for name, source, level, steps in LOOPS:
+                code = body(assembly(cxx, source, level, folder))
+                for cpu in args.cpu:
+                    r = simulate(code, cpu)
+                    if r is None:
+                        print(f"{name:<22}{cxx:<12}{cpu:<9} llvm-mca cannot simulate it", file=sys.stderr)
+                        continue
+                    rows.append({"loop": name, "compiler": cxx, "cpu": cpu, "steps": steps, **r})
+                    print(f"{name:<22}{cxx:<12}{cpu:<9}{r['instructions']:>6}{r['cycles']:>8.1f}{r['cycles'] / steps:>8.1f}"
+                          f"{r['throughput_bound']:>7.1f}{r['data_dependencies']:>8.1f}%{r['fp_registers_used']:>8.0f}")
+    if args.json:
+        pathlib.Path(args.json).write_text(json.dumps({"rows": rows}, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
