@@ -139,7 +139,7 @@ Motions possible_motions(const Scene& scene) {
     const bool cushions = !scene.table.cushions.empty() || !scene.table.jaws.empty();
     const bool pairs = scene.ball.size() > 1;
     m.slip = m.slip || cushions || pairs;
-    m.twist = m.twist || (pairs && scene.balls.mu_b > 0.0) || cushions_twist(scene);
+    m.twist = m.twist || (pairs && scene.balls.ball_friction()) || cushions_twist(scene);
     return m;
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "carom/engine/cushion.h"
+#include "carom/engine/math.h"
 #include "carom/engine/scene.h"
 
 namespace carom {
@@ -9,6 +10,11 @@ namespace carom {
 SceneError::SceneError(const std::string& file, SourceLocation where, const std::string& message)
     : std::runtime_error(where.line > 0 ? fmt::format("{}:{}:{}: {}", file, where.line, where.column, message)
                                         : fmt::format("{}: {}", file, message)) {}
+
+double ball_friction(const BallParams& balls, double slip) {
+    if (balls.mu_b_more == 0.0) return balls.mu_b;
+    return balls.mu_b + balls.mu_b_more * exponential(-balls.mu_b_fall * slip);
+}
 
 const char* name(BallBallModel model) {
     switch (model) {

@@ -58,6 +58,7 @@ class Shot {
     void resolve_ball_ball(const Candidate& c);
     template <bool kProfile>
     void resolve_nose(const Candidate& c);
+    double pair_friction(int one, int two) const;
     void resolve_pocket(const Candidate& c);
     void resolve_transition(const Candidate& c);
     void record_event(EventType type, int a, int b, int detail = -1);

@@ -96,7 +96,7 @@ Candidate Shot::pair(int a, int b) const {
 
 void Shot::rescan(int ball) {
     Candidate first;
-    for (int j = 0; j < balls_ && in_play(now_of(ball)); ++j) {
+    for (int j = 0; plan_.pairs && j < balls_ && in_play(now_of(ball)); ++j) {
         if (j == ball || !in_play(now_of(j)) || held_together(ball, j)) continue;
         const Candidate c = pair(ball, j);
         if (before(c, first)) first = c;
@@ -149,7 +149,7 @@ void Shot::redetect() {
         detect_features(i);
         rescan(i);
     }
-    for (int j = 0; j < balls_; ++j) {
+    for (int j = 0; plan_.pairs && j < balls_; ++j) {
         if (is_touched(j) || !in_play(now_of(j))) continue;
         Candidate& mine = pair_[static_cast<std::size_t>(j)];
         if (mine.time != kNever && (is_touched(mine.a) || is_touched(mine.b))) {

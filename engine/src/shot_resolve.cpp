@@ -19,6 +19,18 @@ void Shot::record_event(EventType type, int a, int b, int detail) {
     quiet_ = 0;
 }
 
+// Friction of the two at the slip that they have now.
+[[gnu::noinline]] double Shot::pair_friction(int one, int two) const {
+    const BallParams& p = plan_.balls;
+    if (p.mu_b_more == 0.0) return p.mu_b;
+    const Vec3 apart = position_now(two) - position_now(one);
+    const Vec2 y = Vec2(apart.x(), apart.y()) / length(Vec2(apart.x(), apart.y())), x(y.y(), -y.x());
+    const Vec3 v = velocity_now(one) - velocity_now(two), w = spin_now(one) + spin_now(two);
+    const double along = x.x() * v.x() + x.y() * v.y() - p.R * w.z();
+    const double upward = p.R * (x.x() * w.x() + x.y() * w.y());
+    return ball_friction(p, length(Vec2(along, upward)));
+}
+
 template <bool kProfile>
 void Shot::resolve_ball_ball(const Candidate& c) {
     const double R = plan_.balls.R;
@@ -46,7 +58,8 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     const kernel::Ball b2{{r2.x(), r2.y(), r2.z()}, {v2.x(), v2.y(), v2.z()}, {w2.x(), w2.y(), w2.z()}};
     const BallParams& p = plan_.balls;
     const Physics& physics = plan_.scene.physics;
-    const kernel::ImpactParams params{p.R, p.m, p.mu_s, p.mu_s, p.mu_b, p.e_b,
+    const double mu_s = plan_.cloth_in_impact ? p.mu_s : 0.0;
+    const kernel::ImpactParams params{p.R, p.m, mu_s, mu_s, plan_.friction ? pair_friction(one, two) : 0.0, p.e_b,
                                       physics.cloth_slip == ClothSlipSign::kAsPublished ? kernel::ClothSlip::kAsPublished
                                                                                         : kernel::ClothSlip::kConsistent};
     kernel::ImpactResult result;

@@ -9,7 +9,7 @@
 namespace carom {
 
 Shot::Shot(const Plan& plan, const SimulateOptions& options)
-    : plan_(plan), options_(options), motion_(motion_params(plan.balls, plan.gravity)) {}
+    : plan_(plan), options_(options), motion_(motion_params(plan)) {}
 
 void Shot::set_up(bool profile) {
     const Scene& scene = plan_.scene;
@@ -30,7 +30,7 @@ void Shot::set_up(bool profile) {
     if (scene.cue) {
         for (int i = 0; i < balls_; ++i) {
             if (scene.ball[static_cast<std::size_t>(i)].id != scene.cue->ball) continue;
-            const StruckBall struck = strike(*scene.cue, plan_.balls);
+            const StruckBall struck = strike(*scene.cue, plan_.balls, plan_.squirt);
             begin(i, start_segment(0.0, now_of(i).r, struck.v, struck.w, motion_));
             record_.events.push_back({0.0, EventType::kCueStrike, i, -1, -1});
             if (profile) record_.costs.push_back({0.0, 0.0, 0.0, 0, "point"});

@@ -163,7 +163,7 @@ class Solver {
             const double s_x = dot(planar(bi.v) - planar(bj.v), t) - motion_.R * (bi.w.z() + bj.w.z());
             const double s_z = motion_.R * (dot(planar(bi.w), t) + dot(planar(bj.w), t));
             const double slip = length(Vec2(s_x, s_z));
-            link.friction_z = slip > 0.0 ? -plan_.balls.mu_b * s_z / slip : 0.0;
+            link.friction_z = slip > 0.0 ? -ball_friction(plan_.balls, slip) * s_z / slip : 0.0;
         }
     }
 

@@ -25,6 +25,9 @@ inline constexpr int kEventCap = 10000;
 /// [-] Rounds of the loop in a row that changed directions of sustained contacts but brought no event: as bad.
 inline constexpr int kQuietCap = 1000000;
 
+/// [-] Margin on how far a ball can go when the plan decides what it can reach; far above the rounding of the bound.
+inline constexpr double kReachMargin = 1e-9;
+
 /// [m] Depth at which a pocketed ball comes to rest below the cloth; drawing only. pooltool 0.6.0's value.
 inline constexpr double kPocketDepth = 0.08;
 
@@ -92,6 +95,7 @@ inline constexpr double kMaxFps = 1e5;       ///< [1/s]
 inline constexpr int kMaxSubsteps = 10000000;  ///< of the march; its result stops improving long before
 inline constexpr int kMaxImageSize = 16384;    ///< [px] per side, what the OpenGL back ends can hold
 inline constexpr int kMaxBalls = 4096;         ///< balls of a scene, written and racked
+inline constexpr int kMaxRackRows = 90;          ///< of a triangle: 4095 balls
 inline constexpr int kMaxTableParts = 4096;    ///< cushions, jaws and pockets of a table, each
 inline constexpr std::size_t kMaxFileSize = 4u << 20;  ///< [bytes] of a scene file
 inline constexpr std::size_t kMaxIdLength = 64;        ///< [bytes] of a ball's id
