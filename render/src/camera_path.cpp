@@ -38,7 +38,7 @@ Camera player_camera(const Record& record, FrameSize size) {
     camera.fov_y_deg = size.width >= size.height ? 40.0 : 62.0;
     camera.up = Vec3::UnitZ();
     camera.eye = place + Vec3(-0.75 * aim.x(), -0.75 * aim.y(), 0.42);
-    camera.target = place + Vec3(0.65 * aim.x(), 0.65 * aim.y(), -0.02);
+    camera.target = place + Vec3(0.45 * aim.x(), 0.45 * aim.y(), -0.02);
     return camera;
 }
 

@@ -1,5 +1,6 @@
 #include "frame_writer.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "carom/render/png.h"
@@ -23,7 +24,23 @@ void pack_rgb(const Image& image, std::vector<std::uint8_t>& bytes) {
     }
 }
 
-FrameWriter::FrameWriter(const SequenceOptions& options, int threads) : options_(options) {
+namespace {
+
+// Bytes of all images in flight together: what keeps a run with many threads small.
+constexpr double kMemory = 64e6;
+
+// One image a thread, one waiting for each, and one being filled; fewer where they are large.
+std::size_t image_limit(FrameSize size, int threads) {
+    const double fit = kMemory / (4.0 * size.width * size.height);
+    return static_cast<std::size_t>(std::max(2.0, std::min(2.0 * threads + 1.0, fit)));
+}
+
+}  // namespace
+
+FrameWriter::FrameWriter(const SequenceOptions& options, int threads)
+    : options_(options), limit_(image_limit(options.size, threads)) {
+    // A thread without an image to work on would only wait.
+    threads = std::min(threads, static_cast<int>(limit_));
     for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
 }
 
@@ -76,9 +93,7 @@ void FrameWriter::work() {
 
 std::unique_ptr<Image> FrameWriter::acquire() {
     std::unique_lock lock(mutex_);
-    // One image a thread, one waiting for each, and one being filled.
-    const std::size_t limit = 2 * threads_.size() + 1;
-    image_ready_.wait(lock, [&] { return failure_ || !idle_.empty() || images_ < limit; });
+    image_ready_.wait(lock, [&] { return failure_ || !idle_.empty() || images_ < limit_; });
     if (failure_) std::rethrow_exception(failure_);
     if (idle_.empty()) {
         ++images_;

@@ -43,6 +43,7 @@ class FrameWriter {
     void write(const Image& image, FrameTiming& timing, std::vector<std::uint8_t>& bytes) const;
 
     const SequenceOptions& options_;
+    const std::size_t limit_;          // images that exist at once
     std::vector<std::uint8_t> bytes_;  // of a writer without threads
     std::mutex mutex_;
     std::condition_variable task_ready_, image_ready_;

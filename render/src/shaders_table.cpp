@@ -64,11 +64,11 @@ bool in_inner(vec2 p) { return all(greaterThan(p, u_inner.xy)) && all(lessThan(p
 
 vec3 cloth_albedo(vec2 p) {
     vec3 base = from_screen(vec3(0.055, 0.50, 0.345));
-    // Threads of half a millimetre, seen only from near: they fade before a pixel holds more than one.
+    // A coarse weave, seen only from near: it fades before its threads are narrower than a pixel or two.
     float pixel = length(fwidth(p));
-    float fine = 1.0 - smoothstep(0.00015, 0.0005, pixel);
-    vec2 thread = sin(p * (6.2831853 / 0.0009));
-    float weave = thread.x * thread.y * fine * 0.10;
+    float fine = 1.0 - smoothstep(0.0004, 0.0011, pixel);
+    vec2 thread = sin(p * (6.2831853 / 0.0022));
+    float weave = thread.x * thread.y * fine * 0.055;
     float nap = (noise(p * vec2(14.0, 9.0)) - 0.5) * 0.035;
     return base * (1.0 + weave + nap);
 }
