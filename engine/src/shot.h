@@ -23,6 +23,11 @@ struct Candidate {
     int nose = -1;  ///< kBallCushion, kBallJaw: index into Plan::noses, or -1 for the straight part
 };
 
+/// A rectangle on the table.
+struct Box {
+    double low_x, low_y, high_x, high_y;
+};
+
 class Shot {
   public:
     using Clock = std::chrono::steady_clock;
@@ -48,7 +53,9 @@ class Shot {
     Candidate pair(int a, int b) const;
     void rescan(int ball);
     void detect_features(int ball);
+    void bound(int ball);
     void redetect();
+    Box swept(int ball, double duration) const;
     Path path(int ball, double from) const;
 
     // shot_resolve.cpp
@@ -106,6 +113,8 @@ class Shot {
     std::vector<ClusterContact> cluster_contacts_;
     // Per ball: its transition, its first contact with the table, its first contact with another ball.
     std::vector<Candidate> own_, feature_, pair_;
+    std::vector<Box> box_;         // per ball: where it can be until its own next event
+    std::vector<Box> line_boxes_;  // per straight cushion
 };
 
 }  // namespace carom

@@ -70,6 +70,9 @@ inline constexpr int kCushionSteps = 20000;  ///< [-] bound on its steps; a real
 /// swing of its tangential spring.
 inline constexpr int kStrongeGrid = 32;
 
+/// [share] Boxes that leave out far parts of the table are widened by this much: rounding stays inside.
+inline constexpr double kBoxShare = 1e-9;
+
 /// [share of the jaw radius] A cushion end this close to a jaw's circle is rounded off by it and needs no tip of its own. The
 /// jaw is a full circle, so nothing can slip between the two.
 inline constexpr double kJawJoinShare = 1e-9;
