@@ -143,23 +143,34 @@ double time_to_reach(Relative m, double reach, double horizon, bool straight) {
 
 double time_to_ball(const Path& b1, const Path& b2, double reach) {
     if (!b1.moves && !b2.moves) return kNever;
-    const Relative m{b2.r - b1.r, b2.v - b1.v, b2.a - b1.a, kNoise * (length(b1.v) + length(b2.v))};
+    const Relative m{b2.r - b1.r, b2.v - b1.v, b2.a - b1.a, kNoise * ((length(b1.v) + b1.surface) + (length(b2.v) + b2.surface))};
     const bool straight = (b1.straight && !b2.moves) || (b2.straight && !b1.moves);
     return time_to_reach(m, reach, std::min(b1.horizon, b2.horizon), straight);
 }
 
 double time_to_circle(const Path& ball, const Vec2& center, double reach) {
     if (!ball.moves) return kNever;
-    const Relative m{ball.r - center, ball.v, ball.a, kNoise * length(ball.v)};
+    const Relative m{ball.r - center, ball.v, ball.a, kNoise * (length(ball.v) + ball.surface)};
     return time_to_reach(m, reach, ball.horizon, ball.straight);
 }
+
+namespace {
+
+// First time at which a foot point outside [0, end] gets inside.
+double time_to_enter(double foot, double rate, double pull, double end, double horizon) {
+    if (foot < 0.0) return first_descent_quadratic(-foot, -rate, -pull, horizon);
+    if (foot > end) return first_descent_quadratic(foot - end, rate, pull, horizon);
+    return kNever;
+}
+
+}  // namespace
 
 double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, double line_length, double R) {
     if (!ball.moves) return kNever;
     const Vec2 normal(-direction.y(), direction.x());
     const Vec2 offset = ball.r - from;
     const double d0 = dot(normal, offset), d1 = dot(normal, ball.v), d2 = dot(normal, ball.a);
-    const double noise = kNoise * length(ball.v);
+    const double noise = kNoise * (length(ball.v) + ball.surface);
     const auto foot_inside = [&](double t) {
         const double foot = dot(direction, offset) + t * (dot(direction, ball.v) + 0.5 * t * dot(direction, ball.a));
         return foot >= 0.0 && foot <= line_length;
@@ -174,6 +185,15 @@ double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, d
             t = std::max(0.0, -h1 / h2) + press_delay(-h2, noise, ball.horizon);  // pressed against the nose
         else t = first_descent_quadratic(h0, h1, h2, ball.horizon);
         if (t < best && t <= ball.horizon && h1 + t * h2 < -noise && foot_inside(t)) best = t;
+        // A ball held to the nose at the end comes round it and onto the cushion: closing when the foot point enters.
+        const double enter = time_to_enter(dot(direction, offset), dot(direction, ball.v), dot(direction, ball.a), line_length, ball.horizon);
+        if (enter == kNever) continue;
+        const double h = h0 + enter * (h1 + 0.5 * enter * h2), rate = h1 + enter * h2;
+        if (h > 0.0 || !(h + R > 0.0)) continue;
+        double closing = kNever;
+        if (rate < -noise) closing = enter;
+        else if (rate <= noise && h2 < 0.0) closing = enter + press_delay(-h2, noise, ball.horizon - enter);
+        if (closing < best && closing <= ball.horizon && foot_inside(closing)) best = closing;
     }
     return best;
 }

@@ -12,9 +12,10 @@ struct Path {
     double horizon;  ///< s, may be infinite
     bool straight;   ///< v and a are parallel (rolling; sliding with u parallel to v; at rest)
     bool moves;
+    double surface = 0.0;  ///< R |w| [m/s]: the speed of the centre is not known better than to the rounding of this, either
 };
 
-/// Closing speeds below this many ulp of the speeds involved are rounding noise of the projection, not an approach.
+/// Closing speeds below this many ulp of the speeds involved (of the centres and of the surfaces) are rounding noise of the projection, not an approach.
 inline constexpr double kClosingUlp = 8.0;
 
 /// Time until the centres of two balls come within `reach` (R1 + R2) while closing; kNever if not within both horizons.

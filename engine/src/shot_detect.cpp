@@ -64,9 +64,10 @@ Path Shot::path(int ball, double from) const {
     const double tau = from - s.start;
     const Vec3 r = position_at(s, tau), v = velocity_at(s, tau);
     const bool moves = translates(s.state);
-    const bool straight = s.state == MotionState::kRolling ||
-                          (s.state == MotionState::kSliding && s.v.x() * s.a.y() - s.v.y() * s.a.x() == 0.0);
-    return {Vec2(r.x(), r.y()), Vec2(v.x(), v.y()), s.a, std::max(0.0, s.duration - tau), straight, moves};
+    // A free ball rolls straight ahead; a held one is pushed aside.
+    const bool straight = (s.state == MotionState::kRolling && !s.held) || s.v.x() * s.a.y() - s.v.y() * s.a.x() == 0.0;
+    return {Vec2(r.x(), r.y()), Vec2(v.x(), v.y()), s.a, std::max(0.0, s.duration - tau), straight, moves,
+            plan_.balls.R * std::sqrt(s.w.x() * s.w.x() + s.w.y() * s.w.y() + s.w.z() * s.w.z())};
 }
 
 // Closing speed of a contact at its time: at one instant the deepest closing goes first.

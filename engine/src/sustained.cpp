@@ -134,6 +134,24 @@ class Solver {
             }
             if (done) break;
         }
+        // Normals that nearly agree (round a jaw onto the cushion) do not meet that way: in the end none may close, and one may open.
+        for (Link& link : links_) link.N = 0.0;
+        for (int sweep = 0; sweep < kSweeps; ++sweep) {
+            bool done = true;
+            for (Link& link : links_) {
+                const double mi = bodies_[static_cast<std::size_t>(link.i)].mobility();
+                const double mj = link.j < 0 ? 0.0 : bodies_[static_cast<std::size_t>(link.j)].mobility();
+                const double rate = gap_rate(link);
+                if (mi + mj == 0.0 || (rate >= 0.0 && link.N == 0.0) || std::abs(rate) <= noise_) continue;
+                const double next = std::max(0.0, link.N - rate / (mi + mj)), J = next - link.N;
+                link.N = next;
+                done = false;
+                kick(link.i, -J * mi * link.n);
+                if (link.j >= 0) kick(link.j, J * mj * link.n);
+            }
+            if (done) break;
+        }
+        for (Link& link : links_) link.N = 0.0;
     }
 
     void kick(int index, const Vec2& dv) {

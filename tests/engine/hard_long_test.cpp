@@ -1,0 +1,87 @@
+// Hard cases that take long: H32 and H38 of docs/hard_cases.md.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/hard_scenes.h"
+#include "support/random_impacts.h"
+
+namespace carom {
+namespace {
+
+using namespace test;
+
+// H32: 1e6 events of 16 elastic disks: energy and distances stay. In ten parts, each from where the last one stopped.
+TEST(HardLong, AMillionEvents) {
+    Scene scene = frictionless();
+    scene.table = box(1.0, 2.0, 0.036576);
+    scene.physics.clusters = ClusterModel::kSequential;
+    SplitMix64 rng(32);
+    while (scene.ball.size() < 16) {
+        const double x = rng.uniform(0.05, 0.95), y = rng.uniform(0.05, 1.95);
+        bool free = true;
+        for (const BallStart& b : scene.ball) free = free && std::hypot(b.position.x() - x, b.position.y() - y) > 0.1;
+        if (free) add_ball(scene, std::to_string(scene.ball.size()), x, y, rng.uniform(-2.0, 2.0), rng.uniform(-2.0, 2.0));
+    }
+    const auto energy = [](const Scene& s) {
+        double sum = 0.0;
+        for (const BallStart& b : s.ball) sum += 0.5 * b.velocity.squaredNorm();
+        return sum;
+    };
+    const double before = energy(scene), R = scene.balls.R;
+    double deepest = 0.0;
+    long events = 0;
+    for (int part = 0; part < 100; ++part) {
+        scene.stop.events = 10000;
+        const Plan plan = plan_of(scene);
+        const Record record = simulate(plan);
+        if (part % 25 == 0) {
+            const auto violation = verify(record, plan);
+            ASSERT_FALSE(violation) << violation->law << ": " << violation->message;
+        }
+        events += static_cast<long>(record.events.size());
+        // Where two balls meet they are 2 R apart.
+        for (const Event& e : record.events) {
+            if (e.type != EventType::kBallBall) continue;
+            const Vec3 p = record.state_at(e.a, e.time).position, q = record.state_at(e.b, e.time).position;
+            deepest = std::max(deepest, 2.0 * R - (p - q).norm());
+        }
+        for (std::size_t i = 0; i < scene.ball.size(); ++i) {
+            const BallState s = record.state_at(static_cast<int>(i), record.duration);
+            scene.ball[i].position = s.position;
+            scene.ball[i].velocity = s.velocity;
+        }
+    }
+    const double drift = std::abs(energy(scene) / before - 1.0);
+    report("H32 energy", drift);
+    report("H32 penetration", deepest);
+    EXPECT_EQ(events, 1000000);
+    EXPECT_LE(drift, 1e-11);
+    EXPECT_LE(deepest, 1e-12);
+}
+
+// H38: seeded eight-ball breaks: none explodes. Four tests, so that they run side by side.
+class Breaks : public testing::TestWithParam<double> {};
+
+TEST_P(Breaks, NoneExplodes) {
+    SplitMix64 rng(38);
+    std::size_t most = 0;
+    for (int i = 0; i < 250; ++i) {
+        char text[400];
+        std::snprintf(text, sizeof text,
+                      "[rack]\ngame = \"eight_ball\"\ngap = %.17g\nseed = %d\n[[ball]]\nid = \"cue\"\nposition = [%.17g, 0.5]\n"
+                      "velocity = [0, %.17g]\n",
+                      GetParam(), i + 1, 0.635 + rng.uniform(-0.012, 0.012), rng.uniform(5.0, 12.0));
+        SCOPED_TRACE(text);
+        const Record record = run_verified(parse_scene(text, "break.toml"));
+        EXPECT_EQ(record.stopped, StopReason::kAtRest);
+        EXPECT_LE(record.events.size(), 400u);
+        most = std::max(most, record.events.size());
+    }
+    report("H38 most events", static_cast<double>(most));
+}
+
+INSTANTIATE_TEST_SUITE_P(Gap, Breaks, testing::Values(0.0, 1e-12, 1e-6, 1e-4));
+
+}  // namespace
+}  // namespace carom

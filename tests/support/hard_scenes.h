@@ -1,0 +1,26 @@
+// What the hard cases share. Set CAROM_RESIDUALS=1 in the environment to print what each case measured.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "support/engine_cases.h"
+
+namespace carom::test {
+
+inline void report(const char* what, double residual) {
+    if (std::getenv("CAROM_RESIDUALS") != nullptr) std::printf("residual %s: %.3g\n", what, residual);
+}
+
+/// No friction anywhere, balls and cushions elastic.
+inline Scene frictionless() {
+    Scene scene = empty_scene();
+    BallParams& b = scene.balls;
+    b.mu_s = b.mu_r = b.mu_sp = b.mu_b = b.f_c = 0.0;
+    b.e_b = b.e_c = 1.0;
+    scene.physics.ball_ball = BallBallModel::kElastic;
+    scene.physics.cushion = CushionModel::kSmooth;
+    return scene;
+}
+
+}  // namespace carom::test

@@ -1,0 +1,181 @@
+// Seeded scenes that ask for trouble: touching balls and racks, balls on cushions and in jaws, extreme spin.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "carom/engine/math.h"
+#include "rack.h"
+#include "support/engine_cases.h"
+#include "support/random_impacts.h"
+
+namespace carom::test {
+
+class RandomScene {
+  public:
+    explicit RandomScene(std::uint64_t seed) : rng_(seed), scene_(empty_scene()) {}
+
+    Scene make() {
+        choose_table();
+        choose_physics();
+        const int wanted = 1 + whole(22);
+        if (wanted >= 11 && scene_.table.width > 0.0 && chance(0.5)) place_rack();
+        while (static_cast<int>(scene_.ball.size()) < wanted && tries_++ < 2000) place_one();
+        set_in_motion();
+        return scene_;
+    }
+
+  private:
+    double uniform(double lo, double hi) { return rng_.uniform(lo, hi); }
+    bool chance(double p) { return uniform(0.0, 1.0) < p; }
+    int whole(int n) { return std::min(n - 1, static_cast<int>(uniform(0.0, static_cast<double>(n)))); }
+    template <class T>
+    T one_of(const std::vector<T>& list) {
+        return list[static_cast<std::size_t>(whole(static_cast<int>(list.size())))];
+    }
+
+    void choose_table() {
+        switch (whole(4)) {
+            case 0: break;  // endless cloth
+            case 1: scene_.table = box(1.0, 2.0, 0.036576); break;
+            default: scene_.table = make_table("seven_foot"); break;
+        }
+    }
+
+    void choose_physics() {
+        BallParams& b = scene_.balls;
+        b.mu_s = one_of<double>({0.2, 0.2, 0.05, 0.6});
+        b.mu_r = one_of<double>({0.01, 0.01, 0.005, 0.05});
+        b.mu_sp = one_of<double>({0.0127, 0.0127, 0.044});
+        b.mu_b = one_of<double>({0.05, 0.05, 0.0, 0.2});
+        b.e_b = one_of<double>({0.95, 0.95, 1.0, 0.5, 0.8});
+        b.e_c = one_of<double>({0.85, 0.85, 0.0, 0.5, 1.0});
+        b.f_c = one_of<double>({0.2, 0.2, 0.0});
+        Physics& p = scene_.physics;
+        p.ball_ball = one_of<BallBallModel>({BallBallModel::kMathavan, BallBallModel::kMathavan, BallBallModel::kInelastic, BallBallModel::kElastic});
+        p.cushion = chance(0.7) ? CushionModel::kHan2005 : CushionModel::kSmooth;
+        p.clusters = one_of<ClusterModel>({ClusterModel::kCompliant, ClusterModel::kCompliant, ClusterModel::kSequential, ClusterModel::kRigid});
+    }
+
+    // No overlap with balls, cushions or jaws, and outside the pockets' circles.
+    bool fits(const Vec2& r) const {
+        const double R = scene_.balls.R;
+        const Table& t = scene_.table;
+        if (t.width > 0.0 && (r.x() < R - 1e-13 || r.y() < R - 1e-13 || r.x() > t.width - R + 1e-13 || r.y() > t.length - R + 1e-13)) return false;
+        for (const BallStart& b : scene_.ball)
+            if ((Vec2(b.position.x(), b.position.y()) - r).norm() < 2.0 * R - 1e-14) return false;
+        for (const Jaw& j : t.jaws)
+            if ((j.center - r).norm() < R + j.radius - 1e-14) return false;
+        for (const Pocket& p : t.pockets)
+            if ((p.center - r).norm() < p.radius) return false;
+        for (const Cushion& c : t.cushions) {
+            const Vec2 along = (c.to - c.from).normalized();
+            const double foot = std::clamp(along.dot(r - c.from), 0.0, (c.to - c.from).norm());
+            if ((c.from + foot * along - r).norm() < R - 1e-14) return false;
+        }
+        return true;
+    }
+
+    Vec2 direction() {
+        if (chance(0.3)) return one_of<Vec2>({{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {0.5, std::sqrt(3.0) / 2.0}});
+        const SinCos a = sin_cos(uniform(0.0, 6.283185307179586));
+        return {a.cos, a.sin};
+    }
+
+    void place(const Vec2& r) {
+        if (fits(r)) add_ball(scene_, std::to_string(scene_.ball.size()), r.x(), r.y());
+    }
+
+    void place_one() {
+        const double R = scene_.balls.R;
+        const Table& t = scene_.table;
+        const double w = t.width > 0.0 ? t.width : 1.0, l = t.width > 0.0 ? t.length : 1.0;
+        const Vec2 anywhere(uniform(R, w - R), uniform(R, l - R));
+        const int kind = whole(5);
+        if (kind <= 1 && !scene_.ball.empty()) {  // touches another ball, or nearly
+            const Vec3& p = scene_.ball[static_cast<std::size_t>(whole(static_cast<int>(scene_.ball.size())))].position;
+            const double gap = one_of<double>({0.0, 0.0, 1e-15, 1e-9, 1e-5});
+            place(Vec2(p.x(), p.y()) + (2.0 * R + gap) * direction());
+        } else if (kind == 2 && t.width > 0.0) {  // on a cushion, sometimes in a corner
+            const double gap = one_of<double>({0.0, 0.0, 1e-12, 1e-7});
+            const bool corner = chance(0.15);
+            switch (whole(4)) {
+                case 0: place({R + gap, corner ? R : anywhere.y()}); break;
+                case 1: place({w - R - gap, corner ? l - R : anywhere.y()}); break;
+                case 2: place({corner ? w - R : anywhere.x(), R + gap}); break;
+                default: place({corner ? R : anywhere.x(), l - R - gap}); break;
+            }
+        } else if (kind == 3 && !t.jaws.empty()) {  // against a jaw
+            const Jaw& j = one_of<Jaw>(t.jaws);
+            place(j.center + (R + j.radius) * direction());
+        } else {
+            place(anywhere);
+        }
+    }
+
+    void place_rack() {
+        Rack rack;
+        rack.game = chance(0.5) ? RackGame::kEightBall : RackGame::kNineBall;
+        rack.gap = one_of<double>({0.0, 1e-12, 1e-6, 1e-4});
+        rack.seed = 1 + static_cast<std::uint64_t>(whole(1000));
+        const Vec2 spot(0.5 * scene_.table.width, 0.72 * scene_.table.length);
+        for (const RackedBall& b : make_rack(rack, spot, scene_.balls.R)) place(b.position);
+    }
+
+    void set_in_motion() {
+        const double R = scene_.balls.R;
+        const double moving = one_of<double>({0.1, 0.4, 1.0});
+        bool any = false;
+        for (BallStart& b : scene_.ball) {
+            const bool last = &b == &scene_.ball.back();
+            if (!chance(moving) && !(last && !any)) continue;
+            any = true;
+            const Vec2 v = direction() * one_of<double>({0.0, 1e-6, 0.05, 1.0, 5.0, 12.0}) * uniform(0.5, 1.0);
+            b.velocity = Vec3(v.x(), v.y(), 0.0);
+            switch (whole(3)) {
+                case 0: b.spin = rolling_spin(v.x(), v.y(), R); break;
+                case 1: b.spin = Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)) * one_of<double>({1e-3, 10.0, 100.0, 400.0}); break;
+                default: break;
+            }
+        }
+    }
+
+    SplitMix64 rng_;
+    Scene scene_;
+    int tries_ = 0;
+};
+
+/// The scene as text for a person who has to look into it.
+inline std::string dump(const Scene& scene) {
+    std::string text;
+    char line[400];
+    const BallParams& b = scene.balls;
+    std::snprintf(line, sizeof line, "table %s %g, mu_s %g mu_r %g mu_sp %g mu_b %g e_b %g e_c %g f_c %g, models %s %s %s\n",
+                  scene.table.preset.c_str(), scene.table.width, b.mu_s, b.mu_r, b.mu_sp, b.mu_b, b.e_b, b.e_c, b.f_c,
+                  name(scene.physics.ball_ball), name(scene.physics.cushion), name(scene.physics.clusters));
+    text += line;
+    for (const BallStart& s : scene.ball) {
+        std::snprintf(line, sizeof line, "%s: r %.17g %.17g v %.17g %.17g w %.17g %.17g %.17g\n", s.id.c_str(), s.position.x(),
+                      s.position.y(), s.velocity.x(), s.velocity.y(), s.spin.x(), s.spin.y(), s.spin.z());
+        text += line;
+    }
+    return text;
+}
+
+/// What went wrong in a run of the scene: a broken law or an error; empty if nothing.
+inline std::string what_breaks(const Scene& scene) {
+    const Plan plan = plan_of(scene);
+    try {
+        const Record record = simulate(plan);
+        if (const auto violation = verify(record, plan)) return violation->law + " at event " + std::to_string(violation->event) + ": " + violation->message;
+        if (record.stopped != StopReason::kAtRest) return "did not come to rest";
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace carom::test
