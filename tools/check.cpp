@@ -21,7 +21,9 @@ std::string kernel_line(const Plan& plan) {
     const Physics& physics = plan.scene.physics;
     switch (physics.ball_ball) {
         case BallBallModel::kMathavan:
-            return fmt::format("published march, {} substeps, cloth slip {}", physics.substeps,
+            if (physics.substeps)
+                return fmt::format("published march, {} substeps, cloth slip {}", *physics.substeps, name(physics.cloth_slip));
+            return fmt::format("by tolerance {}: closed forms, else collocation; cloth slip {}", physics.tolerance,
                                name(physics.cloth_slip));
         case BallBallModel::kInelastic:
         case BallBallModel::kElastic:

@@ -10,6 +10,7 @@
 
 #include "bench_kernel.h"
 #include "carom/engine/scene.h"
+#include "carom/kernel/tolerance.h"
 #include "commands.h"
 #include "console.h"
 
@@ -122,9 +123,14 @@ void add_impact(CLI::App& app, Action& action) {
         ->type_name("NAME")
         ->check(CLI::IsMember({"mathavan", "inelastic", "elastic"}))
         ->capture_default_str();
-    sub->add_option("--substeps", args->substeps, "N of the published march (mathavan)")
-        ->type_name("N")
-        ->check(CLI::Range(1, 100000000))
+    CLI::Option* substeps =
+        sub->add_option("--substeps", args->substeps, "Use the published march with this N (mathavan; default: off)")
+            ->type_name("N")
+            ->check(CLI::Range(1, 100000000));
+    sub->add_option("--tolerance", args->tolerance, "Error allowed, relative to the approach speed (mathavan)")
+        ->type_name("E")
+        ->check(CLI::Range(kernel::kTightestTolerance, kernel::kLoosestTolerance))
+        ->excludes(substeps)
         ->capture_default_str();
     sub->add_option("--cloth-slip", args->cloth_slip, "Sign of the cloth slip inside the impact (mathavan)")
         ->type_name("NAME")

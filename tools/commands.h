@@ -57,7 +57,8 @@ int run_check(const CheckArgs& args);
 
 struct ImpactArgs {
     std::string method = "mathavan";
-    int substeps = 1000;
+    std::optional<int> substeps;
+    double tolerance = 1e-6;
     std::string cloth_slip = "consistent";
 };
 int run_impact(const ImpactArgs& args);

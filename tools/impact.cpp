@@ -47,6 +47,7 @@ class LineReader {
         for (;;) {
             throw_if_interrupted();
             const ssize_t count = ::read(STDIN_FILENO, buffer_, sizeof buffer_);
+            throw_if_interrupted();  // the end of the input may come together with the signal
             if (count < 0 && errno == EINTR) continue;
             if (count < 0) throw std::runtime_error(std::string("standard input: ") + std::strerror(errno));
             position_ = 0;
@@ -68,7 +69,9 @@ ImpactSettings settings_of(const ImpactArgs& args) {
     settings.substeps = args.substeps;
     settings.cloth_slip =
         args.cloth_slip == "as_published" ? kernel::ClothSlip::kAsPublished : kernel::ClothSlip::kConsistent;
+    settings.tolerance = args.tolerance;
     settings.march = kernel::march_function(chosen_isa());
+    settings.by_tolerance = kernel::tolerance_function(chosen_isa());
     return settings;
 }
 

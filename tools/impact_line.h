@@ -1,11 +1,13 @@
 // One line of carom impact: JSON in, JSON out.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "carom/kernel/impact.h"
 #include "carom/kernel/march.h"
+#include "carom/kernel/tolerance.h"
 
 namespace carom::tools {
 
@@ -16,9 +18,11 @@ inline constexpr std::size_t kLongestImpactLine = 1 << 20;
 struct ImpactSettings {
     enum class Method : unsigned char { kMathavan, kInelastic, kElastic };
     Method method = Method::kMathavan;
-    int substeps = 1000;
+    std::optional<int> substeps;  ///< set: the published march; else by tolerance
+    double tolerance = 1e-6;
     kernel::ClothSlip cloth_slip = kernel::ClothSlip::kConsistent;
     kernel::MarchFunction march = nullptr;
+    kernel::ToleranceFunction by_tolerance = nullptr;
 };
 
 struct ImpactAnswer {

@@ -129,11 +129,11 @@ std::string profile_report(const Record& record) {
     }
     fmt::format_to(line, "  first detection of all pairs: {:.0f} ns; all together: {:.3f} ms\n",
                    record.setup_detect_ns, total * 1e-6);
-    fmt::format_to(line, "\nkernel by ball-ball event\n  {:>12}  {:<12}{:>12}{:>8}  {}\n", "time (s)",
-                   "balls", "ns", "steps", "method");
+    fmt::format_to(line, "\nkernel by ball-ball event and cluster\n  {:>12}  {:<12}{:>12}{:>8}  {}\n",
+                   "time (s)", "balls", "ns", "steps", "method");
     for (std::size_t i = 0; i < record.costs.size(); ++i) {
         const Event& event = record.events[i];
-        if (event.type != EventType::kBallBall) continue;
+        if (event.type != EventType::kBallBall && event.type != EventType::kBallCluster) continue;
         const EventCost& cost = record.costs[i];
         fmt::format_to(
             line, "  {:>12.6f}  {:<12}{:>12.0f}{:>8}  {}\n", event.time,

@@ -11,6 +11,7 @@ struct StruckBall {
     Vec3 v, w;
     double dropped_vertical;  ///< vertical speed that a planar scene drops [m/s]
 };
-StruckBall strike(const Cue& cue, const BallParams& balls);
+/// @param squirt  whether the plan computes it at all
+StruckBall strike(const Cue& cue, const BallParams& balls, bool squirt = true);
 
 }  // namespace carom

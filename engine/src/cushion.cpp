@@ -3,15 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cushion_models.h"
+
 namespace carom {
+namespace detail {
 
-namespace {
+void cushion_smooth(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3&) {
+    const double approach = approach_speed(normal, v);
+    if (!(approach > 0.0)) return;
+    const double change = (1.0 + p.e_c) * approach;
+    v = Vec3(v.x() + change * normal.x(), v.y() + change * normal.y(), 0.0);
+}
 
-// Han, "Dynamics in carom and three cushion billiards", J. Mech. Sci. Tech. 19 (2005), 976, with the misprints of equations
-// 14c and 21a mended. Frame: X into the cushion, Z up, Y = Z x X. s, c: sine and cosine of the nose's height angle.
-// S: slip at the nose (S_x along the slope, S_y along the cushion); N: normal impulse; P: tangential impulse (per mass).
-void han_2005(const CushionContact& p, const Vec2& X, Vec3& v, Vec3& w) {
-    const Vec2 Y(-X.y(), X.x());
+// Han, "Dynamics in carom and three cushion billiards", J. Mech. Sci. Tech. 19 (2005), 976, with the
+// misprints of equations 14c and 21a mended. Frame: X into the cushion, Z up, Y = Z x X. s, c: sine and
+// cosine of the nose's height angle. S: slip at the nose (S_x along the slope, S_y along the cushion); N:
+// normal impulse; P: tangential impulse (per mass).
+void cushion_han_2005(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w) {
+    if (!(approach_speed(normal, v) > 0.0)) return;
+    const Vec2 X = -normal, Y(-X.y(), X.x());
     const double R = p.R;
     const double s = (p.height - R) / R, c = std::sqrt((1.0 - s) * (1.0 + s));
     const double v_X = v.x() * X.x() + v.y() * X.y(), v_Y = v.x() * Y.x() + v.y() * Y.y();
@@ -26,24 +36,44 @@ void han_2005(const CushionContact& p, const Vec2& X, Vec3& v, Vec3& w) {
     const double P_X = -P_x * s - N * c, P_Z = P_x * c - N * s;
     const double turn = 2.5 / R;
     const double new_v_X = v_X + P_X, new_v_Y = v_Y + P_y;
-    const double new_w_X = w_X - turn * P_y * s, new_w_Y = w_Y + turn * (P_X * s - P_Z * c), new_w_Z = w_Z + turn * P_y * c;
+    const double new_w_X = w_X - turn * P_y * s, new_w_Y = w_Y + turn * (P_X * s - P_Z * c),
+                 new_w_Z = w_Z + turn * P_y * c;
     v = Vec3(new_v_X * X.x() + new_v_Y * Y.x(), new_v_X * X.y() + new_v_Y * Y.y(), 0.0);
     w = Vec3(new_w_X * X.x() + new_w_Y * Y.x(), new_w_X * X.y() + new_w_Y * Y.y(), new_w_Z);
 }
 
-}  // namespace
+// One frictional impulse along the inclined normal, as for two rough spheres: Coulomb's f J_n, or what ends
+// the slip (2/7 of it). Equations: docs/physics.md, "Cushion impact", impulse.
+void cushion_impulse(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w) {
+    if (!(approach_speed(normal, v) > 0.0)) return;
+    const NoseContact c = nose_contact(p, normal, v, w);
+    const double J_n = -(1.0 + p.e_c) * c.u_n;
+    const double J_t = std::min(p.f_c * J_n, 2.0 / 7.0 * c.speed_t);
+    apply_at_nose(p, c, J_n, J_t, v, w);
+}
 
-void resolve_cushion(CushionModel model, const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w) {
-    const double approach = -(v.x() * normal.x() + v.y() * normal.y());
-    if (!(approach > 0.0)) return;
-    switch (model) {
-        case CushionModel::kSmooth: {
-            const double change = (1.0 + contact.e_c) * approach;
-            v = Vec3(v.x() + change * normal.x(), v.y() + change * normal.y(), 0.0);
-            return;
-        }
-        case CushionModel::kHan2005: han_2005(contact, -normal, v, w); return;
-    }
+}  // namespace detail
+
+const CushionModelInfo& cushion_model(CushionModel model) {
+    static constexpr CushionModelInfo kModels[] = {
+        {CushionModel::kSmooth, "smooth", detail::cushion_smooth, false, false, false, false, "reflection"},
+        {CushionModel::kHan2005, "han_2005", detail::cushion_han_2005, true, true, false, true,
+         "Han, J. Mech. Sci. Tech. 19 (2005)"},
+        {CushionModel::kMathavan2010, "mathavan_2010", detail::cushion_mathavan_2010, true, true, true, true,
+         "Mathavan, Jackson, Parkin, Proc. IMechE C 224 (2010)"},
+        {CushionModel::kImpulse, "impulse", detail::cushion_impulse, true, true, false, true,
+         "one Coulomb impulse along the inclined normal"},
+        {CushionModel::kStronge, "stronge", detail::cushion_stronge, true, true, false, true,
+         "Stronge, Impact Mechanics, compliant contact"},
+    };
+    for (const CushionModelInfo& info : kModels)
+        if (info.model == model) return info;
+    return kModels[0];
+}
+
+void resolve_cushion(CushionModel model, const CushionContact& contact, const Vec2& normal, Vec3& v,
+                     Vec3& w) {
+    cushion_model(model).resolve(contact, normal, v, w);
 }
 
 }  // namespace carom

@@ -138,4 +138,55 @@ double tan_deg(double degrees) {
     return a.sin / a.cos;
 }
 
+double arc_cos(double x) {
+    constexpr double kPi = 3.141592653589793;
+    if (!(x >= -1.0 && x <= 1.0)) return std::numeric_limits<double>::quiet_NaN();
+    if (x < 0.0) return kPi - arc_cos(-x);
+    // Half the angle y in [0, pi/4]: sin y = sqrt((1 - x) / 2), by Newton from the series of the arc sine. The guess is off by
+    // less than 6e-3, and every step squares that.
+    const double s = __builtin_sqrt(0.5 * (1.0 - x));
+    const double z = s * s;
+    double y = s * (1.0 + z * (1.0 / 6.0 + z * (3.0 / 40.0)));
+    for (int i = 0; i < 3; ++i) {
+        const SinCos at = sin_cos(y);
+        y -= (at.sin - s) / at.cos;
+    }
+    return 2.0 * y;
+}
+
+double exponential(double x) {
+    if (x != x) return x;
+    if (x > 709.8) return std::numeric_limits<double>::infinity();
+    if (x < -745.2) return 0.0;
+    // e^x = 2^k e^r, |r| <= ln 2 / 2; ln 2 in two parts, so that k ln 2 is exact but for the last bits.
+    constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
+    const double k = nearest(x * 1.4426950408889634);
+    const double high = x - k * kLn2High, low = k * kLn2Low;
+    const double r = high - low;
+    // Taylor series; the first term left out is r^14/14! < 5e-18.
+    double p = 1.0 / 6227020800.0;
+    p = p * r + 1.0 / 479001600.0;
+    p = p * r + 1.0 / 39916800.0;
+    p = p * r + 1.0 / 3628800.0;
+    p = p * r + 1.0 / 362880.0;
+    p = p * r + 1.0 / 40320.0;
+    p = p * r + 1.0 / 5040.0;
+    p = p * r + 1.0 / 720.0;
+    p = p * r + 1.0 / 120.0;
+    p = p * r + 1.0 / 24.0;
+    p = p * r + 1.0 / 6.0;
+    p = p * r + 0.5;
+    const double tail = (high - r) - low;  // what rounding r lost
+    const double value = 1.0 + (r + (r * r * p + tail));
+    // 2^k in two factors: the result may be subnormal where 2^k is not a number of its own.
+    const auto power = [](int n) {
+        const std::uint64_t bits = static_cast<std::uint64_t>(n + 1023) << 52;
+        double out;
+        __builtin_memcpy(&out, &bits, sizeof out);
+        return out;
+    };
+    const int n = static_cast<int>(k), half = n / 2;
+    return value * power(half) * power(n - half);
+}
+
 }  // namespace carom

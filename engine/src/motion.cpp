@@ -46,43 +46,68 @@ MotionParams motion_params(const BallParams& balls, double gravity) {
     return {balls.R, balls.mu_s * gravity, balls.mu_r * gravity, 5.0 * balls.mu_sp * gravity / (2.0 * balls.R)};
 }
 
+MotionParams motion_params(const Plan& plan) {
+    MotionParams p = motion_params(plan.balls, plan.gravity);
+    p.sliding = plan.sliding;
+    p.rolling = plan.rolling;
+    p.spin_decay = plan.spin_decay;
+    return p;
+}
+
+namespace effects {
+
+// Friction of a slipping ball: a = -mu_s g u/|u|, dw_xy/dt = -(5 mu_s g / 2R) (u x z)/|u|, until t = 2|u|/(7 mu_s g).
+[[gnu::noinline]] void sliding_friction(Segment& s, const Vec2& u, double slip, const MotionParams& p) {
+    if (p.slide == 0.0) return;
+    const Vec2 direction = u / slip;
+    const double turn = 2.5 * p.slide / p.R;
+    s.a = -p.slide * direction;
+    s.dw = Vec2(-turn * direction.y(), turn * direction.x());
+    s.duration = 2.0 * slip / (7.0 * p.slide);
+}
+
+// Resistance of a rolling ball: a = -mu_r g v/|v|, until |v|/(mu_r g).
+[[gnu::noinline]] void rolling_resistance(Segment& s, double speed, const MotionParams& p) {
+    if (p.roll == 0.0) return;
+    s.duration = speed / p.roll;
+    s.a = planar(s.v) * (-p.roll / speed);
+    s.dw = Vec2(-s.a.y() / p.R, s.a.x() / p.R);
+}
+
+// Vertical spin decays; a ball that spins in place does so until it is gone.
+[[gnu::noinline]] void spin_decay(Segment& s, const MotionParams& p) {
+    if (s.w.z() == 0.0) return;
+    s.spin_decay = p.spin;
+    if (s.state == MotionState::kSpinning) s.duration = spin_time(s.w.z(), p);
+}
+
+}  // namespace effects
+
 Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& p) {
     Segment s;
     s.start = t;
     s.r = r;
     s.v = Vec3(v.x(), v.y(), 0.0);
-    s.w = w;
+    s.w = Vec3(w.x(), w.y(), w.z() + 0.0);  // -0 is no spin either
     s.a = Vec2::Zero();
     s.dw = Vec2::Zero();
-    s.spin_decay = p.spin;
+    s.duration = kInfinity;
     const Vec2 u = cloth_slip(s.v, s.w, p.R);
     const double slip = length(u), speed = length(planar(s.v));
     const double spin = std::sqrt(w.x() * w.x() + w.y() * w.y() + w.z() * w.z());
     if (slip > kRollingUlp * kEpsilon * (speed + p.R * spin)) {
         s.state = MotionState::kSliding;
-        if (p.slide == 0.0) {
-            s.duration = kInfinity;
-        } else {
-            const Vec2 direction = u / slip;
-            const double turn = 2.5 * p.slide / p.R;
-            s.a = -p.slide * direction;
-            s.dw = Vec2(-turn * direction.y(), turn * direction.x());  // -(5 mu_s g / 2R) (u x z)/|u|
-            s.duration = 2.0 * slip / (7.0 * p.slide);
-        }
+        if (p.sliding) effects::sliding_friction(s, u, slip, p);
     } else if (speed > 0.0) {
         s.state = MotionState::kRolling;
         s.w.x() = -s.v.y() / p.R;
         s.w.y() = s.v.x() / p.R;
-        s.duration = p.roll > 0.0 ? speed / p.roll : kInfinity;
-        if (p.roll > 0.0) {
-            s.a = planar(s.v) * (-p.roll / speed);
-            s.dw = Vec2(-s.a.y() / p.R, s.a.x() / p.R);
-        }
+        if (p.rolling) effects::rolling_resistance(s, speed, p);
     } else {
         s.w.x() = s.w.y() = 0.0;
         s.state = s.w.z() != 0.0 ? MotionState::kSpinning : MotionState::kStationary;
-        s.duration = s.w.z() != 0.0 ? spin_time(s.w.z(), p) : kInfinity;
     }
+    if (p.spin_decay) effects::spin_decay(s, p);
     return s;
 }
 

@@ -2,6 +2,7 @@
 // Greenspan, "An event-based pool physics simulator", 2005).
 #pragma once
 
+#include "carom/engine/plan.h"
 #include "carom/engine/record.h"
 #include "carom/engine/scene.h"
 
@@ -19,8 +20,14 @@ struct MotionParams {
     double slide;  ///< mu_s g [m/s^2]
     double roll;   ///< mu_r g
     double spin;   ///< 5 mu_sp g / (2 R) [rad/s^2]
+    // What the plan leaves out is not computed at all.
+    bool sliding = true;     ///< some ball can slip on a cloth with friction
+    bool rolling = true;     ///< some ball can roll on a cloth that brakes it
+    bool spin_decay = true;  ///< some ball can have vertical spin that decays
 };
 MotionParams motion_params(const BallParams& balls, double gravity);
+/// With what a plan leaves out.
+MotionParams motion_params(const Plan& plan);
 
 /// The segment that starts at time t with these velocities. The motion state follows from them: rolling when the slip is at
 /// most kRollingUlp ulp of |v| + R |w| (spin is then set to the rolling one), and so on.

@@ -18,6 +18,15 @@ std::vector<int> rows_of(const Rack& rack) {
             return {1, 2, 3, 4, 5};
         case RackGame::kNineBall:
             return {1, 2, 3, 2, 1};
+        case RackGame::kSnooker:
+            return {1, 2, 3, 4, 5};
+        case RackGame::kTriangle: {
+            std::vector<int> rows;
+            for (int n = 1; n <= rack.rows; ++n) rows.push_back(n);
+            return rows;
+        }
+        case RackGame::kThreeCushion:
+            return {};
         case RackGame::kLine:
             break;
     }
@@ -72,9 +81,27 @@ std::vector<int> nine_ball_numbers(SplitMix64& random) {
 std::vector<int> numbers_of(const Rack& rack, SplitMix64& random) {
     if (rack.game == RackGame::kEightBall) return eight_ball_numbers(random);
     if (rack.game == RackGame::kNineBall) return nine_ball_numbers(random);
+    int count = 0;
+    for (const int row : rows_of(rack)) count += row;
     std::vector<int> out;
-    for (int n = 1; n <= rack.count; ++n) out.push_back(n);
+    for (int n = 1; n <= count; ++n) out.push_back(n);
     return out;
+}
+
+/// Balls with a spot of their own.
+std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
+    const Vec2 origin = table.corner;
+    const double middle = table.width / 2.0, l = table.length;
+    const auto at = [&](double x, double y) { return Vec2(origin.x() + x, origin.y() + y); };
+    if (rack.game == RackGame::kThreeCushion) {
+        const double aside = 0.1825 * (l / 2.84);
+        return {{"white", at(middle - aside, l / 4.0)}, {"yellow", at(middle, l / 4.0)}, {"red", at(middle, 3.0 * l / 4.0)}};
+    }
+    if (rack.game != RackGame::kSnooker) return {};
+    const double scale = l / 3.569;
+    const double baulk = 0.737 * scale, d = 0.292 * scale;
+    return {{"yellow", at(middle + d, baulk)}, {"green", at(middle - d, baulk)}, {"brown", at(middle, baulk)},
+            {"blue", at(middle, l / 2.0)},     {"pink", at(middle, 3.0 * l / 4.0)}, {"black", at(middle, l - 0.324 * scale)}};
 }
 
 /// Places without jitter, row by row, left to right.
@@ -125,15 +152,17 @@ void add_jitter(std::vector<Vec2>& places, const Rack& rack, double R, SplitMix6
 
 }  // namespace
 
-std::vector<RackedBall> make_rack(const Rack& rack, const Vec2& apex, double R) {
+std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R) {
+    Vec2 apex = foot_spot(table);
+    if (rack.game == RackGame::kSnooker) apex.y() += 2.0 * R + rack.gap;
     SplitMix64 random(rack.seed);
     const std::vector<int> numbers = numbers_of(rack, random);
     std::vector<Vec2> slots = slots_of(rack, apex, R);
     if (rack.jitter > 0.0) add_jitter(slots, rack, R, random);
-    std::vector<RackedBall> out;
-    for (std::size_t i = 0; i < slots.size(); ++i) out.push_back({numbers[i], slots[i]});
-    std::sort(out.begin(), out.end(),
-              [](const RackedBall& a, const RackedBall& b) { return a.number < b.number; });
+    std::vector<RackedBall> out(slots.size());
+    for (std::size_t i = 0; i < slots.size(); ++i)
+        out[static_cast<std::size_t>(numbers[i] - 1)] = {std::to_string(numbers[i]), slots[i]};
+    for (const RackedBall& ball : spotted(rack, table)) out.push_back(ball);
     return out;
 }
 

@@ -2,13 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
-#include "carom/engine/vec.h"
+#include "carom/engine/table.h"
 
 namespace carom {
 
-enum class RackGame : std::uint8_t { kEightBall, kNineBall, kLine };
+enum class RackGame : std::uint8_t { kEightBall, kNineBall, kSnooker, kTriangle, kThreeCushion, kLine };
 
 struct Rack {
     RackGame game = RackGame::kEightBall;
@@ -16,16 +17,23 @@ struct Rack {
     double jitter = 0.0;  ///< each coordinate moves by a uniform draw from [-jitter, jitter] [m]
     std::uint64_t seed = 1;
     int count = 5;  ///< balls of a line
+    int rows = 5;   ///< of a triangle
 };
 
 struct RackedBall {
-    int number;  ///< 1 .. 15, 1 .. 9, or 1 .. count
+    std::string id;  ///< "1", "2", ..., or a colour
     Vec2 position;
 };
 
-/// Places a rack with its apex at `apex`, rows towards +y, ordered by number.
+/// Places a rack, ordered by number; colours that have a spot of their own come last.
 ///
 /// @param R  ball radius [m]
+///
+/// The apex stands on the foot spot (snooker: behind the pink, a diameter and a gap away), rows towards +y. Snooker's colours
+/// stand on their spots (WPBSA rules, section 1: baulk line 737 mm from the bottom cushion, D of radius 292 mm, blue in the
+/// middle, pink at three quarters, black 324 mm from the top cushion), scaled with the length where the table is not a
+/// snooker table. Three-cushion: red on the foot spot, yellow on the head spot, white 182.5 mm to the left of it (opening
+/// position of the UMB rules, recalled). Colours do not jitter.
 ///
 /// Without jitter the rack is the exact mirror image of itself about x = apex.x, bit for bit, and neighbours
 /// are 2R + gap apart to within rounding.
@@ -34,6 +42,6 @@ struct RackedBall {
 /// right, draws a place (x, then y) in the box of half-width `jitter` about its slot, and keeps its old one
 /// if the new one would overlap. Wide apart, that is a uniform draw; close together, a uniform draw among the
 /// racks that are possible. The seed's draws go to the numbers first, then to the jitter.
-std::vector<RackedBall> make_rack(const Rack& rack, const Vec2& apex, double R);
+std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R);
 
 }  // namespace carom

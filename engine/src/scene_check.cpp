@@ -5,6 +5,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "carom/engine/cushion.h"
 #include "carom/engine/tolerances.h"
 #include "scene_sections.h"
 
@@ -90,6 +91,28 @@ void check_noses(const Section& top, const Scene& scene) {
     for (const Jaw& j : scene.table.jaws) check("jaw", j.id, j.height);
 }
 
+/// The integration of mathavan_2010 has to end.
+void check_cushion_model(const Section& top, const Scene& scene) {
+    const BallParams& p = scene.balls;
+    const auto check = [&](CushionModel model, const char* kind, const std::string& id, double height) {
+        if (model != CushionModel::kMathavan2010) return;
+        if (mathavan_2010_ends({p.R, p.m, p.mu_s, p.e_c, p.f_c, height})) return;
+        top.fail(top.has("physics") ? "physics" : "balls",
+                 fmt::format("with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the model mathavan_2010; "
+                             "lower one of them or use another cushion model",
+                             p.f_c, p.mu_s, kind, id));
+    };
+    for (const Cushion& c : scene.table.cushions) check(scene.physics.cushion, "cushion", c.id, c.height);
+    for (const Jaw& j : scene.table.jaws) check(scene.physics.jaw_model(), "jaw", j.id, j.height);
+}
+
+/// Whether impacts with the table can give a ball vertical spin.
+bool cushions_twist(const Scene& scene) {
+    const auto twists = [&](CushionModel model) { return cushion_model(model).reads_friction && scene.balls.f_c > 0.0; };
+    return (!scene.table.cushions.empty() && twists(scene.physics.cushion)) ||
+           (!scene.table.jaws.empty() && twists(scene.physics.jaw_model()));
+}
+
 /// What can be set going in a scene.
 struct Motions {
     bool travel = false;  ///< some ball can move over the cloth
@@ -116,8 +139,7 @@ Motions possible_motions(const Scene& scene) {
     const bool cushions = !scene.table.cushions.empty() || !scene.table.jaws.empty();
     const bool pairs = scene.ball.size() > 1;
     m.slip = m.slip || cushions || pairs;
-    m.twist = m.twist || (pairs && scene.balls.mu_b > 0.0) ||
-              (cushions && scene.balls.f_c > 0.0 && scene.physics.cushion != CushionModel::kSmooth);
+    m.twist = m.twist || (pairs && scene.balls.ball_friction()) || cushions_twist(scene);
     return m;
 }
 
@@ -143,6 +165,7 @@ void check_scene(const Section& top, const Scene& scene) {
     if (scene.ball.empty()) top.fail(SourceLocation{}, "there is no ball; add a [[ball]] or a [rack]");
     check_ids(top, scene);
     check_noses(top, scene);
+    check_cushion_model(top, scene);
     check_overlaps(top, scene);
     check_reach(top, scene);
     check_rest(top, scene);

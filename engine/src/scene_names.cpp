@@ -1,6 +1,8 @@
 // How models are spelt in files, and the text of a scene error.
 #include <fmt/format.h>
 
+#include "carom/engine/cushion.h"
+#include "carom/engine/math.h"
 #include "carom/engine/scene.h"
 
 namespace carom {
@@ -8,6 +10,11 @@ namespace carom {
 SceneError::SceneError(const std::string& file, SourceLocation where, const std::string& message)
     : std::runtime_error(where.line > 0 ? fmt::format("{}:{}:{}: {}", file, where.line, where.column, message)
                                         : fmt::format("{}: {}", file, message)) {}
+
+double ball_friction(const BallParams& balls, double slip) {
+    if (balls.mu_b_more == 0.0) return balls.mu_b;
+    return balls.mu_b + balls.mu_b_more * exponential(-balls.mu_b_fall * slip);
+}
 
 const char* name(BallBallModel model) {
     switch (model) {
@@ -22,13 +29,7 @@ const char* name(BallBallModel model) {
 }
 
 const char* name(CushionModel model) {
-    switch (model) {
-        case CushionModel::kSmooth:
-            return "smooth";
-        case CushionModel::kHan2005:
-            return "han_2005";
-    }
-    return "?";
+    return cushion_model(model).name;
 }
 
 const char* name(ClusterModel model) {

@@ -56,7 +56,6 @@ Scene parse_scene(std::string_view text, const std::string& name) {
     const toml::table file = parse_toml(text, name);
     const detail::Section top(
         file, name, "", {"table", "balls", "rack", "ball", "cue", "physics", "stop", "render", "effects"});
-    top.refuse("effects", "leave the section out; carom check shows which effects are in force");
     Scene scene;
     scene.file = name;
     detail::read_physics(top, scene);
@@ -65,6 +64,7 @@ Scene parse_scene(std::string_view text, const std::string& name) {
     detail::read_ball_list(top, scene);
     detail::read_rack(top, scene);
     detail::read_cue(top, scene);
+    detail::read_effects(top, scene);
     detail::read_stop(top, scene);
     detail::read_render(top, scene);
     detail::check_scene(top, scene);

@@ -165,6 +165,13 @@ std::int64_t Section::integer(std::string_view key, std::int64_t fallback, std::
     return integer(key, low, high).value_or(fallback);
 }
 
+std::optional<bool> Section::boolean(std::string_view key) const {
+    const toml::node* node = table_.get(key);
+    if (!node) return std::nullopt;
+    if (!node->is_boolean()) fail(key, fmt::format("{} must be true or false, not {}", full(key), type_name(*node)));
+    return *node->value<bool>();
+}
+
 std::string Section::text(std::string_view key, const std::string& fallback) const {
     const toml::node* node = table_.get(key);
     if (!node) return fallback;

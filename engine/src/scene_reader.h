@@ -62,6 +62,7 @@ class Section {
     std::int64_t integer(std::string_view key, std::int64_t fallback, std::int64_t low,
                          std::int64_t high) const;
     std::optional<std::int64_t> integer(std::string_view key, std::int64_t low, std::int64_t high) const;
+    std::optional<bool> boolean(std::string_view key) const;
     std::string text(std::string_view key, const std::string& fallback) const;
     /// `count` numbers in an array; nothing if the key is absent. `shape` shows how to write it: "[x, y]".
     std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, const char* shape,

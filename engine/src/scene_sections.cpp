@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "carom/engine/tolerances.h"
+#include "carom/kernel/tolerance.h"
 #include "rack.h"
 
 namespace carom::detail {
@@ -15,17 +16,18 @@ constexpr Choice<bool> kBallPresets[] = {{"pool", true}, {"snooker", true}, {"ca
 
 constexpr Choice<RackGame> kRackGames[] = {{"eight_ball", RackGame::kEightBall},
                                            {"nine_ball", RackGame::kNineBall},
-                                           {"line", RackGame::kLine},
-                                           {"snooker", std::nullopt},
-                                           {"triangle", std::nullopt}};
+                                           {"snooker", RackGame::kSnooker},
+                                           {"three_cushion", RackGame::kThreeCushion},
+                                           {"triangle", RackGame::kTriangle},
+                                           {"line", RackGame::kLine}};
 constexpr Choice<BallBallModel> kBallBallModels[] = {{"mathavan", BallBallModel::kMathavan},
                                                      {"inelastic", BallBallModel::kInelastic},
                                                      {"elastic", BallBallModel::kElastic}};
 constexpr Choice<CushionModel> kCushionModels[] = {{"han_2005", CushionModel::kHan2005},
                                                    {"smooth", CushionModel::kSmooth},
-                                                   {"mathavan_2010", std::nullopt},
-                                                   {"stronge", std::nullopt},
-                                                   {"impulse", std::nullopt}};
+                                                   {"mathavan_2010", CushionModel::kMathavan2010},
+                                                   {"stronge", CushionModel::kStronge},
+                                                   {"impulse", CushionModel::kImpulse}};
 constexpr Choice<ClothSlipSign> kClothSlipSigns[] = {{"consistent", ClothSlipSign::kConsistent},
                                                      {"as_published", ClothSlipSign::kAsPublished}};
 constexpr Choice<ClusterModel> kClusterModels[] = {
@@ -74,7 +76,7 @@ void read_balls(const Section& top, Scene& scene) {
     const toml::table* table = top.table("balls");
     if (!table) return;
     const Section s(*table, top.file(), "balls",
-                    {"preset", "radius", "mass", "mu_s", "mu_r", "mu_sp", "mu_b", "e_b", "e_c", "f_c"});
+                    {"preset", "radius", "mass", "mu_s", "mu_r", "mu_sp", "mu_b", "mu_b_fit", "e_b", "e_c", "f_c"});
     s.choice("preset", true, kBallPresets);
     scene.ball_preset = s.text("preset", scene.ball_preset);
     BallParams p = make_ball_params(scene.ball_preset);
@@ -84,9 +86,20 @@ void read_balls(const Section& top, Scene& scene) {
     p.mu_r = s.number("mu_r", p.mu_r, kFriction);
     p.mu_sp = s.number("mu_sp", p.mu_sp, kFriction);
     p.mu_b = s.number("mu_b", p.mu_b, kFriction);
+    if (const auto fit = s.numbers("mu_b_fit", 3, "[a, b, c] for a + b exp(-c u)", kFriction)) {
+        if (s.has("mu_b")) s.fail("mu_b_fit", "balls.mu_b and balls.mu_b_fit are two values for one friction; remove one");
+        p.mu_b = (*fit)[0];
+        p.mu_b_more = (*fit)[1];
+        p.mu_b_fall = (*fit)[2];
+    }
     p.e_b = s.number("e_b", p.e_b, kRestitution);
     p.e_c = s.number("e_c", p.e_c, kRestitution);
     p.f_c = s.number("f_c", p.f_c, kFriction);
+    for (const auto& [key, value] : {std::pair{"mu_s", p.mu_s}, std::pair{"mu_b", p.mu_b}}) {
+        if (value > kernel::kLargestFriction && scene.physics.ball_ball == BallBallModel::kMathavan && !scene.physics.substeps)
+            s.fail(s.where(key), fmt::format("balls.{} = {}: the impact by tolerance takes frictions up to {}; lower it, or set "
+                                             "physics.substeps = 1000", key, value, kernel::kLargestFriction));
+    }
     scene.balls = p;
 }
 
@@ -105,7 +118,6 @@ void read_rack(const Section& top, Scene& scene) {
     const toml::table* table = top.table("rack");
     if (!table) return;
     const Section s(*table, top.file(), "rack", {"game", "gap", "jitter", "seed", "count", "rows"});
-    s.refuse("rows", "it belongs to the game triangle; use eight_ball, nine_ball or line");
     Rack rack;
     rack.game = s.choice("game", rack.game, kRackGames);
     rack.gap = s.number("gap", rack.gap, at_least(0.0, kMaxLength, "m"));
@@ -115,12 +127,20 @@ void read_rack(const Section& top, Scene& scene) {
         s.fail("count", "rack.count belongs to the game line; leave it out or set game = \"line\"");
     }
     rack.count = static_cast<int>(s.integer("count", rack.count, 1, kMaxBalls));
-    for (const RackedBall& ball : make_rack(rack, foot_spot(scene.table), scene.balls.R)) {
+    if (s.has("rows") && rack.game != RackGame::kTriangle) {
+        s.fail("rows", "rack.rows belongs to the game triangle; leave it out or set game = \"triangle\"");
+    }
+    rack.rows = static_cast<int>(s.integer("rows", rack.rows, 1, kMaxRackRows));
+    const bool spots = rack.game == RackGame::kSnooker || rack.game == RackGame::kThreeCushion;
+    if (spots && !(scene.table.length > 0.0)) {
+        s.fail("game", "this layout puts balls on the spots of a table, and the cloth is endless; choose a table");
+    }
+    for (const RackedBall& ball : make_rack(rack, scene.table, scene.balls.R)) {
         if (scene.ball.size() == kMaxBalls) {
             s.fail(s.where(), fmt::format("more than {} balls; leave some out", kMaxBalls));
         }
         BallStart start;
-        start.id = std::to_string(ball.number);
+        start.id = ball.id;
         start.position = {ball.position.x(), ball.position.y(), scene.balls.R};
         start.where = s.where();
         scene.ball.push_back(start);
@@ -178,15 +198,31 @@ void read_physics(const Section& top, Scene& scene) {
     const toml::table* table = top.table("physics");
     if (!table) return;
     const Section s(*table, top.file(), "physics",
-                    {"gravity", "ball_ball", "cushion", "cloth_slip", "clusters", "tolerance", "substeps"});
+                    {"gravity", "ball_ball", "cushion", "jaw", "cloth_slip", "clusters", "tolerance", "substeps"});
     Physics& p = scene.physics;
     p.gravity = s.number("gravity", p.gravity, at_least(0.0, kMaxGravity, "m/s^2"));
     p.ball_ball = s.choice("ball_ball", p.ball_ball, kBallBallModels);
     p.cushion = s.choice("cushion", p.cushion, kCushionModels);
+    if (s.has("jaw")) p.jaw = s.choice("jaw", p.cushion, kCushionModels);
     p.cloth_slip = s.choice("cloth_slip", p.cloth_slip, kClothSlipSigns);
     p.clusters = s.choice("clusters", p.clusters, kClusterModels);
-    s.refuse("tolerance", "use substeps (default 1000)");
-    p.substeps = static_cast<int>(s.integer("substeps", p.substeps, 1, kMaxSubsteps));
+    p.tolerance = s.number("tolerance", p.tolerance, at_least(kernel::kTightestTolerance, kernel::kLoosestTolerance));
+    if (s.has("substeps")) {
+        if (s.has("tolerance"))
+            s.fail(s.where("substeps"), "physics.substeps and physics.tolerance exclude each other; remove one of the two");
+        p.substeps = static_cast<int>(s.integer("substeps", 1, 1, kMaxSubsteps));
+    }
+}
+
+void read_effects(const Section& top, Scene& scene) {
+    const toml::table* table = top.table("effects");
+    if (!table) return;
+    const Section s(*table, top.file(), "effects",
+                    {"sliding", "rolling", "spin_decay", "throw", "cloth_in_impact", "cushions", "cushion_friction",
+                     "pockets", "squirt", "clusters"});
+    for (const char* keyword : kEffectKeywords) {
+        if (const auto on = s.boolean(keyword)) scene.effects.push_back({keyword, *on, s.where(keyword)});
+    }
 }
 
 void read_stop(const Section& top, Scene& scene) {

@@ -15,6 +15,8 @@ void read_rack(const Section& top, Scene& scene);
 /// Needs scene.ball.
 void read_cue(const Section& top, Scene& scene);
 void read_physics(const Section& top, Scene& scene);
+/// Checked against what the scene needs when it is planned.
+void read_effects(const Section& top, Scene& scene);
 void read_stop(const Section& top, Scene& scene);
 void read_render(const Section& top, Scene& scene);
 

@@ -10,10 +10,10 @@ namespace carom::detail {
 namespace {
 
 constexpr Choice<bool> kTablePresets[] = {{"seven_foot", true},
+                                          {"eight_foot", true},
                                           {"nine_foot", true},
-                                          {"carom", true},
-                                          {"eight_foot", std::nullopt},
-                                          {"snooker", std::nullopt}};
+                                          {"snooker", true},
+                                          {"carom", true}};
 
 constexpr Interval kCoordinate = at_least(-kMaxCoordinate, kMaxCoordinate, "m");
 

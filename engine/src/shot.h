@@ -23,6 +23,11 @@ struct Candidate {
     int nose = -1;  ///< kBallCushion, kBallJaw: index into Plan::noses, or -1 for the straight part
 };
 
+/// A rectangle on the table.
+struct Box {
+    double low_x, low_y, high_x, high_y;
+};
+
 class Shot {
   public:
     using Clock = std::chrono::steady_clock;
@@ -48,7 +53,9 @@ class Shot {
     Candidate pair(int a, int b) const;
     void rescan(int ball);
     void detect_features(int ball);
+    void bound(int ball);
     void redetect();
+    Box swept(int ball, double duration) const;
     Path path(int ball, double from) const;
 
     // shot_resolve.cpp
@@ -58,6 +65,7 @@ class Shot {
     void resolve_ball_ball(const Candidate& c);
     template <bool kProfile>
     void resolve_nose(const Candidate& c);
+    double pair_friction(int one, int two) const;
     void resolve_pocket(const Candidate& c);
     void resolve_transition(const Candidate& c);
     void record_event(EventType type, int a, int b, int detail = -1);
@@ -77,6 +85,7 @@ class Shot {
     bool hold_instead(const HeldContact& contact, double v_n, double a_c, double restitution);
     void free_ball(int ball);
     void solve_group(int ball, bool transitions);
+    bool release_past_ends(HeldGroup& group);
     void refresh_normal(HeldContact& contact) const;
     void sort_by_place(std::vector<HeldContact>& contacts) const;
     void restore_held();
@@ -104,6 +113,8 @@ class Shot {
     std::vector<ClusterContact> cluster_contacts_;
     // Per ball: its transition, its first contact with the table, its first contact with another ball.
     std::vector<Candidate> own_, feature_, pair_;
+    std::vector<Box> box_;         // per ball: where it can be until its own next event
+    std::vector<Box> line_boxes_;  // per straight cushion
 };
 
 }  // namespace carom

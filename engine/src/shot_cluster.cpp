@@ -84,7 +84,7 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     } else {
         const bool frictionless = plan_.scene.physics.ball_ball == BallBallModel::kElastic;
         const ClusterSettings settings{p.R, plan_.scene.physics.ball_ball == BallBallModel::kMathavan ? p.mu_s : 0.0,
-                                       frictionless ? 0.0 : p.mu_b, frictionless ? 1.0 : p.e_b,
+                                       frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b), frictionless ? 1.0 : p.e_b,
                                        plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished, kClusterEpsilon, kClusterStep};
         steps = cluster_map_.compliant(cluster_balls_, cluster_contacts_, settings, v_n);
         if (steps < 0) fail("a cluster of balls did not part");

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carom/engine/tolerances.h"
 #include "shot.h"
 
 namespace carom {
@@ -22,6 +23,36 @@ int rank(EventType type) {
 
 bool in_play(const Segment& segment) {
     return segment.state != MotionState::kPocketed;
+}
+
+// Smallest and largest value of r + v t + a t^2 / 2 on [0, T], widened by `margin`.
+void extend(double r, double v, double a, double T, double margin, double& low, double& high) {
+    low = high = r;
+    if (v != 0.0 || a != 0.0) {
+        if (!(T < kNever)) {  // for ever, and then there is no telling
+            low = -kNever;
+            high = kNever;
+            return;
+        }
+        const auto take = [&](double t) {
+            const double x = r + t * (v + 0.5 * t * a);
+            low = std::min(low, x);
+            high = std::max(high, x);
+        };
+        take(T);
+        const double turn = a != 0.0 ? -v / a : -1.0;
+        if (turn > 0.0 && turn < T) take(turn);
+    }
+    low -= margin;
+    high += margin;
+}
+
+bool apart(const Box& a, const Box& b) {
+    return a.low_x > b.high_x || b.low_x > a.high_x || a.low_y > b.high_y || b.low_y > a.high_y;
+}
+
+Box around(const Vec2& center, double reach) {
+    return {center.x() - reach, center.y() - reach, center.x() + reach, center.y() + reach};
 }
 
 }  // namespace
@@ -88,7 +119,19 @@ Candidate Shot::next() const {
     return first;
 }
 
+// Where the ball's surface can be from its segment's start until `duration` later; the share keeps rounding inside.
+Box Shot::swept(int ball, double duration) const {
+    const Segment& s = now_of(ball);
+    const double R = plan_.balls.R, margin = R * (1.0 + kBoxShare) + kBoxShare * (std::abs(s.r.x()) + std::abs(s.r.y()));
+    Box box{};
+    extend(s.r.x(), s.v.x(), s.a.x(), duration, margin, box.low_x, box.high_x);
+    extend(s.r.y(), s.v.y(), s.a.y(), duration, margin, box.low_y, box.high_y);
+    return box;
+}
+
 Candidate Shot::pair(int a, int b) const {
+    // Beyond what either does next there is nothing to know: both will be looked at again then.
+    if (apart(box_[static_cast<std::size_t>(a)], box_[static_cast<std::size_t>(b)])) return {};
     const double from = std::max(now_of(a).start, now_of(b).start);
     const double t = time_to_ball(path(a, from), path(b, from), 2.0 * plan_.balls.R);
     return {from + t, EventType::kBallBall, std::min(a, b), std::max(a, b), -1};
@@ -96,7 +139,7 @@ Candidate Shot::pair(int a, int b) const {
 
 void Shot::rescan(int ball) {
     Candidate first;
-    for (int j = 0; j < balls_ && in_play(now_of(ball)); ++j) {
+    for (int j = 0; plan_.pairs && j < balls_ && in_play(now_of(ball)); ++j) {
         if (j == ball || !in_play(now_of(j)) || held_together(ball, j)) continue;
         const Candidate c = pair(ball, j);
         if (before(c, first)) first = c;
@@ -115,18 +158,23 @@ void Shot::detect_features(int ball) {
             const Candidate c{from + t, type, ball, index, nose};
             if (before(c, first)) first = c;
         };
+        const Box whole = swept(ball, now_of(ball).duration);
         for (std::size_t i = 0; i < plan_.cushions.size(); ++i) {
-            if (held_to(ball, static_cast<int>(i), -1)) continue;
             const CushionLine& line = plan_.cushions[i];
+            if (apart(whole, line_boxes_[i]) || held_to(ball, static_cast<int>(i), -1)) continue;
             offer(time_to_line(p, line.from, line.direction, line.length, R), EventType::kBallCushion, static_cast<int>(i), -1);
         }
+        // What lies beyond the first straight cushion cannot come before it.
+        const Box near = first.time < kNever ? swept(ball, first.time - from) : whole;
         for (std::size_t i = 0; i < plan_.noses.size(); ++i) {
-            if (held_to(ball, -1, static_cast<int>(i))) continue;
             const Nose& nose = plan_.noses[i];
+            if (apart(near, around(nose.center, nose.radius)) || held_to(ball, -1, static_cast<int>(i))) continue;
             offer(time_to_circle(p, nose.center, R + nose.radius), nose.type, nose.index, static_cast<int>(i));
         }
-        for (std::size_t i = 0; i < plan_.pockets.size(); ++i)
+        for (std::size_t i = 0; i < plan_.pockets.size(); ++i) {
+            if (apart(near, around(plan_.pockets[i].center, plan_.pockets[i].radius))) continue;
             offer(time_to_pocket(p, plan_.pockets[i].center, plan_.pockets[i].radius), EventType::kBallPocket, static_cast<int>(i), -1);
+        }
     } else if (now_of(ball).state != MotionState::kPocketed) {
         // A ball that rests inside a pocket's circle falls.
         const Vec3& r = now_of(ball).r;
@@ -138,6 +186,12 @@ void Shot::detect_features(int ball) {
     feature_[static_cast<std::size_t>(ball)] = first;
 }
 
+// The box of a ball until its own next event with itself or the table.
+void Shot::bound(int ball) {
+    const auto i = static_cast<std::size_t>(ball);
+    box_[i] = swept(ball, std::min(own_[i].time, feature_[i].time) - now_of(ball).start);
+}
+
 // After an event: the candidates of the balls that it touched anew, and those of balls whose next contact was with them.
 void Shot::redetect() {
     std::sort(touched_.begin(), touched_.end());
@@ -147,9 +201,10 @@ void Shot::redetect() {
         const Segment& s = now_of(i);
         own_[static_cast<std::size_t>(i)] = {s.start + s.duration, EventType::kSlideRoll, i, -1, -1};
         detect_features(i);
-        rescan(i);
+        bound(i);
     }
-    for (int j = 0; j < balls_; ++j) {
+    for (const int i : touched_) rescan(i);
+    for (int j = 0; plan_.pairs && j < balls_; ++j) {
         if (is_touched(j) || !in_play(now_of(j))) continue;
         Candidate& mine = pair_[static_cast<std::size_t>(j)];
         if (mine.time != kNever && (is_touched(mine.a) || is_touched(mine.b))) {

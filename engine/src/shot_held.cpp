@@ -88,8 +88,8 @@ void Shot::solve_group(int ball, bool transitions) {
             record_event(transition_type(s, after), member.ball, -1);
         }
     }
+    bool any_released = release_past_ends(group);
     solve_held(group, plan_, motion_, now_);
-    bool any_released = false;
     for (const HeldContact& c : group.contacts) {
         if (c.released) {
             record_event(c.release_type(), c.i, c.partner, c.nose);
@@ -108,6 +108,22 @@ void Shot::solve_group(int ball, bool transitions) {
             if (!still) begin(member.ball, start_segment(now_, member.r, member.v, member.w, motion_));
         }
     }
+}
+
+// A ball that runs off the end of its cushion lets go of it: when the clock can no longer tell the time to the end from 0.
+bool Shot::release_past_ends(HeldGroup& group) {
+    const std::size_t before = group.contacts.size();
+    std::erase_if(group.contacts, [this](const HeldContact& c) {
+        if (c.cushion < 0) return false;
+        Segment s;
+        s.r = position_now(c.i);
+        s.v = velocity_now(c.i);
+        s.a = now_of(c.i).a;
+        if (now_ + time_to_line_end(plan_.cushions[static_cast<std::size_t>(c.cushion)], s) > now_) return false;
+        record_event(c.release_type(), c.i, c.partner, c.nose);
+        return true;
+    });
+    return group.contacts.size() < before;
 }
 
 // Contacts in the order of their places on the table: never by id, never by when they began.

@@ -19,6 +19,18 @@ void Shot::record_event(EventType type, int a, int b, int detail) {
     quiet_ = 0;
 }
 
+// Friction of the two at the slip that they have now.
+[[gnu::noinline]] double Shot::pair_friction(int one, int two) const {
+    const BallParams& p = plan_.balls;
+    if (p.mu_b_more == 0.0) return p.mu_b;
+    const Vec3 apart = position_now(two) - position_now(one);
+    const Vec2 y = Vec2(apart.x(), apart.y()) / length(Vec2(apart.x(), apart.y())), x(y.y(), -y.x());
+    const Vec3 v = velocity_now(one) - velocity_now(two), w = spin_now(one) + spin_now(two);
+    const double along = x.x() * v.x() + x.y() * v.y() - p.R * w.z();
+    const double upward = p.R * (x.x() * w.x() + x.y() * w.y());
+    return ball_friction(p, length(Vec2(along, upward)));
+}
+
 template <bool kProfile>
 void Shot::resolve_ball_ball(const Candidate& c) {
     const double R = plan_.balls.R;
@@ -46,20 +58,26 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     const kernel::Ball b2{{r2.x(), r2.y(), r2.z()}, {v2.x(), v2.y(), v2.z()}, {w2.x(), w2.y(), w2.z()}};
     const BallParams& p = plan_.balls;
     const Physics& physics = plan_.scene.physics;
-    const kernel::ImpactParams params{p.R, p.m, p.mu_s, p.mu_s, p.mu_b, p.e_b,
+    const double mu_s = plan_.cloth_in_impact ? p.mu_s : 0.0;
+    const kernel::ImpactParams params{p.R, p.m, mu_s, mu_s, plan_.friction ? pair_friction(one, two) : 0.0, p.e_b,
                                       physics.cloth_slip == ClothSlipSign::kAsPublished ? kernel::ClothSlip::kAsPublished
                                                                                         : kernel::ClothSlip::kConsistent};
     kernel::ImpactResult result;
     const auto start = kProfile ? Clock::now() : Clock::time_point{};
     switch (physics.ball_ball) {
-        case BallBallModel::kMathavan: plan_.march(b1, b2, params, physics.substeps, result); break;
+        case BallBallModel::kMathavan:
+            if (plan_.march != nullptr) plan_.march(b1, b2, params, *physics.substeps, result);
+            else plan_.by_tolerance(b1, b2, params, physics.tolerance, result);
+            break;
         case BallBallModel::kInelastic: kernel::collide_inelastic(b1, b2, params, result); break;
         case BallBallModel::kElastic: kernel::collide_elastic(b1, b2, params, result); break;
     }
     if constexpr (kProfile) {
         cost_.kernel_ns = nanoseconds(start, Clock::now());
         cost_.steps = result.steps;
-        cost_.method = physics.ball_ball == BallBallModel::kMathavan ? "march" : name(physics.ball_ball);
+        cost_.method = physics.ball_ball != BallBallModel::kMathavan ? name(physics.ball_ball)
+                       : plan_.march != nullptr                      ? "march"
+                                                                     : kernel::name(result.method);
     }
     const auto id = [this](int ball) { return record_.tracks[static_cast<std::size_t>(ball)].id; };
     if (result.status != kernel::ImpactStatus::kOk && result.status != kernel::ImpactStatus::kNotApproaching)
@@ -104,8 +122,9 @@ void Shot::resolve_nose(const Candidate& c) {
     if (hold_instead(contact, v_n, -(normal.x() * pull.x() + normal.y() * pull.y()) - curving, plan_.balls.e_c)) return;
 
     const BallParams& p = plan_.balls;
-    resolve_cushion(plan_.scene.physics.cushion, {p.R, p.m, p.mu_s, p.e_c, p.f_c, height}, normal, v, w);
-    if constexpr (kProfile) cost_.method = name(plan_.scene.physics.cushion);
+    const CushionModelInfo& model = contact.jaw ? *plan_.jaw : *plan_.cushion;
+    model.resolve({p.R, p.m, p.mu_s, p.e_c, p.f_c, height}, normal, v, w);
+    if constexpr (kProfile) cost_.method = model.name;
     free_ball(c.a);
     begin(c.a, start_segment(now_, r, v, w, motion_));
     record_event(c.type, c.a, c.b, c.nose);

@@ -9,7 +9,7 @@
 namespace carom {
 
 Shot::Shot(const Plan& plan, const SimulateOptions& options)
-    : plan_(plan), options_(options), motion_(motion_params(plan.balls, plan.gravity)) {}
+    : plan_(plan), options_(options), motion_(motion_params(plan)) {}
 
 void Shot::set_up(bool profile) {
     const Scene& scene = plan_.scene;
@@ -24,13 +24,10 @@ void Shot::set_up(bool profile) {
         track.segments.push_back(start_segment(0.0, ball.position, ball.velocity, ball.spin, motion_));
         record_.tracks.push_back(std::move(track));
     }
-    own_.resize(scene.ball.size());
-    feature_.resize(scene.ball.size());
-    pair_.resize(scene.ball.size());
     if (scene.cue) {
         for (int i = 0; i < balls_; ++i) {
             if (scene.ball[static_cast<std::size_t>(i)].id != scene.cue->ball) continue;
-            const StruckBall struck = strike(*scene.cue, plan_.balls);
+            const StruckBall struck = strike(*scene.cue, plan_.balls, plan_.squirt);
             begin(i, start_segment(0.0, now_of(i).r, struck.v, struck.w, motion_));
             record_.events.push_back({0.0, EventType::kCueStrike, i, -1, -1});
             if (profile) record_.costs.push_back({0.0, 0.0, 0.0, 0, "point"});
@@ -40,11 +37,15 @@ void Shot::set_up(bool profile) {
 }
 
 void Shot::first_candidates() {
-    for (int i = 0; i < balls_; ++i) {
-        own_[static_cast<std::size_t>(i)] = {now_of(i).start + now_of(i).duration, EventType::kSlideRoll, i, -1, -1};
-        detect_features(i);
-        rescan(i);
+    for (std::vector<Candidate>* list : {&own_, &feature_, &pair_}) list->resize(record_.tracks.size());
+    box_.resize(record_.tracks.size());
+    for (const CushionLine& line : plan_.cushions) {
+        const Vec2 to = line.from + line.length * line.direction;
+        line_boxes_.push_back({std::min(line.from.x(), to.x()), std::min(line.from.y(), to.y()), std::max(line.from.x(), to.x()),
+                               std::max(line.from.y(), to.y())});
     }
+    for (int i = 0; i < balls_; ++i) touched_.push_back(i);
+    redetect();
 }
 
 void Shot::take_up(const Record& record) {
@@ -52,7 +53,6 @@ void Shot::take_up(const Record& record) {
     record_.costs.clear();
     balls_ = static_cast<int>(record_.tracks.size());
     now_ = record_.duration;
-    for (std::vector<Candidate>* list : {&own_, &feature_, &pair_}) list->resize(record_.tracks.size());
     restore_held();
     first_candidates();
 }

@@ -53,6 +53,7 @@ class Solver {
         make_directions();
         solve_forces(0.0);  // which resting balls give way: the others take the capture like a wall
         project_velocities();
+        settle();
         make_directions();
         solve_forces(0.0);
         // The normal turns while the balls move across each other; a margin keeps the third order from penetrating.
@@ -78,6 +79,22 @@ class Solver {
             body.mode = s.state == MotionState::kSliding ? Mode::kSliding
                         : s.state == MotionState::kRolling ? Mode::kRolling : Mode::kResting;
             bodies_.push_back(body);
+            const double speed = length(planar(ball.v));
+            const double spin = length(Vec2(length(planar(ball.w)), ball.w.z()));
+            noise_ = std::max(noise_, kClosingUlp * std::numeric_limits<double>::epsilon() * (speed + motion_.R * spin));
+        }
+        settle();
+    }
+
+    // A rolling ball whose velocity is the rounding of its group's has stopped: the direction of such a velocity means nothing, and
+    // rolling friction along it would drive the ball.
+    void settle() {
+        for (std::size_t k = 0; k < bodies_.size(); ++k) {
+            HeldBall& ball = group_.balls[k];
+            if (bodies_[k].mode != Mode::kRolling || length(planar(ball.v)) > noise_) continue;
+            bodies_[k].mode = Mode::kResting;
+            ball.v = Vec3::Zero();
+            ball.w.x() = ball.w.y() = 0.0;
         }
     }
 
@@ -109,8 +126,7 @@ class Solver {
                 const double mj = link.j < 0 ? 0.0 : bodies_[static_cast<std::size_t>(link.j)].mobility();
                 if (mi + mj == 0.0) continue;
                 const double rate = gap_rate(link);
-                const double speeds = length(velocity(link.i)) + (link.j >= 0 ? length(velocity(link.j)) : 0.0);
-                if (std::abs(rate) <= kClosingUlp * std::numeric_limits<double>::epsilon() * speeds) continue;
+                if (std::abs(rate) <= noise_) continue;
                 done = false;
                 const double J = -rate / (mi + mj);
                 kick(link.i, -J * mi * link.n);
@@ -147,7 +163,7 @@ class Solver {
             const double s_x = dot(planar(bi.v) - planar(bj.v), t) - motion_.R * (bi.w.z() + bj.w.z());
             const double s_z = motion_.R * (dot(planar(bi.w), t) + dot(planar(bj.w), t));
             const double slip = length(Vec2(s_x, s_z));
-            link.friction_z = slip > 0.0 ? -plan_.balls.mu_b * s_z / slip : 0.0;
+            link.friction_z = slip > 0.0 ? -ball_friction(plan_.balls, slip) * s_z / slip : 0.0;
         }
     }
 
@@ -329,10 +345,7 @@ class Solver {
     }
 
     double line_end_time(const HeldContact& contact, const Segment& s) const {
-        const CushionLine& line = plan_.cushions[static_cast<std::size_t>(contact.cushion)];
-        const Vec2 offset = planar(s.r) - line.from;
-        const double x = dot(line.direction, offset), v = dot(line.direction, planar(s.v)), a = dot(line.direction, s.a);
-        return std::min(first_descent_quadratic(x, v, a, kNever), first_descent_quadratic(line.length - x, -v, -a, kNever));
+        return time_to_line_end(plan_.cushions[static_cast<std::size_t>(contact.cushion)], s);
     }
 
     void write_segments() {
@@ -409,9 +422,20 @@ class Solver {
     double now_;
     std::vector<Body> bodies_;
     std::vector<Link> links_;
+    double noise_ = 0.0;  // m/s: what rounding makes of the group's speeds
 };
 
 }  // namespace
+
+double time_to_line_end(const CushionLine& line, const Segment& s) {
+    const double x = dot(line.direction, planar(s.r) - line.from);
+    const double v = dot(line.direction, planar(s.v)), a = dot(line.direction, s.a);
+    const auto leaves = [](double left, double rate, double pull) {
+        if (left <= 0.0 && (rate < 0.0 || (rate == 0.0 && pull < 0.0))) return 0.0;
+        return first_descent_quadratic(left, rate, pull, kNever);
+    };
+    return std::min(leaves(x, v, a), leaves(line.length - x, -v, -a));
+}
 
 EventType HeldContact::hold_type() const {
     return j >= 0 ? EventType::kBallBallHold : nose >= 0 && jaw ? EventType::kBallJawHold : EventType::kBallCushionHold;

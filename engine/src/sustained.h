@@ -45,6 +45,9 @@ struct HeldGroup {
 /// transition, turn of a direction, or end of a cushion. Contacts that are no longer pressed together are marked released.
 void solve_held(HeldGroup& group, const Plan& plan, const MotionParams& motion, double now);
 
+/// Time until the foot point of a ball that runs along a cushion passes the cushion's end; 0 if it is leaving it now.
+double time_to_line_end(const CushionLine& line, const Segment& segment);
+
 /// The state of a member at its own transition (slip gone, stopped, spin gone), in place.
 void end_transition(HeldBall& member, MotionState state, double R);
 

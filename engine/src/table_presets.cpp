@@ -70,6 +70,39 @@ PocketTable nine_foot() {
     return t;
 }
 
+/// Eight-foot table: playing surface 92 x 46 in, the eight-foot size of the WPA equipment specifications (recalled; tables
+/// of 88 x 44 in are sold as eight-foot too). Pockets as on the nine-foot table: the specification has one set for both.
+PocketTable eight_foot() {
+    PocketTable t = nine_foot();
+    t.length = 92.0 * 0.0254;
+    t.width = 46.0 * 0.0254;
+    return t;
+}
+
+/// Twelve-foot snooker table. Playing surface 3.569 x 1.778 m (11 ft 8 1/2 in x 5 ft 10 in, rules of the WPBSA, section 1).
+/// Nose height 7/5 of the ball's radius (Mathavan, Jackson, Parkin 2010). The pocket templates of the WPBSA are not published:
+/// mouths of 89 and 105 mm are the figures commonly quoted (recalled), and jaw radii, depths and pocket radii are chosen to
+/// go with them: large round jaws, and a ball falls where its centre passes the corner, or the rail line at the side.
+PocketTable snooker_table() {
+    PocketTable t{};
+    t.length = 3.569;
+    t.width = 1.778;
+    t.cushion_width = 0.0508;
+    t.nose_height = 1.4 * 0.02625;
+    t.corner_mouth = 0.089;
+    t.corner_angle = 0.0;
+    t.corner_depth = 0.055;
+    t.corner_radius = 0.050;
+    t.corner_jaw_radius = 0.100;
+    t.side_mouth = 0.105;
+    t.side_angle = 10.0;
+    t.side_depth = 0.055;
+    t.side_radius = 0.050;
+    t.side_jaw_radius = 0.040;
+    t.side_run = tan_deg(t.side_angle);
+    return t;
+}
+
 /// The parts of one quarter of the table, in the frame of its corner: x and y from the corner into the table,
 /// the pocket at the origin. The other quarters are its mirror images.
 struct Quarter {
@@ -204,6 +237,8 @@ Vec2 foot_spot(const Table& table) {
 Table make_table(std::string_view preset) {
     if (preset == "seven_foot") return build("seven_foot", seven_foot());
     if (preset == "nine_foot") return build("nine_foot", nine_foot());
+    if (preset == "eight_foot") return build("eight_foot", eight_foot());
+    if (preset == "snooker") return build("snooker", snooker_table());
     if (preset == "carom") return carom_table();
     throw std::invalid_argument(fmt::format("unknown table preset \"{}\"", preset));
 }

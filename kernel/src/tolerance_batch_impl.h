@@ -144,16 +144,17 @@ inline void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, double 
 
     const Wide guess = 0.5 * (1.0 + m.e_b);
     const Wide s = wide_root(start.x * start.x + start.z * start.z), cx = start.x / s, cz = start.z / s;
-    const Wide fall = m.mu_b * (7.0 * cx * cx + 5.0 * cz * cz);
+    const Wide fall = m.mu_b * ((7.0 * cx * cx + 5.0 * cz * cz) + 2.7 * (m.mu_s * cz));
     const Wide rho_s = wide_ellipse(4.0 * s / (fall * guess) - 2.0);
     const Wide a1 = start.a + guess * (m.mu_b * cx), b1 = start.b + guess * (1.0 - m.sigma * (m.mu_b * cz));
     const Wide u0 = wide_root(start.a * start.a + start.b * start.b), u1 = wide_root(a1 * a1 + b1 * b1);
-    const Wide beside = wide_ellipse(2.0 * (u0 + u1) / (guess * (1.0 + 2.5 * m.mu_b)));
+    const Wide bend = guess * ((published ? 1.5 : 3.5) * (m.mu_s * m.mu_b));
+    const Wide beside = wide_ellipse(2.0 * ((u0 + u1) - bend) / (guess * (1.0 + 2.5 * m.mu_b)));
     const Wide rho_u = choose(from_rest, wide(1e30), beside);
     const Wide s2 = rho_s * rho_s, u2 = rho_u * rho_u, s4 = s2 * s2, u4 = u2 * u2;
     const Wide size_s = kSizeS * m.mu_b, size_u = kSizeU * (m.mu_b * m.mu_s);
     block.resolvable =
-        good & (tolerance * (s4 * s4 * s4) >= 0.5 * size_s) & (tolerance * (u4 * u4 * u2) >= 0.5 * size_u);
+        good & (tolerance * (s4 * s4 * s4) >= size_s) & (tolerance * (u4 * u4 * u2) >= 0.5 * size_u);
     const WideMask four = good & (tolerance * (s4 * s2) >= size_s) & (tolerance * (u4 * rho_u) >= size_u);
     const WideMask wanted = N == 4 ? four : block.resolvable;
 

@@ -71,7 +71,7 @@ struct WideTables<4> {
     static constexpr const double* before = kBefore4[0];
     static constexpr const double* before_late = kBeforeLate4[0];
     static constexpr const double* after_late = kAfterLate4[0];
-    static constexpr int sweeps = 12;
+    static constexpr int sweeps = 24;
 };
 
 template <>
@@ -204,7 +204,8 @@ CAROM_INLINE Wide wide_dot(const Wide (&a)[N], const Wide (&b)[N]) {
 }
 
 template <int N>
-CAROM_INLINE Wide wide_find_end(const WideModel& m, const Wide (&g_b)[N], const WideRows<N>& rows, Wide& p_c) {
+CAROM_INLINE Wide wide_find_end(const WideModel& m, const Wide (&g_b)[N], const WideRows<N>& rows,
+                                Wide& p_c) {
     const Wide lost = 1.0 - wide_dot<N>(rows.after_late, g_b);
     const Wide share = 2.0 - wide_dot<N>(rows.before, g_b);
     const Wide both = 1.0 / (lost * share);
@@ -235,8 +236,9 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
     const Wide mu2 = m.mu_s * m.mu_s, reach2 = (7.0 * m.mu_b * h) * (7.0 * m.mu_b * h);
     Wide steep = {};
     for (int i = 0; i < N; ++i) steep += n.root_s[i] * n.root_s[i] + mu2 * (n.root_u[i] * n.root_u[i]);
-    const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))), end_slope = 16.0 * ((m.mu_b * m.mu_b) * mu2);
-    const double sweep_goal = 2.0 * tolerance * tolerance;
+    const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))),
+               end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
+    const double sweep_goal = 8.0 * tolerance * tolerance;
     const Wide root_goal = (0.05 * tolerance * tolerance) / (m.mu_b * m.mu_b);
     Wide dh_before = {};
     WideMask open = wanted;
@@ -245,14 +247,16 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
         const Wide change = wide_slips<N>(m, start, h, n);
         Wide p_c;
         const Wide h_new = wide_find_end<N>(m, n.g_b, rows, p_c), dh = h_new - h;
-        // Rows are set anew in the lanes where that matters; the others keep theirs, whatever their neighbours do.
+        // Rows are set anew in the lanes where that matters; the others keep theirs, whatever their
+        // neighbours do.
         const WideMask moved = open & (magnitude(t_c - rows.t) * m.mu_b * m.mu_s > kRowsGoal * tolerance);
         if (any(moved)) wide_set_rows<N>(choose(moved, t_c, rows.t), rows);
         t_c = 2.0 * p_c / h_new - 1.0;
         h = h_new;
         const Wide r = wide_forces<N, false>(m, n);
         const Wide left = (change + dh * dh * steep) * slope + (dh * dh + dh_before * dh_before) * end_slope;
-        const WideMask now = open & (left <= sweep_goal) & (r * r * r <= root_goal);
+        const double slow = 1.0 + 0.03125 * (k * k);
+        const WideMask now = open & (left * slow <= sweep_goal) & (r * r * r <= root_goal);
         dh_before = dh;
         if (!any(now)) continue;
         const Wide p = wide_find_end<N>(m, n.g_b, rows, p_c);

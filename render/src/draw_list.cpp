@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "carom/render/error.h"
+#include "overlay_lines.h"
 
 namespace carom::render {
 
@@ -46,20 +46,23 @@ bool is_covered(const Record& record, std::size_t ball, double t) {
 
 }  // namespace
 
-Stage::Stage(const Record& record, const std::string& camera, FrameSize size)
-    : record_(record), camera_(camera), size_(size) {
-    if (camera != "top") throw RenderError("unknown camera '" + camera + "'; use top");
-    table_ = std::make_shared<const TableMesh>(
-        make_table_mesh(record.table, record.balls.R, visited_places(record)));
+Stage::Stage(const Record& record, const StageOptions& options)
+    : record_(record),
+      options_(options),
+      table_(std::make_shared<const TableMesh>(
+          make_table_mesh(record.table, record.balls.R, visited_places(record)))),
+      camera_(record, *table_, options.camera, options.view, options.size) {
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         styles_.push_back(ball_style(record.tracks[i].id, record.table.preset, static_cast<int>(i)));
     }
 }
 
-DrawList Stage::at(double t) const {
+DrawList Stage::at(double t, std::optional<FrameCost> cost) const {
     DrawList list;
     list.table = table_;
-    list.camera = top_camera(table_->bounds, size_);
+    list.camera = camera_.at(t);
+    // A camera that moves pays for the table in every frame.
+    list.table_samples = camera_.moves() ? std::min(options_.table_samples, 4) : options_.table_samples;
     for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
         const BallState state = record_.state_at(static_cast<int>(i), t);
         if (!state.position.allFinite()) continue;
@@ -69,10 +72,11 @@ DrawList Stage::at(double t) const {
         ball.center = state.position;
         ball.orientation = record_.orientation_at(static_cast<int>(i), t);
         // Two pixels at least: on a cloth of kilometres the balls would otherwise be lost.
-        ball.radius = std::max(record_.balls.R, 2.0 / list.camera.scale(state.position));
+        ball.radius = std::max(record_.balls.R, 2.0 / std::max(list.camera.scale(state.position), 1e-12));
         ball.style = styles_[i];
         list.balls.push_back(ball);
     }
+    add_overlay(list, record_, options_.overlay, t, cost);
     return list;
 }
 

@@ -39,6 +39,7 @@ namespace carom::render::gl {
     X(PFNGLENABLEPROC, Enable) \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
     X(PFNGLFINISHPROC, Finish) \
+    X(PFNGLFLUSHPROC, Flush) \
     X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D) \
     X(PFNGLGENBUFFERSPROC, GenBuffers) \
     X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers) \

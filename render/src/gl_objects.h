@@ -5,7 +5,8 @@
 
 namespace carom::render::gl {
 
-/// Compiles and links, defines (whole lines) and the common source put first. @throws RenderError with the compiler's log
+/// Compiles and links, defines (whole lines) and the common source put first. @throws RenderError with the
+/// compiler's log
 GLuint make_program(const Api& api, const char* vertex, const char* fragment, const char* defines = "");
 
 /// A texture without mipmaps, read texel by texel (or linearly), clamped at the edges.

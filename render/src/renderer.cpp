@@ -1,6 +1,7 @@
 #include "carom/render/renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "gl_context.h"
 #include "gl_objects.h"
 #include "glyphs.h"
+#include "overlay_layer.h"
 #include "shaders.h"
 #include "static_layer.h"
 
@@ -62,12 +64,16 @@ PixelBox box_of(const DrawBall& ball, const Camera& camera) {
         low = low.cwiseMin(*pixel);
         high = high.cwiseMax(*pixel);
     }
-    const auto inside = [](double value, int limit) { return static_cast<int>(std::clamp(value, 0.0, double(limit))); };
+    const auto inside = [](double value, int limit) {
+        return static_cast<int>(std::clamp(value, 0.0, double(limit)));
+    };
     return {inside(low.x() - 2.0, all.x1), inside(low.y() - 2.0, all.y1), inside(high.x() + 3.0, all.x1),
             inside(high.y() + 3.0, all.y1)};
 }
 
 std::vector<PixelBox> touched_boxes(const DrawList& list) {
+    const PixelBox all{0, 0, list.camera.size.width, list.camera.size.height};
+    if (!list.lines.empty() || !list.boxes.empty()) return {all};
     std::vector<PixelBox> boxes;
     for (const DrawBall& ball : list.balls) {
         const PixelBox box = box_of(ball, list.camera);
@@ -82,14 +88,20 @@ struct Renderer::Impl {
     std::unique_ptr<gl::Context> context;
     gl::Api api;
     std::unique_ptr<StaticLayer> table_layer;
+    std::unique_ptr<OverlayLayer> overlay_layer;
     GLuint shadow_program = 0, ball_program = 0, glyphs = 0;
     GLuint ball_array = 0, ball_buffer = 0;
-    GLuint color = 0, framebuffer = 0;
+    // Two images in turn: one can be read while the next is drawn.
+    struct Target {
+        GLuint color = 0, framebuffer = 0;
+        std::vector<PixelBox> drawn;  // what its last frame put over the table
+    };
+    std::array<Target, 2> targets;
+    std::size_t current = 0;  // the target of the last draw()
     FrameSize size{0, 0};
     std::shared_ptr<const TableMesh> table;  // of the static layer
     Camera camera;
     int table_samples = 0;
-    std::vector<PixelBox> drawn;  // what the last frame put over the table
 
     explicit Impl(Backend backend) : context(gl::make_context(backend)) {
         context->make_current();
@@ -100,6 +112,7 @@ struct Renderer::Impl {
         const std::vector<std::uint8_t> atlas = glyph_atlas();
         glyphs = gl::make_texture(api, kGlyphColumns * kGlyphWidth, kGlyphRows * kGlyphHeight, GL_R8, GL_RED,
                                   GL_UNSIGNED_BYTE, atlas.data(), true);
+        overlay_layer = std::make_unique<OverlayLayer>(api, glyphs);
         make_ball_array();
     }
 
@@ -123,13 +136,15 @@ struct Renderer::Impl {
     void resize(FrameSize wanted) {
         if (wanted == size) return;
         if (wanted.width < 1 || wanted.height < 1) throw RenderError("an image needs at least one pixel");
-        if (color != 0) {
-            api.DeleteFramebuffers(1, &framebuffer);
-            api.DeleteTextures(1, &color);
+        for (Target& target : targets) {
+            if (target.color != 0) {
+                api.DeleteFramebuffers(1, &target.framebuffer);
+                api.DeleteTextures(1, &target.color);
+            }
+            target.color = gl::make_texture(api, wanted.width, wanted.height, GL_RGBA8, GL_RGBA,
+                                            GL_UNSIGNED_BYTE, nullptr);
+            target.framebuffer = gl::make_framebuffer(api, target.color, 0);
         }
-        color =
-            gl::make_texture(api, wanted.width, wanted.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-        framebuffer = gl::make_framebuffer(api, color, 0);
         size = wanted;
     }
 
@@ -154,14 +169,14 @@ struct Renderer::Impl {
     }
 
     // Puts the table back where the last frame drew something, and notes where this one will.
-    void restore_table(const DrawList& list) {
+    void restore_table(const DrawList& list, Target& target) {
         api.BindFramebuffer(GL_READ_FRAMEBUFFER, table_layer->framebuffer());
-        api.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-        for (const PixelBox& box : drawn) {
-            api.BlitFramebuffer(box.x0, box.y0, box.x1, box.y1, box.x0, box.y0, box.x1, box.y1, GL_COLOR_BUFFER_BIT,
-                                GL_NEAREST);
+        api.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
+        for (const PixelBox& box : target.drawn) {
+            api.BlitFramebuffer(box.x0, box.y0, box.x1, box.y1, box.x0, box.y0, box.x1, box.y1,
+                                GL_COLOR_BUFFER_BIT, GL_NEAREST);
         }
-        drawn = touched_boxes(list);
+        target.drawn = touched_boxes(list);
     }
 
     void draw(const DrawList& list) {
@@ -172,31 +187,44 @@ struct Renderer::Impl {
             table = list.table;
             camera = list.camera;
             table_samples = list.table_samples;
-            drawn.assign(1, PixelBox{0, 0, list.camera.size.width, list.camera.size.height});
+            for (Target& target : targets) {
+                target.drawn.assign(1, PixelBox{0, 0, list.camera.size.width, list.camera.size.height});
+            }
         }
         resize(list.camera.size);
         api.Viewport(0, 0, size.width, size.height);
-        restore_table(list);
-        api.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+        current = 1 - current;
+        restore_table(list, targets[current]);
+        api.BindFramebuffer(GL_FRAMEBUFFER, targets[current].framebuffer);
         api.Disable(GL_DEPTH_TEST);
         api.Enable(GL_BLEND);
-        api.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
-        api.BindVertexArray(ball_array);
+        api.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
         const GLsizei balls = upload_balls(list);
-        if (balls == 0) return;
-        view.set(api, shadow_program);
-        gl::bind_texture(api, shadow_program, 0, "u_background", table_layer->color());
-        api.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 8, balls);
-        view.set(api, ball_program);
-        gl::bind_texture(api, ball_program, 0, "u_occluders", table_layer->occluders());
-        gl::bind_texture(api, ball_program, 1, "u_glyphs", glyphs);
-        api.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 8, balls);
+        if (balls > 0) {
+            api.BindVertexArray(ball_array);
+            // Shadows only darken: one factor for all channels is the driver's fast way.
+            api.BlendFuncSeparate(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+            view.set(api, shadow_program);
+            gl::bind_texture(api, shadow_program, 0, "u_background", table_layer->color());
+            api.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 8, balls);
+        }
+        api.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+        overlay_layer->draw_lines(list, view, table_layer->occluders(), false);
+        if (balls > 0) {
+            api.BindVertexArray(ball_array);
+            view.set(api, ball_program);
+            gl::bind_texture(api, ball_program, 0, "u_occluders", table_layer->occluders());
+            gl::bind_texture(api, ball_program, 1, "u_glyphs", glyphs);
+            api.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 8, balls);
+        }
+        overlay_layer->draw_lines(list, view, table_layer->occluders(), true);
+        overlay_layer->draw_boxes(list, view);
     }
 
-    void read(Image& image) {
+    void read(Image& image, bool previous) {
         context->make_current();
         image.resize(size);
-        api.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+        api.BindFramebuffer(GL_FRAMEBUFFER, targets[previous ? 1 - current : current].framebuffer);
         api.PixelStorei(GL_PACK_ALIGNMENT, 4);
         api.ReadPixels(0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgbx.data());
     }
@@ -208,11 +236,20 @@ Renderer::~Renderer() = default;
 
 void Renderer::draw(const DrawList& list) {
     impl_->draw(list);
+    impl_->api.Flush();
+}
+
+void Renderer::finish() {
+    impl_->context->make_current();
     impl_->api.Finish();
 }
 
 void Renderer::read(Image& image) {
-    impl_->read(image);
+    impl_->read(image, false);
+}
+
+void Renderer::read_previous(Image& image) {
+    impl_->read(image, true);
 }
 
 std::string Renderer::description() const {

@@ -19,5 +19,9 @@ extern const char* const kShadowVertex;
 extern const char* const kShadowFragment;
 extern const char* const kBallVertex;
 extern const char* const kBallFragment;
+extern const char* const kLineVertex;
+extern const char* const kLineFragment;
+extern const char* const kBoxVertex;
+extern const char* const kBoxFragment;
 
 }  // namespace carom::render::shaders

@@ -21,8 +21,8 @@ void main() {
 }
 )";
 
-// A software renderer runs both sides of every branch: so there is one program per kind of surface. The floor's has no
-// discard, so that what the table hides of it costs nothing.
+// A software renderer runs both sides of every branch: so there is one program per kind of surface. The
+// floor's has no discard, so that what the table hides of it costs nothing.
 const char* const kClothOnly = "#define CLOTH\n";
 const char* const kWoodOnly = "#define WOOD\n";
 const char* const kFloorOnly = "#define FLOOR\n";
@@ -64,11 +64,11 @@ bool in_inner(vec2 p) { return all(greaterThan(p, u_inner.xy)) && all(lessThan(p
 
 vec3 cloth_albedo(vec2 p) {
     vec3 base = from_screen(vec3(0.055, 0.50, 0.345));
-    // Threads of half a millimetre, seen only from near: they fade before a pixel holds more than one.
+    // A coarse weave, seen only from near: it fades before its threads are narrower than a pixel or two.
     float pixel = length(fwidth(p));
-    float fine = 1.0 - smoothstep(0.00015, 0.0005, pixel);
-    vec2 thread = sin(p * (6.2831853 / 0.0009));
-    float weave = thread.x * thread.y * fine * 0.10;
+    float fine = 1.0 - smoothstep(0.0004, 0.0011, pixel);
+    vec2 thread = sin(p * (6.2831853 / 0.0022));
+    float weave = thread.x * thread.y * fine * 0.055;
     float nap = (noise(p * vec2(14.0, 9.0)) - 0.5) * 0.035;
     return base * (1.0 + weave + nap);
 }
@@ -80,7 +80,7 @@ vec3 wood_albedo(vec2 uv) {
 }
 
 vec3 lit(vec3 albedo, vec3 n) {
-    float sky = 0.5 + 0.5 * n.z;
+    float sky = 0.65 + 0.35 * n.z;
     return albedo * (1.05 * lamp_light(v_position, n) + 0.16 * sky);
 }
 
@@ -101,7 +101,9 @@ vec3 pocket_wall(vec3 p, vec3 n, float bottom) {
 vec3 floor_color(vec3 p) {
     vec2 half_size = 0.5 * (u_inner.zw - u_inner.xy), e = abs(p.xy - 0.5 * (u_inner.xy + u_inner.zw)) - half_size;
     float away = length(max(e, 0.0));
-    return from_screen(vec3(0.16, 0.145, 0.135)) * (0.10 + 0.9 * smoothstep(0.0, 1.0, away)) / (1.0 + 0.25 * away * away);
+    vec3 near = from_screen(vec3(0.16, 0.145, 0.135)) * (0.10 + 0.9 * smoothstep(0.0, 1.0, away));
+    // Into the dark of the room, which is the background's colour.
+    return mix(vec3(0.004), near, 1.0 / (1.0 + 0.25 * away * away));
 }
 
 void main() {
@@ -111,7 +113,7 @@ void main() {
     // Cushions reach over the rims of the holes; the playing surface ends there.
     bool playing = v_material == 0;
     if (playing && in_hole(p)) discard;
-    color = vec4(lit(cloth_albedo(p) * (playing ? 1.0 : 0.93), n), playing ? 1.0 : 0.0);
+    color = vec4(lit(cloth_albedo(p) * (playing ? 1.0 : 1.12), n), playing ? 1.0 : 0.0);
 #elif defined(WOOD)
     if (in_hole(p)) discard;
     color = vec4(glossy(lit(wood_albedo(v_uv), n), n, 5.0, 0.25), 0.0);

@@ -107,10 +107,12 @@ void StaticLayer::resize(int width, int height) {
     height_ = height;
 }
 
-void StaticLayer::set_table_uniforms(const TableMesh& table, const View& view, GLuint program, double jx, double jy) {
+void StaticLayer::set_table_uniforms(const TableMesh& table, const View& view, GLuint program, double jx,
+                                     double jy) {
     view.set(api_, program);
     const auto at = [&](const char* uniform) { return api_.GetUniformLocation(program, uniform); };
-    api_.Uniform2f(at("u_jitter"), static_cast<float>(2.0 * jx / width_), static_cast<float>(2.0 * jy / height_));
+    api_.Uniform2f(at("u_jitter"), static_cast<float>(2.0 * jx / width_),
+                   static_cast<float>(2.0 * jy / height_));
     std::vector<float> holes;
     for (const Hole& hole : table.holes) {
         if (holes.size() == 4 * kMaxHoles) break;
@@ -126,7 +128,8 @@ void StaticLayer::set_table_uniforms(const TableMesh& table, const View& view, G
                    static_cast<float>(high.x()), static_cast<float>(high.y()));
 }
 
-void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, double jx, double jy) {
+void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, double jx,
+                            double jy) {
     api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.pass_framebuffer);
     api_.DepthMask(GL_TRUE);
     api_.ClearColor(0.004F, 0.004F, 0.004F, 0.0F);

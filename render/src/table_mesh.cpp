@@ -13,7 +13,7 @@ namespace {
 // Proportions of what the engine does not know because no ball feels it [m].
 constexpr double kCushionWidth = 0.05;    // of a cushion without facings to tell its depth
 constexpr double kRailWidth = 0.095;      // of the wooden rail outside the cushion
-constexpr double kWallHalfWidth = 0.004;  // of a cushion that balls meet on both sides
+constexpr double kWallHalfWidth = 0.005;  // of a cushion that balls meet on both sides
 constexpr double kShadeWidth = 0.045;     // of the dark seam along a cushion
 constexpr double kApron = 0.22;           // how far the frame reaches down
 
@@ -153,20 +153,21 @@ class TableMaker {
         shade_cloth(chain);
     }
 
-    // A cushion whose back is known: its outline, closed by a straight line if it is open.
-    void add_body(const Chain& chain) {
+    // A cushion whose back is known: its outline, closed by a straight line if it is open. What stands free
+    // on the cloth has a wooden top, or it would be lost on the cloth.
+    void add_body(const Chain& chain, Material top = Material::kCushion) {
         const double inset = 0.006;
         add_nose(chain, inset);
-        builder_.polygon(offset_left(chain.points, chain.closed, inset), chain.heights.front() + 0.003,
-                         Material::kCushion);
+        builder_.polygon(offset_left(chain.points, chain.closed, inset), chain.heights.front() + 0.003, top);
     }
 
     void add_strip(const Chain& chain, double width, bool wall) {
-        const double inset = std::min(0.006, 0.5 * width), rise = wall ? 0.003 : 0.006;
+        const double inset = std::min(0.006, 0.3 * width), rise = wall ? 0.003 : 0.006;
         add_nose(chain, inset);
         Chain top = chain;
         for (double& height : top.heights) height += 0.003;
-        builder_.sweep(top, {{inset, 0.0, 0.0}, {width, rise - 0.003, 0.0}}, Material::kCushion, false);
+        builder_.sweep(top, {{inset, 0.0, 0.0}, {width, rise - 0.003, 0.0}},
+                       wall ? Material::kWood : Material::kCushion, false);
     }
 
     // A closed outline with the balls inside: cloth, cushion and wood follow it.
@@ -257,7 +258,7 @@ class TableMaker {
             const double angle = 6.28318530717958647692 * i / 64;
             circle.push_back(jaw.center + jaw.radius * Vec2(std::cos(angle), std::sin(angle)));
         }
-        add_body(closed_chain(std::move(circle), jaw.height));
+        add_body(closed_chain(std::move(circle), jaw.height), Material::kWood);
     }
 
     void add_pocket(const Pocket& pocket) {

@@ -140,4 +140,39 @@ TEST(Math, HugeDegreesAreReducedExactly) {
     EXPECT_TRUE(std::isnan(sin_cos_deg(std::numeric_limits<double>::quiet_NaN()).cos));
 }
 
+TEST(Math, ArcCosine) {
+    EXPECT_EQ(carom::arc_cos(1.0), 0.0);
+    EXPECT_EQ(carom::arc_cos(-1.0), std::numbers::pi);
+    EXPECT_NEAR(carom::arc_cos(0.0), std::numbers::pi / 2, 3e-16);
+    EXPECT_TRUE(std::isnan(carom::arc_cos(1.0000001)));
+    EXPECT_TRUE(std::isnan(carom::arc_cos(std::numeric_limits<double>::quiet_NaN())));
+    std::uint64_t state = 6;
+    for (int i = 0; i < 200000; ++i) {
+        double x = 2.0 * next_random(state) - 1.0;
+        if (i % 3 == 0) x = 1.0 - 1e-9 * next_random(state);
+        const long double want = std::acos(static_cast<long double>(x));
+        EXPECT_NEAR(carom::arc_cos(x), static_cast<double>(want), 4.5e-16 * std::fmax(1.0, static_cast<double>(want))) << x;
+        if (i % 3 == 0) {
+            EXPECT_NEAR(carom::arc_cos(x) / static_cast<double>(want), 1.0, 6e-16) << x;
+        }
+    }
+}
+
+TEST(Math, Exponential) {
+    EXPECT_EQ(carom::exponential(0.0), 1.0);
+    EXPECT_EQ(carom::exponential(-800.0), 0.0);
+    EXPECT_EQ(carom::exponential(-std::numeric_limits<double>::infinity()), 0.0);
+    EXPECT_EQ(carom::exponential(std::numeric_limits<double>::infinity()), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(carom::exponential(709.79), std::numeric_limits<double>::infinity());
+    EXPECT_TRUE(std::isnan(carom::exponential(std::numeric_limits<double>::quiet_NaN())));
+    EXPECT_GT(carom::exponential(-745.0), 0.0);
+    std::uint64_t state = 7;
+    double worst = 0.0;
+    for (int i = 0; i < 400000; ++i) {
+        const double x = (2.0 * next_random(state) - 1.0) * (i % 2 ? 700.0 : 2.0);
+        worst = std::fmax(worst, ulps(carom::exponential(x), std::exp(static_cast<long double>(x))));
+    }
+    EXPECT_LE(worst, 2.0);
+}
+
 }  // namespace

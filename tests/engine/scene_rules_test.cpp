@@ -139,7 +139,8 @@ TEST(Scenes, DefaultsAreWrittenOut) {
     EXPECT_STREQ(name(s.physics.cushion), "han_2005");
     EXPECT_STREQ(name(s.physics.cloth_slip), "consistent");
     EXPECT_STREQ(name(s.physics.clusters), "compliant");
-    EXPECT_EQ(s.physics.substeps, 1000);
+    EXPECT_EQ(s.physics.tolerance, 1e-6);
+    EXPECT_FALSE(s.physics.substeps);
     EXPECT_FALSE(s.stop.time);
     EXPECT_FALSE(s.stop.events);
     EXPECT_EQ(s.render.fps, 60.0);

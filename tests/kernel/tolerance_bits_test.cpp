@@ -14,6 +14,8 @@ namespace {
 
 using namespace kernel;
 
+constexpr std::uint64_t kBitsOfEveryCompiler = 0xee7fcc191ce2f0b5ull;
+
 std::vector<Impact> mixed(std::uint64_t seed, int count, ClothSlip slip) {
     SplitMix64 rng(seed);
     std::vector<Impact> impacts;
@@ -53,6 +55,51 @@ TEST(ToleranceBits, EveryInstructionSetAgrees) {
             }
         }
     }
+}
+
+// The same bits from gcc and clang, with and without optimisation: every build must meet this hash. A change
+// of the method changes it; then it is renewed here, and every compiler must still agree.
+TEST(ToleranceBits, EveryCompilerAgrees) {
+    SplitMix64 rng(65);
+    std::uint64_t hash = 0xCBF29CE484222325ull;
+    const auto add = [&hash](const double(&a)[3]) {
+        for (double x : a) {
+            std::uint64_t bits;
+            std::memcpy(&bits, &x, sizeof bits);
+            hash = (hash ^ bits) * 0x100000001B3ull;
+        }
+    };
+    for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
+        std::vector<Impact> impacts;
+        for (int n = 0; n < 3000; ++n) {  // of + - * / alone: sin and cos differ between libraries
+            Impact i{};
+            i.params = {
+                0.03,          0.2, rng.uniform(0.0, 0.5), rng.uniform(0.0, 0.5), rng.uniform(0.0, 0.2),
+                rng.uniform(), slip};
+            i.ball2.r[0] = rng.uniform(-0.1, 0.1);
+            i.ball2.r[1] = rng.uniform(-0.1, 0.1);
+            const double faster = n % 3 == 0 ? 0.01 : 1.0;
+            for (int k = 0; k < 3; ++k) {
+                i.ball1.v[k] = k < 2 ? rng.uniform(-1.0, 1.0) : 0.0;
+                i.ball1.w[k] = rng.uniform(-40.0, 40.0) * faster;
+                i.ball2.w[k] = rng.uniform(-40.0, 40.0) * faster;
+            }
+            impacts.push_back(i);
+        }
+        for (double tolerance : {1e-3, 1e-6, 1e-10, 1e-13}) {
+            Lanes lanes(impacts);
+            tolerance_batch_function(best_isa())(lanes.batch(), tolerance, lanes.results());
+            for (std::size_t n = 0; n < impacts.size(); ++n) {
+                for (const ImpactResult& r : {solve(impacts[n], tolerance), lanes.result(n)}) {
+                    add(r.v1);
+                    add(r.w1);
+                    add(r.v2);
+                    add(r.w2);
+                }
+            }
+        }
+    }
+    EXPECT_EQ(hash, kBitsOfEveryCompiler) << "0x" << std::hex << hash;
 }
 
 TEST(ToleranceBits, PlaceAndLengthOfABatchDoNotMatter) {

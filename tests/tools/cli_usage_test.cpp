@@ -155,7 +155,7 @@ TEST(CliCheck, PrintsThePlan) {
     ASSERT_EQ(result.status, 0) << result.err;
     for (const char* part :
          {": valid\n", "nine_foot", "3: cue 1 ball 2\n", "mathavan", "han_2005", "clusters compliant",
-          "published march, 1000 substeps, cloth slip consistent", "isa       scalar (available: scalar",
+          "by tolerance 1e-06: closed forms, else collocation; cloth slip consistent", "isa       scalar (available: scalar",
           "\ncushions  ", "\njaws      ", "\npockets   "}) {
         EXPECT_TRUE(contains(result.out, part)) << part << "\n" << result.out;
     }

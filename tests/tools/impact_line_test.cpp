@@ -132,8 +132,8 @@ TEST(ImpactLine, SaysWhatIsWrong) {
     EXPECT_EQ(error_of(changed(line, "/tolerance", 1)), "unknown key \"tolerance\"");
     EXPECT_EQ(error_of(changed(line, "/r2", line["r1"])), kernel::describe(kernel::ImpactStatus::kBadState));
     const Json cushion = cushion_line();
-    EXPECT_EQ(error_of(changed(cushion, "/model", "stronge")),
-              "\"model\": this is no cushion model of this version; there are: han_2005, smooth");
+    EXPECT_EQ(error_of(changed(cushion, "/model", "rubber")),
+              "\"model\": this is no cushion model of this version; there are: han_2005, mathavan_2010, stronge, impulse, smooth");
     EXPECT_EQ(error_of(changed(cushion, "/normal", {2, 0})),
               "\"normal\": expected a vector of length 1, this one has 2");
     EXPECT_EQ(error_of(changed(cushion, "/normal", {0, 0, 1})), "\"normal\": expected a list of 2 numbers");

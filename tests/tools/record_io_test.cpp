@@ -78,6 +78,10 @@ Record sample_record() {
                      {0.1, EventType::kBallCushion, 1, 0},    {0.2, EventType::kBallJaw, 1, 0},
                      {0.3, EventType::kBallPocket, 1, 0},     {1.0 / 3.0, EventType::kSlideRoll, 0, -1},
                      {7.0 / 3.0, EventType::kRollStop, 2, -1}};
+    record.events.insert(record.events.begin() + 2, {0.1, EventType::kBallCluster, 0, 1, 0});
+    record.clusters = {{0, 1, 2}};
+    record.events[4].detail = 1;  // a jaw is a round nose
+    record.start_time = 1e6 / 3.0;
     for (std::size_t i = 0; i < record.events.size(); ++i) {
         record.costs.push_back(
             {0.1 * static_cast<double>(i), 2.5, 1.25, static_cast<long>(i), i == 1 ? "march" : ""});
@@ -124,11 +128,14 @@ TEST(RecordFile, ReadsBackToTheSameBits) {
         EXPECT_EQ(a.events[i].type, b.events[i].type);
         EXPECT_EQ(a.events[i].a, b.events[i].a);
         EXPECT_EQ(a.events[i].b, b.events[i].b);
+        EXPECT_EQ(a.events[i].detail, b.events[i].detail);
         EXPECT_TRUE(same_bits(a.costs[i].detect_ns, b.costs[i].detect_ns));
         EXPECT_EQ(a.costs[i].steps, b.costs[i].steps);
         EXPECT_STREQ(a.costs[i].method, b.costs[i].method);
     }
     EXPECT_EQ(b.hash(), a.hash());
+    EXPECT_EQ(b.clusters, a.clusters);
+    EXPECT_TRUE(same_bits(a.start_time, b.start_time));
     EXPECT_EQ(b.stopped, a.stopped);
     EXPECT_TRUE(same_bits(a.duration, b.duration));
     EXPECT_TRUE(same_bits(a.gravity, b.gravity));
@@ -138,7 +145,7 @@ TEST(RecordFile, ReadsBackToTheSameBits) {
     EXPECT_EQ(b.render.width, 1920);
     EXPECT_EQ(b.table.jaws.at(0).id, "jaw \"1\"");
     EXPECT_TRUE(std::signbit(b.table.cushions.at(0).from.y()));
-    EXPECT_EQ(b.partner_id(b.events[4]), "p,1");
+    EXPECT_EQ(b.partner_id(b.events[5]), "p,1");
     // A second trip gives the same file, byte for byte.
     write_record(b, folder.file("b.json"));
     EXPECT_EQ(test::read_file(folder.file("a.json")), test::read_file(folder.file("b.json")));
@@ -230,9 +237,11 @@ TEST(RecordFile, SaysWhatIsWrong) {
         {"/events/0/a", 0.5, " events[0].a: expected an integer from 0 to 2"},
         {"/events/0/b", 0, " events[0].b: expected an integer from -1 to -1"},
         {"/events/1/b", -1, " events[1].b: expected an integer from 0 to 2"},
-        {"/events/2/b", 1, " events[2].b: expected an integer from 0 to 0"},
-        {"/events/2/type", "ball_moon", " events[2].type: unknown name \"ball_moon\""},
+        {"/events/3/b", 1, " events[3].b: expected an integer from 0 to 0"},
+        {"/events/3/type", "ball_moon", " events[3].type: unknown name \"ball_moon\""},
         {"/events/1/time", 9.0, " events[2]: happens before the event in front of it"},
+        {"/events/2/balls/1", 3, " events[2].balls[1]: expected an integer from 0 to 2"},
+        {"/events/4/nose", -1, " events[4].nose: expected an integer from 0 to 2"},
         {"/events/1/steps", -1, " events[1].steps: expected an integer from 0 to 9223372036854775807"},
     };
     EXPECT_EQ(error_of(changed("", nullptr)), "no error");

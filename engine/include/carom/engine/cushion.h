@@ -1,4 +1,4 @@
-// Ball-cushion impact models.
+// Ball-cushion impact models: one function each, behind one interface.
 #pragma once
 
 #include "carom/engine/scene.h"
@@ -13,14 +13,37 @@ struct CushionContact {
     double mu_s;    ///< sliding friction, ball on cloth
     double e_c;     ///< restitution
     double f_c;     ///< friction
-    double height;  ///< of the nose above the cloth [m]
+    double height;  ///< of the nose above the cloth [m], 0 < height < 2 R
 };
 
-/// Velocities after the impact, in place. v_z is 0 afterwards (planar).
+/// Velocities after the impact, in place. v_z is 0 before and afterwards (planar).
 ///
 /// @param normal  unit, horizontal, from the cushion into the table.
 /// A ball that does not approach (v . normal >= 0) is left alone.
-/// Equations: docs/physics.md, "Cushion impact".
+using CushionFunction = void (*)(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
+
+/// One model: its function and what it looks at. All models are homogeneous in the velocities and do not read
+/// the mass (all impulses are per mass).
+struct CushionModelInfo {
+    CushionModel model;
+    const char* name;
+    CushionFunction resolve;
+    bool reads_spin;      ///< the spin before matters, and the spin changes
+    bool reads_friction;  ///< f_c matters
+    bool reads_cloth;     ///< mu_s matters
+    bool reads_height;    ///< the height of the nose matters
+    const char* source;
+};
+
+/// The five models; equations and sources in docs/physics.md, "Cushion impact".
+const CushionModelInfo& cushion_model(CushionModel model);
+
+/// Shorthand for cushion_model(model).resolve(...).
 void resolve_cushion(CushionModel model, const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
+
+/// Whether the integration of mathavan_2010 is sure to end: the normal velocity falls all along,
+/// f_c s + mu_s (s + f_c c) < c with (s, c) sine and cosine of the nose's height angle. Beyond that the ball
+/// could jam.
+bool mathavan_2010_ends(const CushionContact& contact);
 
 }  // namespace carom

@@ -23,4 +23,10 @@ SinCos sin_cos_deg(double degrees);
 /// Tangent of an angle in degrees, within 2 ulp; infinite at 90 and its odd multiples.
 double tan_deg(double degrees);
 
+/// Arc cosine in [0, pi], within 2 ulp of pi/2; NaN outside [-1, 1].
+double arc_cos(double x);
+
+/// e^x, within 2 ulp where the result is a normal number; 0 below -745.2, infinite above 709.8, NaN for NaN.
+double exponential(double x);
+
 }  // namespace carom

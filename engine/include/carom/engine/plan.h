@@ -5,10 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/cushion.h"
 #include "carom/engine/record.h"
 #include "carom/engine/scene.h"
 #include "carom/kernel/closed_forms.h"
 #include "carom/kernel/march.h"
+#include "carom/kernel/tolerance.h"
 
 namespace carom {
 
@@ -38,19 +40,32 @@ struct Nose {
 
 struct Plan {
     Scene scene;  ///< ids, table and settings as read
-    BallParams balls{};
+    BallParams balls{};  ///< as the scene, with the friction of skipped effects 0
     double gravity = 9.81;
     std::vector<CushionLine> cushions;
     std::vector<Nose> noses;
     std::vector<Pocket> pockets;
+    const CushionModelInfo* cushion = nullptr;  ///< of straight noses and their ends
+    const CushionModelInfo* jaw = nullptr;      ///< of round jaws
     std::vector<EffectDecision> effects;
+    // What the effects leave in the loop; cushions, noses and pockets above are empty where nothing can reach them.
+    bool pairs = true;            ///< two balls can meet
+    bool sliding = true;          ///< friction of slipping balls
+    bool rolling = true;          ///< resistance of rolling balls
+    bool spin_decay = true;       ///< vertical spin decays
+    bool friction = true;         ///< between balls
+    bool cloth_in_impact = true;  ///< the cloth acts during a ball-ball impact
+    bool squirt = true;           ///< a struck ball leaves the line of aim
     kernel::Isa isa = kernel::Isa::kScalar;
-    kernel::MarchFunction march = nullptr;
+    kernel::MarchFunction march = nullptr;           ///< set where the scene asks for substeps
+    kernel::ToleranceFunction by_tolerance = nullptr;  ///< set otherwise
     ClusterModel clusters = ClusterModel::kSequential;  ///< kSequential where fewer than three balls leave nothing to decide
     std::vector<std::string> warnings;  ///< one sentence each, for stderr
 };
 
-/// Decides. @param isa must be available (kernel::isa_from_environment)
+/// Decides, once per run, by arguments that hold for the whole shot (design, section 3).
+/// @param isa must be available (kernel::isa_from_environment)
+/// @throws SceneError where [effects] refuses what the scene needs
 Plan make_plan(const Scene& scene, kernel::Isa isa);
 
 }  // namespace carom

@@ -35,7 +35,15 @@ struct BallParams {
     double e_b;    ///< ball-ball restitution
     double e_c;    ///< cushion restitution
     double f_c;    ///< cushion friction
+    /// Ball-ball friction that falls with the slip u [m/s]: mu_b + mu_b_more exp(-mu_b_fall u). 0: mu_b at every speed.
+    double mu_b_more = 0.0;
+    double mu_b_fall = 0.0;  ///< [s/m]
+    bool ball_friction() const { return mu_b != 0.0 || mu_b_more != 0.0; }
 };
+
+/// Friction between two balls whose surfaces slip by `slip` [m/s] at the contact. Source of the form: D. Alciatore, Technical
+/// Proof A.14: a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact takes it once, at the slip before it.
+double ball_friction(const BallParams& balls, double slip);
 
 /// A ball at the start.
 struct BallStart {
@@ -58,18 +66,32 @@ struct Cue {
 };
 
 enum class BallBallModel : std::uint8_t { kMathavan, kInelastic, kElastic };
-enum class CushionModel : std::uint8_t { kSmooth, kHan2005 };
+enum class CushionModel : std::uint8_t { kSmooth, kHan2005, kMathavan2010, kImpulse, kStronge };
 enum class ClusterModel : std::uint8_t { kCompliant, kSequential, kRigid };
 enum class ClothSlipSign : std::uint8_t { kConsistent, kAsPublished };
 
 struct Physics {
     double gravity = 9.81;  ///< [m/s^2]
     BallBallModel ball_ball = BallBallModel::kMathavan;
-    CushionModel cushion = CushionModel::kHan2005;
+    CushionModel cushion = CushionModel::kHan2005;  ///< straight noses
+    std::optional<CushionModel> jaw;                ///< round jaws; nothing: as the straight noses
+    CushionModel jaw_model() const { return jaw.value_or(cushion); }
     ClothSlipSign cloth_slip = ClothSlipSign::kConsistent;
     ClusterModel clusters = ClusterModel::kCompliant;
-    int substeps = 1000;  ///< of the march, N
+    double tolerance = 1e-6;      ///< of the impact (mathavan), relative to the approach speed
+    std::optional<int> substeps;  ///< set: the published march with N of them, instead of the tolerance
 };
+
+/// [effects]: one effect forced in or out of the plan (plan.h).
+struct EffectOverride {
+    std::string keyword;
+    bool in_force;
+    SourceLocation where;
+};
+
+/// The keywords of [effects], in the order of Plan::effects.
+inline constexpr const char* kEffectKeywords[] = {"sliding",  "rolling",          "spin_decay", "throw",  "cloth_in_impact",
+                                                  "cushions", "cushion_friction", "pockets",    "squirt", "clusters"};
 
 struct Stop {
     std::optional<double> time;         ///< [s]
@@ -90,6 +112,7 @@ struct Scene {
     std::vector<BallStart> ball;  ///< as written, then the racked ones
     std::optional<Cue> cue;
     Physics physics;
+    std::vector<EffectOverride> effects;
     Stop stop;
     RenderSettings render;
 };

@@ -25,6 +25,9 @@ inline constexpr int kEventCap = 10000;
 /// [-] Rounds of the loop in a row that changed directions of sustained contacts but brought no event: as bad.
 inline constexpr int kQuietCap = 1000000;
 
+/// [-] Margin on how far a ball can go when the plan decides what it can reach; far above the rounding of the bound.
+inline constexpr double kReachMargin = 1e-9;
+
 /// [m] Depth at which a pocketed ball comes to rest below the cloth; drawing only. pooltool 0.6.0's value.
 inline constexpr double kPocketDepth = 0.08;
 
@@ -55,6 +58,21 @@ inline constexpr double kHoldShortest = 1e-5;
 /// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the straight line.
 inline constexpr double kHoldStraight = 1e-9;
 
+/// [of the approach speed] Error per step of the cushion model mathavan_2010, and the slip at the nose or the cloth that counts
+/// as none. The direction of a slip near the tolerance is noise of the integration; a hundred times above it is not.
+inline constexpr double kCushionTolerance = 1e-10;
+inline constexpr double kCushionStick = 1e-8;
+/// A nose that has let go slips by less than this for a while, and its direction follows the drive at once (stiff): it is taken
+/// as driven. What that leaves out is of second order, about the square root of this times its square.
+inline constexpr double kCushionCreep = 1e-4;
+inline constexpr int kCushionSteps = 20000;  ///< [-] bound on its steps; a real impact takes 10 to 1000
+/// [-] Grid on which the cushion model stronge brackets the end of stick: a thirtieth of the restitution, far finer than the
+/// swing of its tangential spring.
+inline constexpr int kStrongeGrid = 32;
+
+/// [share] Boxes that leave out far parts of the table are widened by this much: rounding stays inside.
+inline constexpr double kBoxShare = 1e-9;
+
 /// [share of the jaw radius] A cushion end this close to a jaw's circle is rounded off by it and needs no tip of its own. The
 /// jaw is a full circle, so nothing can slip between the two.
 inline constexpr double kJawJoinShare = 1e-9;
@@ -80,6 +98,7 @@ inline constexpr double kMaxFps = 1e5;       ///< [1/s]
 inline constexpr int kMaxSubsteps = 10000000;  ///< of the march; its result stops improving long before
 inline constexpr int kMaxImageSize = 16384;    ///< [px] per side, what the OpenGL back ends can hold
 inline constexpr int kMaxBalls = 4096;         ///< balls of a scene, written and racked
+inline constexpr int kMaxRackRows = 90;          ///< of a triangle: 4095 balls
 inline constexpr int kMaxTableParts = 4096;    ///< cushions, jaws and pockets of a table, each
 inline constexpr std::size_t kMaxFileSize = 4u << 20;  ///< [bytes] of a scene file
 inline constexpr std::size_t kMaxIdLength = 64;        ///< [bytes] of a ball's id

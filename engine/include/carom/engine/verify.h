@@ -14,7 +14,7 @@ double energy_at(const Record& record, double t);
 
 struct Violation {
     std::size_t event = 0;  ///< index into Record::events; their number for what concerns the whole record
-    std::string law;        ///< "U1".."U9"
+    std::string law;        ///< "U1".."U9", or "E": an effect that the plan skips was needed
     std::string message;
 };
 
@@ -25,6 +25,7 @@ struct Violation {
 ///   U6 w . n is kept, and the two spins change alike, where mu_s = 0
 ///   U7 a rolling ball does not slip                U8 no more than kEventCap events in kEventCapSpan
 ///   U9 a run to rest has no ball left that moves
+///   E  nothing that the plan left out was needed
 /// U4 is left out for the published cloth slip, and for the march below 100 substeps, which gain energy by construction.
 std::optional<Violation> verify(const Record& record, const Plan& plan);
 

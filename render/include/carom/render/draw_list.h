@@ -5,11 +5,15 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "carom/engine/record.h"
 #include "carom/render/camera.h"
+#include "carom/render/camera_path.h"
+#include "carom/render/overlay.h"
 #include "carom/render/table_mesh.h"
 
 namespace carom::render {
@@ -39,29 +43,70 @@ struct DrawBall {
     bool in_pocket = false;
 };
 
+using Rgba = std::array<float, 4>;  ///< as on the screen, 0..1; the last is opacity
+
+/// A straight line in the table's space, of a width in pixels, with round ends. What stands before it hides
+/// it.
+struct DrawLine {
+    Vec3 a{0.0, 0.0, 0.0}, b{0.0, 0.0, 0.0};
+    float width = 2.0F;
+    Rgba color{1.0F, 1.0F, 1.0F, 1.0F};
+    bool over_balls = false;
+};
+
+/// A rectangle of the image [pixels], filled, or as the cell of one character.
+struct DrawBox {
+    Vec2 low{0.0, 0.0}, high{0.0, 0.0};
+    Rgba color{1.0F, 1.0F, 1.0F, 1.0F};
+    int glyph = -1;
+};
+
 struct DrawList {
     std::shared_ptr<const TableMesh> table;
     Camera camera;
     std::vector<DrawBall> balls;
+    std::vector<DrawLine> lines;
+    std::vector<DrawBox> boxes;
     int table_samples =
         16;  ///< per pixel of the table; it is drawn anew only when the camera or the table changes
+};
+
+/// Appends a line of text with its upper left corner at `at`; height of a capital in pixels.
+/// Characters that the renderer has no shape for are left blank.
+void add_text(DrawList& list, const Vec2& at, double height, std::string_view text, const Rgba& color);
+
+/// Width of that text [pixels].
+double text_width(double height, std::string_view text);
+
+struct StageOptions {
+    std::string camera = "top";
+    FreeCamera view;
+    Overlay overlay;
+    FrameSize size;
+    int table_samples = 16;
+};
+
+/// What one frame cost, for the margin bar.
+struct FrameCost {
+    double ms = 0.0, budget_ms = 0.0;
 };
 
 /// Turns a record into draw lists: what does not change with time is made once.
 class Stage {
   public:
     /// `record` must outlive the stage. @throws RenderError for an unknown camera
-    Stage(const Record& record, const std::string& camera, FrameSize size);
+    Stage(const Record& record, const StageOptions& options);
 
-    DrawList at(double t) const;
+    DrawList at(double t, std::optional<FrameCost> cost = std::nullopt) const;
     const std::shared_ptr<const TableMesh>& table() const { return table_; }
+    bool camera_moves() const { return camera_.moves(); }
 
   private:
     const Record& record_;
+    StageOptions options_;
     std::shared_ptr<const TableMesh> table_;
+    CameraPath camera_;
     std::vector<BallStyle> styles_;
-    std::string camera_;
-    FrameSize size_;
 };
 
 }  // namespace carom::render

@@ -18,11 +18,18 @@ class Renderer {
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// Draws the list. The table comes from the last frame if neither it nor the camera changed.
+    /// Starts to draw the list. The table comes from the last frame if neither it nor the camera changed.
     void draw(const DrawList& list);
+
+    /// Waits until the last draw() is done: for those who measure it.
+    void finish();
 
     /// Copies the pixels of the last draw().
     void read(Image& image);
+
+    /// Copies those of the draw() before, while the last one goes on in the driver's threads. Needs two draws
+    /// of one size before.
+    void read_previous(Image& image);
 
     /// "4.5 (Core Profile) Mesa 22.3.6, llvmpipe ..."
     std::string description() const;

@@ -1,0 +1,40 @@
+#include "carom/render/overlay.h"
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include "carom/render/error.h"
+
+namespace carom::render {
+
+Overlay parse_overlay(std::string_view list) {
+    constexpr std::array<std::pair<std::string_view, bool Overlay::*>, 6> kNames{
+        {{"trails", &Overlay::trails},
+         {"events", &Overlay::events},
+         {"spin", &Overlay::spin},
+         {"ghost", &Overlay::ghost},
+         {"clock", &Overlay::clock},
+         {"margin", &Overlay::margin}}};
+    Overlay overlay;
+    bool more = !list.empty();
+    while (more) {
+        const std::size_t comma = list.find(',');
+        const std::string_view word = list.substr(0, comma);
+        more = comma != std::string_view::npos;
+        if (more) list.remove_prefix(comma + 1);
+        bool known = word == "all";
+        for (const auto& [name, member] : kNames) {
+            if (word != name && word != "all") continue;
+            overlay.*member = true;
+            known = true;
+        }
+        if (!known) {
+            throw RenderError("unknown overlay '" + std::string(word) +
+                              "'; use trails, events, spin, ghost, clock, margin, or all");
+        }
+    }
+    return overlay;
+}
+
+}  // namespace carom::render

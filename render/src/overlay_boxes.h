@@ -1,0 +1,11 @@
+// Panels of the overlays: text and bars over the picture.
+#pragma once
+
+#include "carom/render/draw_list.h"
+
+namespace carom::render {
+
+void add_clock(DrawList& list, double t);
+void add_margin_bar(DrawList& list, const FrameCost& cost);
+
+}  // namespace carom::render

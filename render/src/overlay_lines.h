@@ -1,0 +1,14 @@
+// Lines and boxes of the overlays.
+#pragma once
+
+#include <optional>
+
+#include "carom/render/draw_list.h"
+
+namespace carom::render {
+
+/// Adds what the overlay asks for at time t. cost: of this frame, for the margin bar.
+void add_overlay(DrawList& list, const Record& record, const Overlay& overlay, double t,
+                 std::optional<FrameCost> cost);
+
+}  // namespace carom::render

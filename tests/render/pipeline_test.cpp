@@ -1,0 +1,197 @@
+// Threads, resuming, raw frames, contact sheets, measuring.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <stdexcept>
+
+#include "carom/render/bench.h"
+#include "carom/render/png.h"
+#include "carom/render/sequence.h"
+#include "render/hand_made.h"
+
+namespace carom::render {
+namespace {
+
+using render_test::same_pixels;
+using render_test::ScratchFolder;
+
+Record rolling_ball() {
+    Record record = render_test::rectangle_record();
+    Segment segment = render_test::still({0.5, 0.5, render_test::kR});
+    segment.v = Vec3(0.2, 1.0, 0.0);
+    segment.w = Vec3(-1.0, 0.2, 0.0) / render_test::kR;
+    segment.state = MotionState::kRolling;
+    render_test::add_ball(record, "7", segment);
+    record.duration = 0.5;
+    return record;
+}
+
+SequenceOptions options_for(const std::string& pattern) {
+    SequenceOptions options;
+    options.pattern = pattern;
+    options.size = {160, 90};
+    options.table_samples = 2;
+    return options;
+}
+
+TEST(Pipeline, ThreadsChangeNothingInTheFrames) {
+    const ScratchFolder folder("threads");
+    const Record record = rolling_ball();
+    SequenceOptions options = options_for(folder.file("a%02d.png"));
+    options.jobs = 1;
+    const std::size_t count = render_sequence(record, options).size();
+    ASSERT_EQ(count, 31U);
+    options.pattern = folder.file("b%02d.png");
+    options.jobs = 5;
+    for (const FrameTiming& timing : render_sequence(record, options)) {
+        EXPECT_GT(timing.draw_ms, 0.0);
+        EXPECT_GT(timing.readback_ms, 0.0);
+        EXPECT_GT(timing.encode_ms, 0.0);
+        EXPECT_GT(timing.write_ms, 0.0);
+    }
+    for (long k = 0; k < static_cast<long>(count); ++k) {
+        EXPECT_TRUE(same_pixels(read_png(frame_path(folder.file("a%02d.png"), k)),
+                                read_png(frame_path(options.pattern, k))))
+            << k;
+    }
+    EXPECT_EQ(folder.entries(), 2 * count);
+}
+
+TEST(Pipeline, ResumeDoesOnlyWhatIsMissing) {
+    const ScratchFolder folder("resume");
+    const Record record = rolling_ball();
+    SequenceOptions options = options_for(folder.file("%02d.png"));
+    render_sequence(record, options);
+    const Image fifth = read_png(folder.file("05.png"));
+    std::filesystem::remove(folder.file("05.png"));
+    std::ofstream(folder.file("07.png")) << "cut off";
+    SequenceOptions small = options_for(folder.file("09.png"));
+    small.pattern = folder.file("0%d.png");
+    small.size = {80, 45};
+    small.frame = 9;
+    render_sequence(record, small);  // frame 9 is there, but of another size
+    const auto before = std::filesystem::last_write_time(folder.file("06.png"));
+    options.resume = true;
+    std::vector<long> progress;
+    options.progress = [&](long done, long total) {
+        progress.push_back(done);
+        EXPECT_EQ(total, 31);
+    };
+    const std::vector<FrameTiming> timings = render_sequence(record, options);
+    ASSERT_EQ(timings.size(), 3U);
+    EXPECT_EQ(timings[0].frame, 5);
+    EXPECT_EQ(timings[1].frame, 7);
+    EXPECT_EQ(timings[2].frame, 9);
+    EXPECT_EQ(progress, (std::vector<long>{29, 30, 31}));
+    EXPECT_TRUE(same_pixels(read_png(folder.file("05.png")), fifth));
+    EXPECT_EQ(std::filesystem::last_write_time(folder.file("06.png")), before);
+    EXPECT_TRUE(render_sequence(record, options).empty());
+}
+
+TEST(Pipeline, RawFramesComeInOrderWithTheSamePixels) {
+    const ScratchFolder folder("raw");
+    const Record record = rolling_ball();
+    SequenceOptions options = options_for(folder.file("%02d.png"));
+    render_sequence(record, options);
+    std::vector<std::vector<std::uint8_t>> frames;
+    options.raw = [&](const std::uint8_t* rgb, std::size_t bytes) { frames.emplace_back(rgb, rgb + bytes); };
+    options.pattern = "not used";
+    render_sequence(record, options);
+    ASSERT_EQ(frames.size(), 31U);
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+        const Image image = read_png(frame_path(folder.file("%02d.png"), static_cast<long>(k)));
+        ASSERT_EQ(frames[k].size(), 3U * 160 * 90);
+        std::size_t differ = 0;
+        for (std::size_t i = 0; i < frames[k].size(); ++i)
+            differ += frames[k][i] != image.rgbx[i / 3 * 4 + i % 3];
+        EXPECT_EQ(differ, 0U) << k;
+    }
+    EXPECT_EQ(folder.entries(), 31U);
+}
+
+TEST(Pipeline, AFailingThreadStopsTheRunWithItsMessage) {
+    const Record record = rolling_ball();
+    SequenceOptions options = options_for("");
+    int frames = 0;
+    options.raw = [&](const std::uint8_t*, std::size_t) {
+        if (++frames == 3) throw RenderError("the reader went away");
+    };
+    try {
+        render_sequence(record, options);
+        FAIL();
+    } catch (const RenderError& error) {
+        EXPECT_STREQ(error.what(), "the reader went away");
+    }
+    EXPECT_LT(frames, 10);
+}
+
+TEST(Pipeline, ProgressMayStopTheRun) {
+    const ScratchFolder folder("stop");
+    SequenceOptions options = options_for(folder.file("%02d.png"));
+    options.jobs = 3;
+    options.progress = [](long done, long) {
+        if (done == 8) throw std::runtime_error("interrupted");
+    };
+    EXPECT_THROW(render_sequence(rolling_ball(), options), std::runtime_error);
+    // What is there is whole.
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+        EXPECT_EQ(read_png(entry.path().string()).size, options.size);
+    }
+    EXPECT_LE(folder.entries(), 8U);
+}
+
+TEST(Pipeline, RefusesWhatDoesNotGoTogether) {
+    SequenceOptions options = options_for("");
+    options.resume = true;
+    EXPECT_THROW(render_sequence(rolling_ball(), options), RenderError);
+    options = options_for("");
+    options.jobs = -1;
+    EXPECT_THROW(render_sequence(rolling_ball(), options), RenderError);
+}
+
+TEST(Sheet, ShowsTheShotRowByRow) {
+    const ScratchFolder folder("sheet");
+    Record record = rolling_ball();
+    SequenceOptions options = options_for("");
+    options.size = {482, 362};
+    render_sheet(record, options, 3, 4, folder.file("sheet.png"));
+    const Image sheet = read_png(folder.file("sheet.png"));
+    EXPECT_EQ(sheet.size, options.size);
+    // 3 x 4 pictures of 159 x 89 with 2 pixels between them; the middle of each is cloth, and first and last
+    // differ.
+    for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 3; ++column) {
+            const std::uint8_t* p = sheet.pixel(column * 161 + 85, row * 91 + 60);
+            EXPECT_GT(p[1], p[0] + 20) << column << " " << row;
+        }
+    }
+    int differ = 0;
+    for (int y = 20; y < 89; ++y) {
+        for (int x = 0; x < 159; ++x) {
+            differ += std::abs(sheet.pixel(x, y)[0] - sheet.pixel(2 * 161 + x, 3 * 91 + y)[0]) > 40;
+        }
+    }
+    EXPECT_GT(differ, 10);
+    EXPECT_THROW(render_sheet(record, options, 0, 3, folder.file("no.png")), RenderError);
+    EXPECT_THROW(render_sheet(record, options, 100, 3, folder.file("no.png")), RenderError);
+    EXPECT_EQ(folder.entries(), 1U);
+}
+
+TEST(Bench, GivesBothRows) {
+    const std::vector<RenderBenchRow> rows = bench_render(rolling_ball(), 4);
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_EQ(rows[0].name, "720p");
+    EXPECT_EQ(rows[1].name, "1080p");
+    for (const RenderBenchRow& row : rows) {
+        EXPECT_GT(row.draw_ms, 0.0);
+        EXPECT_GT(row.readback_ms, 0.0);
+        EXPECT_GT(row.encode_ms, row.readback_ms);
+        EXPECT_GT(row.write_ms, 0.0);
+        EXPECT_GT(row.setup_ms, row.draw_ms);
+        EXPECT_GT(row.fps, 1.0);
+    }
+    EXPECT_THROW(bench_render(rolling_ball(), 2), RenderError);
+}
+
+}  // namespace
+}  // namespace carom::render

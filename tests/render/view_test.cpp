@@ -1,0 +1,260 @@
+// Cameras, overlays and the outline, without pixels.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "carom/engine/scene.h"
+#include "carom/render/draw_list.h"
+#include "carom/render/error.h"
+#include "render/hand_made.h"
+
+namespace carom::render {
+namespace {
+
+using render_test::add_ball;
+using render_test::kR;
+
+Record shot() {
+    Record record;
+    record.table = make_table("nine_foot");
+    record.balls.R = kR;
+    record.duration = 2.0;
+    Segment segment = render_test::still({0.6, 0.5, kR});
+    segment.v = Vec3(0.0, 1.0, 0.0);
+    segment.w = Vec3(-1.0 / kR, 0.0, 20.0);
+    segment.state = MotionState::kRolling;
+    segment.a = Vec2(0.0, -1.0);  // at rest after one second
+    segment.duration = 1.0;
+    Segment stopped = render_test::still({0.6, 1.0, kR});
+    stopped.start = 1.0;
+    BallTrack track{"cue", {segment, stopped}, -1};
+    record.tracks = {track};
+    add_ball(record, "8", 0.6, 2.0);
+    record.events = {{0.0, EventType::kCueStrike, 0, -1}, {1.0, EventType::kBallBall, 0, 1}};
+    return record;
+}
+
+StageOptions view(const std::string& camera, FrameSize size = {640, 360}) {
+    StageOptions options;
+    options.camera = camera;
+    options.size = size;
+    return options;
+}
+
+TEST(Cameras, RailShowsTheWholeTableAtEverySize) {
+    const Record record = shot();
+    for (FrameSize size :
+         {FrameSize{640, 360}, FrameSize{360, 640}, FrameSize{500, 500}, FrameSize{2000, 300}}) {
+        const Stage stage(record, view("rail", size));
+        const Camera camera = stage.at(0.0).camera;
+        const Bounds& bounds = stage.table()->bounds;
+        double widest = 0.0;
+        for (double x : {bounds.low.x(), bounds.high.x()}) {
+            for (double y : {bounds.low.y(), bounds.high.y()}) {
+                const std::optional<Vec2> pixel = camera.project({x, y, 0.0});
+                ASSERT_TRUE(pixel);
+                EXPECT_GT(pixel->minCoeff(), -0.5);
+                EXPECT_LT(pixel->x(), size.width + 0.5);
+                EXPECT_LT(pixel->y(), size.height + 0.5);
+                widest = std::max({widest, std::abs(pixel->x() / size.width - 0.5),
+                                   std::abs(pixel->y() / size.height - 0.5)});
+            }
+        }
+        EXPECT_GT(widest, 0.44) << "the table fills the image";
+        // The head rail is near: lower in the image than the foot rail.
+        EXPECT_GT(camera.project({0.6, 0.0, 0.0})->y(), camera.project({0.6, 2.5, 0.0})->y());
+    }
+}
+
+TEST(Cameras, PlayerLooksAlongTheShot) {
+    const Record record = shot();
+    const Camera camera = Stage(record, view("player")).at(0.0).camera;
+    const Vec2 ball = *camera.project({0.6, 0.5, kR}), target = *camera.project({0.6, 2.0, kR});
+    EXPECT_NEAR(ball.x(), 320.0, 1.0);
+    EXPECT_NEAR(target.x(), 320.0, 1.0);
+    EXPECT_GT(ball.y(), target.y());
+    EXPECT_GT(target.y(), 0.0);
+    EXPECT_LT(ball.y(), 360.0);
+}
+
+TEST(Cameras, FollowIsSmoothAndKeepsTheBallInSight) {
+    const Record record = shot();
+    const Stage stage(record, view("follow"));
+    Vec3 before = stage.at(-1.0).camera.eye, step_before = Vec3::Zero();
+    for (int k = -59; k <= 240; ++k) {
+        const double t = k / 60.0;
+        const Camera camera = stage.at(t).camera;
+        const Vec2 ball = *camera.project(record.state_at(0, t).position);
+        EXPECT_GT(ball.minCoeff(), 0.0);
+        EXPECT_LT(ball.x(), 640.0);
+        EXPECT_LT(ball.y(), 360.0);
+        // The ball itself starts with 1 m/s at once; the camera's step changes by little in a frame.
+        const Vec3 step = camera.eye - before;
+        EXPECT_LT((step - step_before).norm(), 0.1 / 60.0) << t;
+        before = camera.eye;
+        step_before = step;
+    }
+    EXPECT_TRUE(stage.at(1.8).camera == stage.at(1.9).camera) << "at rest the table need not be drawn again";
+}
+
+TEST(Cameras, FreeViewAndBadOnes) {
+    const Record record = shot();
+    StageOptions options = view("top");
+    options.view.eye = Vec3(0.0, -1.0, 1.0);
+    options.view.target = Vec3(0.6, 1.0, 0.0);
+    const Camera camera = Stage(record, options).at(0.0).camera;
+    EXPECT_NEAR((*camera.project({0.6, 1.0, 0.0}) - Vec2(320, 180)).norm(), 0.0, 1e-9);
+    EXPECT_GT(camera.image_up().z(), 0.0);
+    options.view.eye = Vec3(0.6, 1.0, 3.0);
+    EXPECT_NEAR(Stage(record, options).at(0.0).camera.image_up().y(), 1.0, 1e-12) << "straight down";
+    options.view.target.reset();
+    EXPECT_THROW(Stage(record, options), RenderError);
+    options.view.target = options.view.eye;
+    EXPECT_THROW(Stage(record, options), RenderError);
+    EXPECT_THROW(Stage(record, view("drone")), RenderError);
+    options = view("follow");
+    options.view.ball = "17";
+    try {
+        Stage(record, options);
+        FAIL();
+    } catch (const RenderError& error) {
+        EXPECT_STREQ(error.what(), "no ball '17' to follow; there are cue, 8");
+    }
+}
+
+TEST(Overlays, NamesAreReadAndUnknownOnesRefused) {
+    EXPECT_FALSE(parse_overlay("").any());
+    const Overlay some = parse_overlay("trails,clock");
+    EXPECT_TRUE(some.trails && some.clock);
+    EXPECT_FALSE(some.events || some.spin || some.ghost || some.margin);
+    const Overlay all = parse_overlay("all");
+    EXPECT_TRUE(all.trails && all.events && all.spin && all.ghost && all.clock && all.margin);
+    for (const char* bad : {"trail", "trails,", "trails, clock", "trails;clock"}) {
+        EXPECT_THROW(parse_overlay(bad), RenderError) << bad;
+    }
+}
+
+DrawList overlaid(const std::string& overlay, double t) {
+    static const Record record = shot();
+    StageOptions options = view("top");
+    options.overlay = parse_overlay(overlay);
+    return Stage(record, options).at(t, FrameCost{20.0, 10.0});
+}
+
+TEST(Overlays, TrailsReachTheBallAndNoFurther) {
+    EXPECT_TRUE(overlaid("trails", 0.0).lines.empty());
+    const DrawList list = overlaid("trails", 0.4);
+    ASSERT_EQ(list.lines.size(), 1U);
+    EXPECT_NEAR(list.lines[0].a.y(), 0.5, 1e-12);
+    EXPECT_NEAR(list.lines[0].b.y(), 0.82, 1e-12);
+    EXPECT_FALSE(list.lines[0].over_balls);
+}
+
+TEST(Overlays, EventsAppearWhenTheyHappen) {
+    EXPECT_EQ(overlaid("events", 0.9).lines.size(), 1U) << "the cue strike";
+    const DrawList fresh = overlaid("events", 1.1), old = overlaid("events", 1.9);
+    EXPECT_EQ(old.lines.size(), 2U);
+    EXPECT_GT(fresh.lines.size(), 10U) << "with a ring";
+    EXPECT_NEAR(old.lines[1].a.y(), 1.5, 1e-9) << "between the two balls";
+}
+
+TEST(Overlays, GhostStandsWhereTheBallWillMeetTheOther) {
+    const DrawList list = overlaid("ghost", 0.2);
+    ASSERT_GT(list.lines.size(), 10U);
+    for (std::size_t i = 0; i + 1 < list.lines.size(); ++i) {
+        EXPECT_NEAR((list.lines[i].a - Vec3(0.6, 1.0, kR)).norm(), kR, 1e-9);
+    }
+    EXPECT_TRUE(overlaid("ghost", 1.5).lines.empty());
+}
+
+TEST(Overlays, SpinArrowPointsWhereTheTopGoes) {
+    const DrawList list = overlaid("spin", 0.5);
+    ASSERT_FALSE(list.lines.empty());
+    const Vec3 arrow = list.lines[0].b - list.lines[0].a;
+    EXPECT_NEAR(arrow.x(), 0.0, 1e-12);
+    EXPECT_NEAR(arrow.y(), 0.05, 1e-9) << "a tenth of a second at half a metre a second";
+    EXPECT_TRUE(overlaid("spin", 1.5).lines.empty()) << "nothing turns any more";
+}
+
+TEST(Overlays, ClockAndMarginAreBoxesInsideTheImage) {
+    for (const char* name : {"clock", "margin"}) {
+        const DrawList list = overlaid(name, 0.5);
+        ASSERT_GT(list.boxes.size(), 4U);
+        for (const DrawBox& box : list.boxes) {
+            EXPECT_GE(box.low.minCoeff(), 0.0);
+            EXPECT_LE(box.high.x(), 640.0);
+            EXPECT_LE(box.high.y(), 360.0);
+        }
+    }
+}
+
+TEST(TableMesh, ThePresetsHaveEverything) {
+    for (const char* preset : {"seven_foot", "nine_foot", "carom"}) {
+        const Table table = make_table(preset);
+        const TableMesh mesh = make_table_mesh(table, kR, {Vec2(0.5, 0.5)});
+        EXPECT_EQ(mesh.holes.size(), table.pockets.size());
+        std::array<int, 9> used{};
+        for (const MeshVertex& vertex : mesh.solid) {
+            ASSERT_TRUE(std::isfinite(vertex.x + vertex.y + vertex.z + vertex.nx + vertex.ny + vertex.nz));
+            ++used[static_cast<std::size_t>(vertex.material)];
+        }
+        EXPECT_GT(used[static_cast<std::size_t>(Material::kCloth)], 0);
+        EXPECT_GT(used[static_cast<std::size_t>(Material::kCushion)], 0);
+        EXPECT_GT(used[static_cast<std::size_t>(Material::kWood)], 0);
+        EXPECT_EQ(used[static_cast<std::size_t>(Material::kPocket)] > 0, !table.pockets.empty());
+        EXPECT_FALSE(mesh.blended.empty());
+    }
+}
+
+// The drawn noses are the cushions and jaws that balls bounce off: at the height of the nose no vertex of a
+// cushion reaches into the table, and every point of the outline is drawn.
+TEST(TableMesh, NosesAreTheOutlineThatBallsBounceOff) {
+    const Table table = make_table("nine_foot");
+    const TableMesh mesh = make_table_mesh(table, kR, {Vec2(0.5, 0.5)});
+    std::vector<Vec2> noses;
+    for (const MeshVertex& vertex : mesh.solid) {
+        const bool cushion = static_cast<Material>(static_cast<int>(vertex.material)) == Material::kCushion;
+        if (cushion) noses.emplace_back(vertex.x + mesh.origin.x(), vertex.y + mesh.origin.y());
+    }
+    for (const Vec2& nose : noses) {
+        const bool inside = nose.x() > 1e-6 && nose.x() < table.width - 1e-6 && nose.y() > 1e-6 &&
+                            nose.y() < table.length - 1e-6;
+        EXPECT_FALSE(inside) << nose.transpose();
+    }
+    const auto is_drawn = [&](const Vec2& point) {
+        double nearest = 1.0;
+        for (const Vec2& nose : noses) nearest = std::min(nearest, (nose - point).norm());
+        return nearest < 1e-6;
+    };
+    for (const Cushion& cushion : table.cushions) {
+        EXPECT_TRUE(is_drawn(cushion.from)) << cushion.id;
+        EXPECT_TRUE(is_drawn(cushion.to)) << cushion.id;
+    }
+    // The middle of each jaw's arc: the point of its circle that is nearest to the table's middle or a
+    // pocket's mouth.
+    for (const Jaw& jaw : table.jaws) {
+        int on_circle = 0;
+        for (const Vec2& nose : noses) on_circle += std::abs((nose - jaw.center).norm() - jaw.radius) < 1e-6;
+        EXPECT_GT(on_circle, 20) << jaw.id;
+    }
+}
+
+TEST(TableMesh, OddOutlinesGiveFiniteMeshes) {
+    Table table;
+    table.cushions = {{"a", {0, 0}, {1, 0}, 0.03}, {"b", {1, 0}, {1, 1}, 0.03}, {"c", {3, 3}, {4, 4}, 0.03}};
+    table.jaws = {{"post", {2, 2}, 0.1, 0.03}};
+    for (const std::vector<Vec2>& visited :
+         {std::vector<Vec2>{}, std::vector<Vec2>{{0.5, 0.5}}, std::vector<Vec2>{{0.5, 0.5}, {2.0, -1.0}},
+          std::vector<Vec2>{{9e4, -9e4}}}) {
+        const TableMesh mesh = make_table_mesh(table, kR, visited);
+        EXPECT_FALSE(mesh.solid.empty());
+        for (const MeshVertex& vertex : mesh.solid) {
+            ASSERT_TRUE(std::isfinite(vertex.x + vertex.y + vertex.z + vertex.nx + vertex.ny + vertex.nz));
+        }
+        EXPECT_TRUE(mesh.bounds.low.allFinite() && mesh.bounds.high.allFinite());
+        EXPECT_GT((mesh.bounds.high - mesh.bounds.low).minCoeff(), 0.0);
+    }
+}
+
+}  // namespace
+}  // namespace carom::render
