@@ -28,7 +28,7 @@ def cachegrind(program, rung, isa, calls):
         text = pathlib.Path(out.name).read_text()
     names = re.search(r"^events: (.*)$", text, re.M).group(1).split()
     totals = [int(x) for x in re.search(r"^summary: (.*)$", text, re.M).group(1).split()]
-    return int(run.stdout), dict(zip(names, totals))
+    return int(run.stdout.split()[0]), dict(zip(names, totals))
 
 
 def perf(program, rung, isa, calls):

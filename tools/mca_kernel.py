@@ -56,6 +56,15 @@ def assembly(cxx, source, level, folder):
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
 
 
+def arm_assembly(source, folder):
+    path = pathlib.Path(folder) / "probe.cpp"
+    path.write_text(source)
+    command = ["clang++", "--target=aarch64-linux-gnu", "-mcpu=apple-m1", "-std=c++20", "-O3", "-ffp-contract=off", "-w",
+               "-DCAROM_LOOP_MARKS", f"-I{ROOT}/kernel/include", f"-I{ROOT}/kernel/src", "-S", "-o", "-", str(path)]
+    run = subprocess.run(command, capture_output=True, text=True)
+    return [line.replace("//", "#") if "LLVM-MCA" in line else line for line in run.stdout.splitlines()]
+
+
 def body(lines):
     """The longest marked stretch, without labels, marks, and what belongs to the assembler."""
     best, current = [], None
@@ -71,8 +80,8 @@ def body(lines):
     return best
 
 
-def simulate(code, cpu):
-    command = ["llvm-mca", f"-mcpu={cpu}", "-iterations=300", "-bottleneck-analysis", "-register-file-stats"]
+def simulate(code, cpu, triple="x86_64-linux-gnu"):
+    command = ["llvm-mca", f"-mtriple={triple}", f"-mcpu={cpu}", "-iterations=300", "-bottleneck-analysis", "-register-file-stats"]
     run = subprocess.run(command, input="\n".join(code) + "\n", capture_output=True, text=True)
     if run.returncode != 0:
         return None
@@ -104,6 +113,9 @@ def main():
         for cxx in args.cxx:
             for name, source, level, steps in LOOPS:
                 code = body(assembly(cxx, source, level, folder))
+                if len(code) < 30:
+                    print(f"{name:<22}{cxx:<12} the compiler moved most of the loop out of line: left out", file=sys.stderr)
+                    continue
                 for cpu in args.cpu:
                     r = simulate(code, cpu)
                     if r is None:
@@ -112,6 +124,14 @@ def main():
                     rows.append({"loop": name, "compiler": cxx, "cpu": cpu, "steps": steps, **r})
                     print(f"{name:<22}{cxx:<12}{cpu:<9}{r['instructions']:>6}{r['cycles']:>8.1f}{r['cycles'] / steps:>8.1f}"
                           f"{r['throughput_bound']:>7.1f}{r['data_dependencies']:>8.1f}%{r['fp_registers_used']:>8.0f}")
+        code = body(arm_assembly(PLAIN, folder))
+        r = simulate(code, "apple-m1", "aarch64-linux-gnu") if code else None
+        if r is None:
+            print("baseline on apple-m1: clang++ or llvm-mca cannot do it", file=sys.stderr)
+        else:
+            rows.append({"loop": "baseline", "compiler": "clang++", "cpu": "apple-m1", "steps": 1, **r})
+            print(f"{'baseline':<22}{'clang++':<12}{'apple-m1':<9}{r['instructions']:>6}{r['cycles']:>8.1f}{r['cycles']:>8.1f}"
+                  f"{r['throughput_bound']:>7.1f}{r['data_dependencies']:>8.1f}%")
     if args.json:
         pathlib.Path(args.json).write_text(json.dumps({"rows": rows}, indent=1) + "\n")
 

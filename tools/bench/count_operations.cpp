@@ -1,12 +1,12 @@
-// Operations a step: the ladder's own source, run through a number that counts. A program of its own, because in it every
-// `double` of the kernel is such a number; it links nothing of the library.
+// Operations a step: the ladder's own source, run through a number that counts. A program of its own, because
+// in it every `double` of the kernel is such a number; it links nothing of the library.
 #include <immintrin.h>
 
 #include <cstdio>
 #include <initializer_list>
 #include <type_traits>
 
-namespace {
+namespace counting {
 
 struct Counts {
     long add = 0, mul = 0, fma = 0, div = 0, root = 0, rsqrt = 0, compare = 0;
@@ -16,41 +16,72 @@ struct Counted {
     double value;
     constexpr Counted() : value(0.0) {}
     template <class T>
-        requires(std::is_arithmetic_v<T>)
-    constexpr Counted(T x) : value(static_cast<double>(x)) {}
+    requires(std::is_arithmetic_v<T>) constexpr Counted(T x) : value(static_cast<double>(x)) {}
     template <class T>
-        requires(std::is_arithmetic_v<T>)
-    constexpr explicit operator T() const {
-        return static_cast<T>(value);
-    }
+    requires(std::is_arithmetic_v<T>) constexpr explicit operator T() const { return static_cast<T>(value); }
 };
 
-constexpr void count(long Counts::* what) {
+constexpr void count(long Counts::*what) {
     if (!__builtin_is_constant_evaluated()) ++(counts.*what);
 }
-constexpr Counted operator+(Counted a, Counted b) { return count(&Counts::add), Counted(a.value + b.value); }
-constexpr Counted operator-(Counted a, Counted b) { return count(&Counts::add), Counted(a.value - b.value); }
-constexpr Counted operator*(Counted a, Counted b) { return count(&Counts::mul), Counted(a.value * b.value); }
-constexpr Counted operator/(Counted a, Counted b) { return count(&Counts::div), Counted(a.value / b.value); }
-constexpr Counted operator-(Counted a) { return Counted(-a.value); }  // a sign bit, no arithmetic
-constexpr Counted& operator+=(Counted& a, Counted b) { return a = a + b; }
-constexpr Counted& operator-=(Counted& a, Counted b) { return a = a - b; }
-constexpr Counted& operator*=(Counted& a, Counted b) { return a = a * b; }
-constexpr Counted& operator/=(Counted& a, Counted b) { return a = a / b; }
-constexpr bool operator<(Counted a, Counted b) { return count(&Counts::compare), a.value < b.value; }
-constexpr bool operator>(Counted a, Counted b) { return count(&Counts::compare), a.value > b.value; }
-constexpr bool operator<=(Counted a, Counted b) { return count(&Counts::compare), a.value <= b.value; }
-constexpr bool operator>=(Counted a, Counted b) { return count(&Counts::compare), a.value >= b.value; }
-constexpr bool operator==(Counted a, Counted b) { return count(&Counts::compare), a.value == b.value; }
-constexpr bool operator!=(Counted a, Counted b) { return count(&Counts::compare), a.value != b.value; }
+constexpr Counted operator+(Counted a, Counted b) {
+    return count(&Counts::add), Counted(a.value + b.value);
+}
+constexpr Counted operator-(Counted a, Counted b) {
+    return count(&Counts::add), Counted(a.value - b.value);
+}
+constexpr Counted operator*(Counted a, Counted b) {
+    return count(&Counts::mul), Counted(a.value * b.value);
+}
+constexpr Counted operator/(Counted a, Counted b) {
+    return count(&Counts::div), Counted(a.value / b.value);
+}
+constexpr Counted operator-(Counted a) {
+    return Counted(-a.value);
+}  // a sign bit, no arithmetic
+constexpr Counted& operator+=(Counted& a, Counted b) {
+    return a = a + b;
+}
+constexpr Counted& operator-=(Counted& a, Counted b) {
+    return a = a - b;
+}
+constexpr Counted& operator*=(Counted& a, Counted b) {
+    return a = a * b;
+}
+constexpr Counted& operator/=(Counted& a, Counted b) {
+    return a = a / b;
+}
+constexpr bool operator<(Counted a, Counted b) {
+    return count(&Counts::compare), a.value < b.value;
+}
+constexpr bool operator>(Counted a, Counted b) {
+    return count(&Counts::compare), a.value > b.value;
+}
+constexpr bool operator<=(Counted a, Counted b) {
+    return count(&Counts::compare), a.value <= b.value;
+}
+constexpr bool operator>=(Counted a, Counted b) {
+    return count(&Counts::compare), a.value >= b.value;
+}
+constexpr bool operator==(Counted a, Counted b) {
+    return count(&Counts::compare), a.value == b.value;
+}
+constexpr bool operator!=(Counted a, Counted b) {
+    return count(&Counts::compare), a.value != b.value;
+}
 
-Counted counted_root(Counted a) { return count(&Counts::root), Counted(__builtin_sqrt(a.value)); }
+Counted counted_root(Counted a) {
+    return count(&Counts::root), Counted(__builtin_sqrt(a.value));
+}
 Counted counted_fma(Counted a, Counted b, Counted c) {
     return count(&Counts::fma), Counted(__builtin_fma(a.value, b.value, c.value));
 }
-__m128 counted_rsqrt(__m128 a) { return count(&Counts::rsqrt), _mm_rsqrt_ss(a); }
+__m128 counted_rsqrt(__m128 a) {
+    return count(&Counts::rsqrt), _mm_rsqrt_ss(a);
+}
 
-}  // namespace
+}  // namespace counting
+using namespace counting;
 
 #define double Counted
 #define __builtin_sqrt counted_root
@@ -87,7 +118,7 @@ void report(const char* name, March march) {
             ImpactResult out;
             march(state.ball1, state.ball2, state.params, n, out);
             const double sign = n == 2000 ? 1.0 : -1.0;
-            const long values[7] = {counts.add, counts.mul,   counts.fma,    counts.div,
+            const long values[7] = {counts.add,  counts.mul,   counts.fma,    counts.div,
                                     counts.root, counts.rsqrt, counts.compare};
             for (int i = 0; i < 7; ++i) per_step[i] += sign * static_cast<double>(values[i]);
             steps += (n == 2000 ? 1 : -1) * out.steps;
@@ -95,7 +126,8 @@ void report(const char* name, March march) {
     }
     std::printf("%s{\"name\": \"%s\"", march == count_baseline ? "" : ",\n ", name);
     const char* names[7] = {"add", "mul", "fma", "div", "sqrt", "rsqrt", "compare"};
-    for (int i = 0; i < 7; ++i) std::printf(", \"%s\": %.2f", names[i], per_step[i] / static_cast<double>(steps));
+    for (int i = 0; i < 7; ++i)
+        std::printf(", \"%s\": %.2f", names[i], per_step[i] / static_cast<double>(steps));
     std::printf("}");
 }
 

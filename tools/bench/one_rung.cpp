@@ -1,9 +1,11 @@
-// Runs one rung on the paper's five states, for tools that watch a whole process: one_rung NAME ISA CALLS [N].
+// Runs one rung on the paper's five states, for tools that watch a whole process: one_rung NAME ISA CALLS
+// [N]. Prints the steps done and the least time of one impact [ns].
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
 #include "carom/kernel/ladder.h"
+#include "clock.h"
 #include "five_states.h"
 
 int main(int argc, char** argv) {
@@ -17,14 +19,17 @@ int main(int argc, char** argv) {
     for (const kernel::Rung& rung : kernel::ladder()) {
         if (std::strcmp(rung.name, argv[1]) != 0 || rung.isa != isa || rung.march == nullptr) continue;
         long steps = 0;
+        double least = 1e30;
         for (long i = 0; i < std::atol(argv[3]); ++i) {
+            const double start = tools::thread_ns();
             for (const tools::BenchImpact& s : tools::kFiveStates) {
                 kernel::ImpactResult out;
                 rung.march(s.ball1, s.ball2, s.params, n, out);
                 steps += out.steps;
             }
+            least = std::min(least, (tools::thread_ns() - start) / 5.0);
         }
-        std::printf("%ld\n", steps);
+        std::printf("%ld %.1f\n", steps, least);
         return 0;
     }
     std::fprintf(stderr, "one_rung: no rung \"%s\" for one impact on %s\n", argv[1], argv[2]);

@@ -2,7 +2,7 @@
 // registers, in scoped blocks, so that fewer values are alive at once.
 #pragma once
 
-#include <emmintrin.h>
+#include <immintrin.h>
 
 #include "driver.h"
 

@@ -111,7 +111,7 @@ class PackedMarch {
         for (long m = 0; m < count; ++m) {
             CAROM_LOOP_BEGIN("packed march");
             const __m256d pushed = _mm256_add_pd(S, push);
-            __m256d R, next;
+            __m256d R = R1, next = pushed;
             bool late = false;
             if constexpr (kForm == RootForm::kExact) {
                 R = exact_roots(S);
