@@ -95,7 +95,7 @@ void read_balls(const Section& top, Scene& scene) {
     p.e_b = s.number("e_b", p.e_b, kRestitution);
     p.e_c = s.number("e_c", p.e_c, kRestitution);
     p.f_c = s.number("f_c", p.f_c, kFriction);
-    for (const auto& [key, value] : {std::pair{"mu_s", p.mu_s}, std::pair{"mu_b", p.mu_b}}) {
+    for (const auto& [key, value] : {std::pair{"mu_s", p.mu_s}, std::pair{p.mu_b_more > 0.0 ? "mu_b_fit" : "mu_b", p.mu_b + p.mu_b_more}}) {
         if (value > kernel::kLargestFriction && scene.physics.ball_ball == BallBallModel::kMathavan && !scene.physics.substeps)
             s.fail(s.where(key), fmt::format("balls.{} = {}: the impact by tolerance takes frictions up to {}; lower it, or set "
                                              "physics.substeps = 1000", key, value, kernel::kLargestFriction));

@@ -34,7 +34,7 @@ std::string error_of(const std::string& text) {
 Scene random_scene(SplitMix64& rng) {
     Scene scene = empty_scene();
     scene.table = box(1.2, 2.4, 0.036576);
-    scene.physics.substeps = 200;
+    if (rng.next() % 2 == 0) scene.physics.substeps = 200;
     scene.stop.events = 40;
     scene.balls.mu_s = rng.uniform(0.1, 0.4);
     scene.balls.mu_r = rng.uniform(0.005, 0.02);
