@@ -33,7 +33,7 @@ in vec3 v_position;
 in vec3 v_normal;
 in vec2 v_uv;
 flat in int v_material;
-uniform vec4 u_holes[32];     // x, y, radius
+uniform vec4 u_holes[128];     // x, y, radius
 uniform int u_hole_count;
 uniform vec4 u_inner;         // low x, low y, high x, high y of the box without wood
 out vec4 color;

@@ -11,7 +11,7 @@ namespace carom::render {
 
 namespace {
 
-constexpr std::size_t kMaxHoles = 32;  // size of u_holes in the shader
+constexpr std::size_t kMaxHoles = 128;  // size of u_holes in the shader
 
 // Where pass i samples the pixel, in (-1/2, 1/2)^2: the R2 sequence, evenly spread for every count.
 double r2(int i, double step) {

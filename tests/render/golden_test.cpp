@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <ostream>
 
 #include "carom/engine/scene.h"
 #include "carom/render/error.h"
@@ -180,6 +181,11 @@ struct Case {
     const char* name;
     MakePicture make;
 };
+
+// Google Test would print the bytes of the pointers, which change from run to run.
+void PrintTo(const Case& each, std::ostream* out) {
+    *out << each.name;
+}
 
 class Golden : public testing::TestWithParam<Case> {};
 

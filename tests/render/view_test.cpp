@@ -188,6 +188,29 @@ TEST(Overlays, ClockAndMarginAreBoxesInsideTheImage) {
     }
 }
 
+TEST(BallStyles, GoByIdAndTable) {
+    EXPECT_EQ(ball_style("3", "nine_foot", 0).number, 3);
+    EXPECT_EQ(ball_style("3", "nine_foot", 0).pattern, BallPattern::kSolid);
+    EXPECT_EQ(ball_style("8", "", 0).pattern, BallPattern::kSolid);
+    EXPECT_EQ(ball_style("9", "", 0).pattern, BallPattern::kStripe);
+    for (int i = 1; i <= 7; ++i) {
+        EXPECT_EQ(ball_style(std::to_string(i), "", 0).color, ball_style(std::to_string(i + 8), "", 0).color)
+            << i;
+    }
+    const BallStyle red = ball_style("red", "snooker", 0);
+    EXPECT_EQ(ball_style("3", "snooker", 0).color, red.color) << "numbered reds";
+    EXPECT_EQ(ball_style("3", "snooker", 0).number, 0);
+    EXPECT_GT(red.color[0], 0.7F);
+    EXPECT_LT(red.color[1], 0.2F);
+    for (const char* id : {"yellow", "green", "brown", "blue", "pink", "black", "white", "cue"}) {
+        EXPECT_EQ(ball_style(id, "snooker", 0).pattern, BallPattern::kDots) << id;
+        EXPECT_NE(ball_style(id, "snooker", 0).color, red.color) << id;
+    }
+    EXPECT_EQ(ball_style("target", "", 2).pattern, BallPattern::kHalves);
+    EXPECT_EQ(ball_style("", "", 2).number, 0);
+    EXPECT_EQ(ball_style("123", "", 2).number, 0);
+}
+
 TEST(TableMesh, ThePresetsHaveEverything) {
     for (const char* preset : {"seven_foot", "nine_foot", "carom"}) {
         const Table table = make_table(preset);

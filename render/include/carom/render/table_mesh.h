@@ -43,8 +43,8 @@ struct Lamp {
 
 struct TableMesh {
     Vec2 origin{0.0, 0.0};
-    std::vector<MeshVertex> solid, blended;  ///< three vertices a triangle
-    std::vector<Hole> holes;
+    std::vector<MeshVertex> solid, blended;          ///< three vertices a triangle
+    std::vector<Hole> holes;                         ///< of pockets; the first 128 are cut out of the cloth
     Vec2 inner_low{0.0, 0.0}, inner_high{0.0, 0.0};  ///< box without wood
     double wood_top = 0.0;
     Bounds bounds;  ///< what a camera should show
