@@ -75,7 +75,23 @@ void add_render(CLI::App& app, Action& action) {
     sub->add_option("--camera", args->camera,
                     "Camera (default: the scene's, which is top unless it says otherwise)")
         ->type_name("NAME")
-        ->check(CLI::IsMember({"top"}));
+        ->check(CLI::IsMember({"top", "rail", "player", "follow"}));
+    CLI::Option* eye = sub->add_option("--eye", args->eye, "Free camera: where the eye is, in m (default: a named camera)")
+                           ->type_name("X,Y,Z");
+    sub->add_option("--target", args->target, "Free camera: what it looks at, in m")->type_name("X,Y,Z")->needs(eye);
+    sub->add_option("--ball", args->ball, "Ball that camera follow follows (default: the one that moves first)")->type_name("ID");
+    sub->add_option("--overlay", args->overlay,
+                    "Drawn over the picture: trails, events, spin, ghost, clock, margin, or all (default: none)")
+        ->type_name("LIST");
+    sub->add_flag("--trails", args->trails, "The same as --overlay trails (default: off)");
+    sub->add_option("--sheet", args->sheet, "One contact sheet of columns x rows pictures instead of frames (default: off)")
+        ->type_name("CxR");
+    sub->add_option("--jobs", args->jobs, "Threads that encode and write; 0: one per core")
+        ->type_name("N")
+        ->check(CLI::Range(0, 256))
+        ->capture_default_str();
+    sub->add_flag("--resume", args->resume, "Leave out frames whose finished file is there (default: off)");
+    sub->add_flag("--raw", args->raw, "RGB bytes on standard output instead of PNG files, for ffmpeg (default: off)");
     add_gl(*sub, args->gl);
     sub->add_option("--png-level", args->png_level, "Compression, 0 (large, fast) to 9 (small, slow)")
         ->type_name("L")
@@ -166,6 +182,19 @@ void add_bench(CLI::App& app, Action& action) {
     sub->callback([args, &action] { action = [args] { return run_bench_kernel(*args); }; });
 }
 
+void add_bench_render(CLI::App& app, Action& action) {
+    auto args = std::make_shared<BenchRenderArgs>();
+    CLI::App* sub = app.get_subcommand("bench")->add_subcommand("render", "What drawing, reading back and encoding a frame costs");
+    sub->add_option("SCENE", args->scene, "Scene file (TOML)")->capture_default_str();
+    sub->add_option("--frames", args->frames, "Frames at each size, spread over the shot")
+        ->type_name("N")
+        ->check(CLI::Range(2, 100000))
+        ->capture_default_str();
+    add_gl(*sub, args->gl);
+    sub->add_flag("--json", args->json, "Print JSON (default: off)");
+    sub->callback([args, &action] { action = [args] { return run_bench_render(*args); }; });
+}
+
 void add_commands(CLI::App& app, Action& action) {
     add_simulate(app, action);
     add_render(app, action);
@@ -173,6 +202,7 @@ void add_commands(CLI::App& app, Action& action) {
     add_check(app, action);
     add_impact(app, action);
     add_bench(app, action);
+    add_bench_render(app, action);
 }
 
 int run(int argc, char** argv) {

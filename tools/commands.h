@@ -35,6 +35,14 @@ struct RenderArgs {
     std::string camera;  ///< empty: the scene's
     std::string gl = "osmesa";
     int png_level = 1;
+    std::string eye, target;  ///< "x,y,z"; empty: a named camera
+    std::string ball;         ///< that camera follow follows; empty: the one that moves first
+    std::string overlay;      ///< list of names
+    bool trails = false;      ///< --overlay trails
+    std::string sheet;        ///< "4x3"; empty: frames
+    int jobs = 0;
+    bool resume = false;
+    bool raw = false;
 };
 int run_render(const RenderArgs& args);
 
@@ -54,6 +62,14 @@ struct CheckArgs {
     std::string scene;
 };
 int run_check(const CheckArgs& args);
+
+struct BenchRenderArgs {
+    std::string scene = "scenes/eight_ball_break.toml";
+    int frames = 120;
+    std::string gl = "osmesa";
+    bool json = false;
+};
+int run_bench_render(const BenchRenderArgs& args);
 
 struct ImpactArgs {
     std::string method = "mathavan";

@@ -1,7 +1,9 @@
 // carom render: numbered PNG frames of a scene or of a record.
 #include <fmt/core.h>
 
+#include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include "carom/render/sequence.h"
 #include "commands.h"
@@ -31,11 +33,51 @@ void check_args(const RenderArgs& args) {
         throw UsageError("--at is one instant: it cannot be combined with --from, --to or --frame");
     }
     if (args.frame && *args.frame < 0) throw UsageError("--frame: frames are numbered from 0");
+    if (!args.sheet.empty()) {
+        parse_size(args.sheet);
+        return;
+    }
     try {
         render::frame_path(args.pattern, 0);
     } catch (const render::RenderError& error) {
         throw UsageError(error.what());
     }
+}
+
+// "x,y,z" in m.
+Vec3 parse_point(const char* option, const std::string& text) {
+    double x[3];
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (int k = 0; k < 3; ++k) {
+        const auto [rest, error] = std::from_chars(at, end, x[k]);
+        const bool separated = k < 2 ? rest != end && *rest == ',' : rest == end;
+        if (error != std::errc() || !std::isfinite(x[k]) || !separated)
+            throw UsageError(fmt::format("{}: expected three numbers in m, such as 0.6,-0.5,0.8", option));
+        at = rest + (k < 2 ? 1 : 0);
+    }
+    return {x[0], x[1], x[2]};
+}
+
+void set_view(const RenderArgs& args, const RenderSettings& settings, render::SequenceOptions& options) {
+    if (!args.eye.empty() && args.target.empty()) throw UsageError("--eye needs --target X,Y,Z");
+    if (!args.eye.empty() && !args.camera.empty()) throw UsageError("--camera and --eye exclude each other");
+    options.camera = args.camera.empty() ? settings.camera : args.camera;
+    options.view.ball = args.ball;
+    if (!args.eye.empty()) {
+        options.view.eye = parse_point("--eye", args.eye);
+        options.view.target = parse_point("--target", args.target);
+        if (*options.view.eye == *options.view.target) throw UsageError("--target is where the eye is");
+    } else if (args.camera.empty()) {
+        options.view.eye = settings.eye;
+        options.view.target = settings.target;
+    }
+    try {
+        options.overlay = render::parse_overlay(args.overlay);
+    } catch (const render::RenderError& error) {
+        throw UsageError(fmt::format("--overlay: {}", error.what()));
+    }
+    options.overlay.trails = options.overlay.trails || args.trails;
 }
 
 render::SequenceOptions sequence_options(const RenderArgs& args, const Record& record) {
@@ -48,8 +90,15 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     options.frame = args.frame;
     options.size =
         args.size.empty() ? render::FrameSize{settings.width, settings.height} : parse_size(args.size);
-    options.camera = args.camera.empty() ? settings.camera : args.camera;
+    set_view(args, settings, options);
     options.png_level = args.png_level;
+    options.jobs = args.jobs;
+    options.resume = args.resume;
+    if (args.raw) {
+        options.raw = [](const std::uint8_t* rgb, std::size_t bytes) {
+            print(std::string_view(reinterpret_cast<const char*>(rgb), bytes));
+        };
+    }
     options.backend = render::backend_from_name(args.gl);
     const long frames = checked_frame_count(options.from, options.to.value_or(record.duration), options.fps);
     if (frames < 1) {
@@ -64,12 +113,22 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
 
 }  // namespace
 
+int write_sheet(const RenderArgs& args, const Record& record, const render::SequenceOptions& options) {
+    const render::FrameSize grid = parse_size(args.sheet);
+    const std::string path = args.pattern.find('%') == std::string::npos ? args.pattern : "sheet.png";
+    render::render_sheet(record, options, grid.width, grid.height, path);
+    print(fmt::format("{} pictures: {}\n", grid.width * grid.height, path));
+    return kOk;
+}
+
 int run_render(const RenderArgs& args) {
     check_args(args);
+    if (args.raw && (args.resume || !args.sheet.empty())) throw UsageError("--raw goes with neither --resume nor --sheet");
     if (!args.size.empty()) parse_size(args.size);
     const Record record =
         is_record_file(args.input) ? read_record(args.input) : simulate_plan(plan_scene(args.input), {});
     render::SequenceOptions options = sequence_options(args, record);
+    if (!args.sheet.empty()) return write_sheet(args, record, options);
     ProgressLine line("rendering:");
     options.progress = [&line](long done, long total) {
         throw_if_interrupted();
@@ -77,6 +136,12 @@ int run_render(const RenderArgs& args) {
     };
     const std::vector<render::FrameTiming> timings = render::render_sequence(record, options);
     throw_if_interrupted();
+    if (args.raw) {
+        flush_output();
+        message(fmt::format("{} frames of RGB; in front of a film: ... --raw | ffmpeg -f rawvideo -pix_fmt rgb24 -s {}x{} -framerate {} "
+                            "-i - -pix_fmt yuv420p shot.mp4", timings.size(), options.size.width, options.size.height, options.fps));
+        return kOk;
+    }
     if (timings.size() == 1) {
         print(fmt::format("1 frame: {}\n", render::frame_path(options.pattern, timings.front().frame)));
         return kOk;

@@ -128,9 +128,12 @@ void write_record(const Record& record, const std::string& path) {
                ", \"profiled\": " + (record.costs.empty() ? "false" : "true") +
                ", \"setup_detect_ns\": " + dump(record.setup_detect_ns));
     const RenderSettings& render = record.render;
-    file.write(
-        ",\n\"render\": " +
-        dump({{"fps", render.fps}, {"size", {render.width, render.height}}, {"camera", render.camera}}));
+    Json view = {{"fps", render.fps}, {"size", {render.width, render.height}}, {"camera", render.camera}};
+    if (render.eye && render.target) {
+        view["eye"] = numbers(*render.eye);
+        view["target"] = numbers(*render.target);
+    }
+    file.write(",\n\"render\": " + dump(view));
     file.write(",\n\"table\": " + dump(table_json(record.table)));
     file.write(",\n\"balls\": " + dump(balls_json(record.balls)) + ",\n");
     write_tracks(record, file);

@@ -170,6 +170,10 @@ RenderSettings read_render(const Node& node) {
     render.width = static_cast<int>(size.item(0).integer(1, kLargestSide));
     render.height = static_cast<int>(size.item(1).integer(1, kLargestSide));
     render.camera = node.at("camera").text();
+    if (node.has("eye")) {
+        render.eye = node.at("eye").vector<3>();
+        render.target = node.at("target").vector<3>();
+    }
     return render;
 }
 

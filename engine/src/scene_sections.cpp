@@ -32,7 +32,7 @@ constexpr Choice<ClothSlipSign> kClothSlipSigns[] = {{"consistent", ClothSlipSig
                                                      {"as_published", ClothSlipSign::kAsPublished}};
 constexpr Choice<ClusterModel> kClusterModels[] = {
     {"compliant", ClusterModel::kCompliant}, {"sequential", ClusterModel::kSequential}, {"rigid", ClusterModel::kRigid}};
-constexpr Choice<bool> kCameras[] = {{"top", true}, {"rail", std::nullopt}, {"follow", std::nullopt}};
+constexpr Choice<bool> kCameras[] = {{"top", true}, {"rail", true}, {"player", true}, {"follow", true}};
 
 constexpr Interval kCoordinate = at_least(-kMaxCoordinate, kMaxCoordinate, "m");
 constexpr Interval kFriction = at_least(0.0, kMaxFriction);
@@ -238,8 +238,6 @@ void read_render(const Section& top, Scene& scene) {
     if (!table) return;
     const Section s(*table, top.file(), "render", {"fps", "size", "camera", "eye", "target"});
     RenderSettings& r = scene.render;
-    s.refuse("eye", "use camera = \"top\"");
-    s.refuse("target", "use camera = \"top\"");
     r.fps = s.number("fps", r.fps, more_than(0.0, kMaxFps, "frames per second"));
     const auto size = s.numbers("size", 2, "[width, height]", at_least(1.0, kMaxImageSize, "pixels"));
     if (size) {
@@ -250,6 +248,16 @@ void read_render(const Section& top, Scene& scene) {
     }
     s.choice("camera", true, kCameras);
     r.camera = s.text("camera", r.camera);
+    const auto point = [&](const char* key) -> std::optional<Vec3> {
+        const auto p = s.numbers(key, 3, "[x, y, z]", kCoordinate);
+        return p ? std::optional<Vec3>(Vec3((*p)[0], (*p)[1], (*p)[2])) : std::nullopt;
+    };
+    r.eye = point("eye");
+    r.target = point("target");
+    if (r.eye.has_value() != r.target.has_value())
+        s.fail(r.eye ? "eye" : "target", "render.eye and render.target go together; give both or neither");
+    if (r.eye && s.has("camera")) s.fail("camera", "render.camera and render.eye exclude each other; remove one of the two");
+    if (r.eye && *r.eye == *r.target) s.fail("target", "render.target is where the eye is; move one of the two");
 }
 
 }  // namespace carom::detail

@@ -101,7 +101,8 @@ struct Stop {
 struct RenderSettings {
     double fps = 60.0;
     int width = 1280, height = 720;
-    std::string camera = "top";
+    std::string camera = "top";     ///< top, rail, player or follow; not used where eye and target are set
+    std::optional<Vec3> eye, target;  ///< [m]; both or neither
 };
 
 struct Scene {
