@@ -42,6 +42,8 @@ void add_simulate(CLI::App& app, Action& action) {
                   "Time every event: cost by kind, kernel by ball-ball event, columns in the events file "
                   "(default: off)");
     sub->add_flag("--json", args->json, "Print JSON (default: off)");
+    sub->add_flag("--verify", args->verify,
+                  "Check the laws after every event; a broken one is named, and the exit status is 1 (default: off)");
     sub->callback([args, &action] { action = [args] { return run_simulate(*args); }; });
 }
 

@@ -20,6 +20,7 @@ struct SimulateArgs {
     bool hash = false;
     bool profile = false;
     bool json = false;
+    bool verify = false;  ///< check the laws after every event
 };
 int run_simulate(const SimulateArgs& args);
 

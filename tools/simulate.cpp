@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "carom/engine/output_file.h"
+#include "carom/engine/verify.h"
 #include "commands.h"
 #include "console.h"
 #include "csv.h"
@@ -168,6 +169,20 @@ void write_files(const SimulateArgs& args, const Record& record) {
     }
 }
 
+/// Names the first law that the run broke, if any.
+int verified(const Record& record, const Plan& plan) {
+    const std::optional<Violation> violation = verify(record, plan);
+    if (!violation) return kOk;
+    std::string where = "after the last event";
+    if (violation->event < record.events.size()) {
+        const Event& event = record.events[violation->event];
+        where = fmt::format("event {} ({} {} {}, t = {:.17g} s)", violation->event, name(event.type),
+                            record.tracks.at(static_cast<std::size_t>(event.a)).id, record.partner_id(event), event.time);
+    }
+    message(fmt::format("{} broken at {}: {}", violation->law, where, violation->message));
+    return kFailed;
+}
+
 }  // namespace
 
 int run_simulate(const SimulateArgs& args) {
@@ -178,15 +193,16 @@ int run_simulate(const SimulateArgs& args) {
     options.until = args.until;
     const Record record = simulate_plan(plan, options);
     write_files(args, record);
+    const int status = args.verify ? verified(record, plan) : kOk;
     // --hash stands for the summary, so that alone it is one line and nothing else; --json holds the hash
     // anyway.
     if (args.json) {
         print(result_json(record));
-        return kOk;
+        return status;
     }
     print(args.hash ? record.hash() + "\n" : summary(record, args.scene));
     if (args.profile) print(profile_report(record));
-    return kOk;
+    return status;
 }
 
 }  // namespace carom::tools

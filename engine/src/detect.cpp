@@ -69,6 +69,10 @@ double press_delay(double closing_acceleration, double noise, double horizon) {
     return 2.0 * noise / closing_acceleration + kPressShare * std::min(horizon, 1.0);
 }
 
+// Steps towards a distant ball, and the share of the safe way that each of them takes.
+constexpr int kApproaches = 12;
+constexpr double kApproachShare = 0.99;
+
 // Straight relative path with signed acceleration `alpha` along it: solved in arc length, exact at grazing.
 double along_line(const Relative& m, double reach, double speed, double alpha, double horizon) {
     const Vec2 e = m.v / speed;
@@ -85,6 +89,22 @@ double along_line(const Relative& m, double reach, double speed, double alpha, d
     if (!(end_speed_squared >= 0.0)) return kNever;  // stops short
     const double t = 2.0 * s / (speed + std::sqrt(end_speed_squared));
     return t <= horizon ? refine(m, reach, t, horizon) : kNever;
+}
+
+// The same motion from a later origin, before which the gap cannot close. The coefficients of |r|^2 - reach^2 are as large as the
+// squares of the ways until then; at a graze their rounding would decide (1e-11 m over 100 m) instead of the distance.
+Relative brought_near(Relative m, double reach, double horizon, double& elapsed) {
+    for (int i = 0; i < kApproaches; ++i) {
+        const double gap = length(m.r) - reach;
+        if (!(gap > 0.25 * reach)) break;
+        const double speed = length(m.v), pull = length(m.a);
+        const double step = kApproachShare * 2.0 * gap / (speed + std::sqrt(speed * speed + 2.0 * pull * gap));
+        elapsed += step;
+        if (!(elapsed < horizon)) break;
+        m.r = at(m, step);
+        m.v = rate(m, step);
+    }
+    return m;
 }
 
 // First time within the horizon at which |r| falls to reach, closing or only touching; c0 = |r|^2 - reach^2 now.
@@ -104,9 +124,17 @@ double first_touch(const Relative& m, double reach, double c0, double horizon, b
     } else if (pull == 0.0) {
         return kNever;  // touching, not closing, and on a straight line: parts for good
     }
-    const double c[5] = {c0, 2.0 * dot(m.r, m.v), dot(m.v, m.v) + dot(m.r, m.a), dot(m.v, m.a), 0.25 * dot(m.a, m.a)};
-    const double t = first_descent(c, horizon);
-    return t == kNever ? kNever : refine(m, reach, t, horizon);
+    double elapsed = 0.0;
+    const Relative near = c0 > 0.0 ? brought_near(m, reach, horizon, elapsed) : m;
+    if (elapsed >= horizon) return kNever;
+    if (elapsed > 0.0) {
+        const double d = length(near.r);
+        c0 = (d - reach) * (d + reach);
+    }
+    const double c[5] = {c0, 2.0 * dot(near.r, near.v), dot(near.v, near.v) + dot(near.r, near.a), dot(near.v, near.a),
+                         0.25 * dot(near.a, near.a)};
+    const double t = first_descent(c, horizon - elapsed);
+    return t == kNever ? kNever : refine(m, reach, std::min(horizon, elapsed + t), horizon);
 }
 
 // First contact that closes by more than rounding. A graze below that is passed over; a contact that closes only because

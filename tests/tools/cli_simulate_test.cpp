@@ -42,6 +42,25 @@ TEST_F(CliSimulate, HashAloneIsOneLineTheSameEveryTimeAndOnEveryInstructionSet) 
     EXPECT_EQ(read_record(folder_.file("r.json")).hash() + "\n", first.out);
 }
 
+TEST_F(CliSimulate, VerifyNamesTheBrokenLawAndTheEvent) {
+    const ProcessResult good = run({"--hash", "--verify"});
+    EXPECT_EQ(good.status, 0) << good.err;
+    EXPECT_EQ(good.out, run({"--hash"}).out);
+    EXPECT_EQ(good.err, "");
+    // The published march with few steps gains energy where an impact loses none.
+    const std::string scene = folder_.write("gain.toml",
+                                            "[balls]\ne_b = 1.0\n[physics]\nsubsteps = 100\n"
+                                            "[[ball]]\nid = \"a\"\nposition = [0.3, 0.5]\nvelocity = [0, 3.0]\n"
+                                            "[[ball]]\nid = \"b\"\nposition = [0.3, 0.55716]\n");
+    const ProcessResult bad = carom({"simulate", scene, "--hash", "--verify"});
+    EXPECT_EQ(bad.status, 1);
+    EXPECT_EQ(bad.out.size(), 17u) << "the result is printed all the same";
+    EXPECT_NE(bad.err.find("U4 broken at event "), std::string::npos) << bad.err;
+    EXPECT_NE(bad.err.find("(ball_ball a b, t = "), std::string::npos) << bad.err;
+    EXPECT_NE(bad.err.find("energy rises from "), std::string::npos) << bad.err;
+    EXPECT_EQ(carom({"simulate", scene, "--hash"}).status, 0);
+}
+
 TEST_F(CliSimulate, AnotherSceneHasAnotherHash) {
     std::string text = kSmallScene;
     text.replace(text.find("speed = 4.0"), 11, "speed = 4.1");

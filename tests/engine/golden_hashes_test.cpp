@@ -1,0 +1,56 @@
+// Golden hashes of ten scenes: every bit of events and segments, with every compiler, build type and instruction set.
+// Constants: tests/data/engine/golden_hashes.json. To renew them after a change that is meant to change bits (say which and why
+// in CHANGELOG.md):  CAROM_GOLDEN_PRINT=1 build/release/tests/engine/engine_golden_test > tests/data/engine/golden_hashes.json
+// without the lines of the test runner.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "rack.h"
+#include "support/hard_scenes.h"
+
+namespace carom {
+namespace {
+
+using namespace test;
+
+Scene chaotic_break(ClusterModel clusters) {
+    Scene scene = empty_scene();
+    scene.table = make_table("seven_foot");
+    scene.physics.clusters = clusters;
+    for (const RackedBall& b : make_rack(Rack{}, foot_spot(scene.table), scene.balls.R))
+        add_ball(scene, std::to_string(b.number), b.position.x(), b.position.y());
+    add_ball(scene, "cue", 0.5, 0.5, 0.0, 9.0, Vec3(-40.0, 0.0, 25.0));
+    return scene;
+}
+
+std::vector<std::pair<std::string, Scene>> golden_scenes() {
+    std::vector<std::pair<std::string, Scene>> scenes;
+    for (const char* file : {"draw", "eight_ball_break", "follow", "half_ball_throw", "hello", "nine_ball_break", "stop", "three_cushion"})
+        scenes.emplace_back(file, read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + file + ".toml"));
+    scenes.emplace_back("chaotic break, compliant", chaotic_break(ClusterModel::kCompliant));
+    scenes.emplace_back("chaotic break, sequential", chaotic_break(ClusterModel::kSequential));
+    return scenes;
+}
+
+TEST(Golden, TenScenes) {
+    if (std::getenv("CAROM_GOLDEN_PRINT") != nullptr) {
+        nlohmann::ordered_json all;
+        for (const auto& [label, scene] : golden_scenes()) all[label] = simulate(plan_of(scene)).hash();
+        std::printf("%s\n", all.dump(1).c_str());
+        return;
+    }
+    const auto golden = read_json("golden_hashes.json");
+    const auto scenes = golden_scenes();
+    ASSERT_EQ(golden.size(), scenes.size());
+    for (const auto& [label, scene] : scenes) {
+        for (const kernel::Isa isa : {kernel::Isa::kScalar, kernel::Isa::kV3, kernel::Isa::kV4}) {
+            if (!kernel::available(isa)) continue;
+            const Record record = simulate(make_plan(scene, isa));
+            EXPECT_EQ(record.hash(), golden.at(label).get<std::string>()) << label << " " << kernel::name(isa);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace carom
