@@ -109,7 +109,7 @@ class BatchMarch {
     void march(Group& g) {
         const int filled = g.filled;
         long done = 0, alive = filled;
-        const long patience = n + n / 8 + 64;
+        const long patience = static_cast<long>(n) + n / 8 + 64;
         while (alive > 0) {
             long safe = 1000000000L;
             for (int i = 0; i < filled; ++i) {
