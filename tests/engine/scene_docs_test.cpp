@@ -1,5 +1,5 @@
-// docs/scene_format.md and docs/scene.schema.json against the reader: the same keys, and the defaults that they state are those
-// that the reader takes.
+// docs/scene_format.md and docs/scene.schema.json against the reader: the same keys, and the defaults that
+// they state are those that the reader takes.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -39,10 +39,18 @@ struct Place {
     const char* open;
     const char* name;
 };
-const Place kSections[] = {{"[table]", "table"},     {"[[table.cushion]]", "table.cushion"}, {"[[table.jaw]]", "table.jaw"},
-                           {"[[table.pocket]]", "table.pocket"}, {"[balls]", "balls"},   {"[[ball]]", "ball"},
-                           {"[rack]", "rack"},       {"[cue]", "cue"},         {"[physics]", "physics"},
-                           {"[effects]", "effects"}, {"[stop]", "stop"},       {"[render]", "render"}};
+const Place kSections[] = {{"[table]", "table"},
+                           {"[[table.cushion]]", "table.cushion"},
+                           {"[[table.jaw]]", "table.jaw"},
+                           {"[[table.pocket]]", "table.pocket"},
+                           {"[balls]", "balls"},
+                           {"[[ball]]", "ball"},
+                           {"[rack]", "rack"},
+                           {"[cue]", "cue"},
+                           {"[physics]", "physics"},
+                           {"[effects]", "effects"},
+                           {"[stop]", "stop"},
+                           {"[render]", "render"}};
 
 // What the reader says about a key that it does not know.
 std::set<std::string> keys_of_reader(const Place& place) {
@@ -108,7 +116,8 @@ TEST(SceneDocs, EveryKeyOfTheReaderIsDescribedAndNoOther) {
             bool here = false;  // a list names itself in its first row
             for (const Row& row : rows.at("table")) {
                 const auto list = code(row.cells[0]);
-                if (!list.empty() || row.cells[0].find("list") != std::string::npos) here = !list.empty() && list[0] == "[[" + name + "]]";
+                if (!list.empty() || row.cells[0].find("list") != std::string::npos)
+                    here = !list.empty() && list[0] == "[[" + name + "]]";
                 if (here)
                     for (const std::string& key : code(row.cells[1])) described.insert(key);
             }
@@ -132,34 +141,41 @@ std::string dump(const Scene& s) {
     std::ostringstream out;
     out.precision(17);
     const BallParams& p = s.balls;
-    out << s.table.preset << ' ' << s.ball_preset << ' ' << p.R << ' ' << p.m << ' ' << p.mu_s << ' ' << p.mu_r << ' ' << p.mu_sp << ' '
-        << p.mu_b << ' ' << p.mu_b_more << ' ' << p.e_b << ' ' << p.e_c << ' ' << p.f_c << '\n';
+    out << s.table.preset << ' ' << s.ball_preset << ' ' << p.R << ' ' << p.m << ' ' << p.mu_s << ' '
+        << p.mu_r << ' ' << p.mu_sp << ' ' << p.mu_b << ' ' << p.mu_b_more << ' ' << p.e_b << ' ' << p.e_c
+        << ' ' << p.f_c << '\n';
     for (const BallStart& b : s.ball)
-        out << b.id << ' ' << b.position.transpose() << ' ' << b.velocity.transpose() << ' ' << b.spin.transpose() << '\n';
+        out << b.id << ' ' << b.position.transpose() << ' ' << b.velocity.transpose() << ' '
+            << b.spin.transpose() << '\n';
     if (s.cue) {
         const Cue& c = *s.cue;
-        out << c.ball << ' ' << c.speed << ' ' << c.aim_deg << ' ' << c.elevation_deg << ' ' << c.side << ' ' << c.height << ' ' << c.mass
-            << ' ' << c.end_mass << '\n';
+        out << c.ball << ' ' << c.speed << ' ' << c.aim_deg << ' ' << c.elevation_deg << ' ' << c.side << ' '
+            << c.height << ' ' << c.mass << ' ' << c.end_mass << '\n';
     }
     const Physics& f = s.physics;
-    out << f.gravity << ' ' << name(f.ball_ball) << ' ' << name(f.cushion) << ' ' << name(f.jaw_model()) << ' ' << name(f.cloth_slip) << ' '
-        << name(f.clusters) << ' ' << f.tolerance << ' ' << f.substeps.value_or(-1) << '\n';
-    out << s.stop.time.value_or(-1.0) << ' ' << s.stop.events.value_or(-1) << ' ' << s.render.fps << ' ' << s.render.width << ' '
-        << s.render.height << ' ' << s.render.camera << '\n';
+    out << f.gravity << ' ' << name(f.ball_ball) << ' ' << name(f.cushion) << ' ' << name(f.jaw_model())
+        << ' ' << name(f.cloth_slip) << ' ' << name(f.clusters) << ' ' << f.tolerance << ' '
+        << f.substeps.value_or(-1) << '\n';
+    out << s.stop.time.value_or(-1.0) << ' ' << s.stop.events.value_or(-1) << ' ' << s.render.fps << ' '
+        << s.render.width << ' ' << s.render.height << ' ' << s.render.camera << '\n';
     return out.str();
 }
 
 // The section with nothing in it, and with one key at the default that is stated: the same scene.
 void expect_default(const std::string& section, const std::string& key, const std::string& value) {
     std::string before, after;
-    if (section == "rack") before = "[[ball]]\n[rack]\n";
-    else if (section == "ball") before = "[[ball]]\n";
-    else before = "[[ball]]\n[" + section + "]\n";
+    if (section == "rack")
+        before = "[[ball]]\n[rack]\n";
+    else if (section == "ball")
+        before = "[[ball]]\n";
+    else
+        before = "[[ball]]\n[" + section + "]\n";
     if (section == "rack" && key == "count") before += "game = \"line\"\n";
     if (section == "rack" && key == "rows") before += "game = \"triangle\"\n";
     const std::string with = before + key + " = " + value + "\n";
     ASSERT_EQ(error_of(with), "") << section << "." << key << " = " << value;
-    EXPECT_EQ(dump(parse_scene(with, "s.toml")), dump(parse_scene(before, "s.toml"))) << section << "." << key << " = " << value;
+    EXPECT_EQ(dump(parse_scene(with, "s.toml")), dump(parse_scene(before, "s.toml")))
+        << section << "." << key << " = " << value;
 }
 
 TEST(SceneDocs, DefaultsOfTheDocumentAreThoseOfTheReader) {
@@ -172,7 +188,8 @@ TEST(SceneDocs, DefaultsOfTheDocumentAreThoseOfTheReader) {
             const std::string& cell = row.cells[1];
             const auto quoted = code(cell);
             const std::string value = quoted.empty() ? cell : quoted[0];
-            const bool stated = !quoted.empty() || value.find_first_not_of("0123456789.e-") == std::string::npos;
+            const bool stated =
+                !quoted.empty() || value.find_first_not_of("0123456789.e-") == std::string::npos;
             if (!stated || value == "-" || cell.rfind("as ", 0) == 0) continue;
             expect_default(section, keys[0], value);
             ++checked;
@@ -190,7 +207,8 @@ TEST(SceneDocs, BallPresetsAreThoseOfTheDocument) {
         for (std::size_t k = 0; k < 3; ++k) {
             const std::string base = std::string("[balls]\npreset = \"") + presets[k] + "\"\n";
             EXPECT_EQ(dump(parse_scene(base + keys[0] + " = " + row.cells[k + 1] + "\n[[ball]]\n", "s.toml")),
-                      dump(parse_scene(base + "[[ball]]\n", "s.toml"))) << presets[k] << " " << keys[0];
+                      dump(parse_scene(base + "[[ball]]\n", "s.toml")))
+                << presets[k] << " " << keys[0];
         }
     }
 }
@@ -206,19 +224,23 @@ TEST(SceneDocs, EffectsNameKeysThatExist) {
         if (keyword.empty()) continue;
         keywords.push_back(keyword[0]);
         EXPECT_FALSE(code(row.cells[2]).empty()) << keyword[0];
-        for (const std::string& key : code(row.cells[2])) EXPECT_TRUE(known.count(key)) << keyword[0] << ": " << key;
+        for (const std::string& key : code(row.cells[2]))
+            EXPECT_TRUE(known.count(key)) << keyword[0] << ": " << key;
     }
     EXPECT_EQ(keywords, std::vector<std::string>(std::begin(kEffectKeywords), std::end(kEffectKeywords)));
 }
 
-// The JSON Schema: the same keys as the reader, every default and every choice accepted, and all scenes described by it.
+// The JSON Schema: the same keys as the reader, every default and every choice accepted, and all scenes
+// described by it.
 TEST(SceneSchema, HasTheKeysDefaultsAndChoicesOfTheReader) {
     const Json schema = Json::parse(read_file("docs/scene.schema.json"));
     for (const Place& place : kSections) {
         std::string name = place.name;
         Json object = schema.at("properties");
-        if (name.rfind("table.", 0) == 0) object = object.at("table").at("properties").at(name.substr(6));
-        else object = object.at(name);
+        if (name.rfind("table.", 0) == 0)
+            object = object.at("table").at("properties").at(name.substr(6));
+        else
+            object = object.at(name);
         if (object.at("type") == "array") object = object.at("items");
         EXPECT_EQ(object.at("additionalProperties"), false) << name;
         std::set<std::string> keys;
@@ -230,7 +252,8 @@ TEST(SceneSchema, HasTheKeysDefaultsAndChoicesOfTheReader) {
             for (const Json& choice : value.at("enum")) {
                 const std::string head = name == "ball" ? "" : "[" + name + "]\n";
                 const std::string line = head + key + " = " + choice.dump() + "\n";
-                EXPECT_EQ(error_of(line + (name == "ball" ? "" : "[[ball]]\nposition = [0.3, 0.3]\n")), "") << line;
+                EXPECT_EQ(error_of(line + (name == "ball" ? "" : "[[ball]]\nposition = [0.3, 0.3]\n")), "")
+                    << line;
             }
         }
         EXPECT_EQ(keys, keys_of_reader(place)) << name;

@@ -1,4 +1,5 @@
-// Throw, spin transfer and curved paths in whole shots (docs/physics.md: T10, T11, T15, the throw table 7b, masse).
+// Throw, spin transfer and curved paths in whole shots (docs/physics.md: T10, T11, T15, the throw table 7b,
+// masse).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +14,8 @@ using namespace test;
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
-// One impact at cut angle phi [degrees] of a ball with speed v and spin (about the line of motion's left, and vertical).
+// One impact at cut angle phi [degrees] of a ball with speed v and spin (about the line of motion's left, and
+// vertical).
 double throw_deg(double phi, double v, bool rolls, double w_z, double fall, double e_b = 1.0) {
     Scene scene = empty_scene();
     scene.balls.mu_b = 9.951e-3;
@@ -49,7 +51,8 @@ TEST(Throw, FollowsTheFormulaForAnySpeedCutAndSide) {
             for (const bool rolls : {false, true})
                 for (const double side : {-20.0, 0.0, 7.0, 40.0}) {
                     const double R = 0.028575;
-                    EXPECT_NEAR(throw_deg(phi, v, rolls, side, 1.088), formula_deg(phi, v, rolls, R * side), 1e-9)
+                    EXPECT_NEAR(throw_deg(phi, v, rolls, side, 1.088), formula_deg(phi, v, rolls, R * side),
+                                1e-9)
                         << v << " m/s, " << phi << " deg, rolls " << rolls << ", side " << side;
                 }
 }
@@ -57,13 +60,17 @@ TEST(Throw, FollowsTheFormulaForAnySpeedCutAndSide) {
 // The table of docs/physics.md, 7b, as printed.
 TEST(Throw, Table7b) {
     const double speeds[] = {0.447, 1.341, 3.129};
-    const double table[][7] = {{10, 1.443, .760, 1.443, .349, 1.443, .135}, {20, 2.976, 1.496, 2.976, .687, 2.500, .265},
-                               {30, 4.715, 2.186, 3.549, 1.004, 1.698, .388}, {45, 4.945, 3.091, 2.773, 1.420, 1.127, .549},
+    const double table[][7] = {{10, 1.443, .760, 1.443, .349, 1.443, .135},
+                               {20, 2.976, 1.496, 2.976, .687, 2.500, .265},
+                               {30, 4.715, 2.186, 3.549, 1.004, 1.698, .388},
+                               {45, 4.945, 3.091, 2.773, 1.420, 1.127, .549},
                                {60, 4.621, 3.783, 2.318, 1.739, .895, .672}};
     for (const auto& row : table) {
         for (int k = 0; k < 3; ++k) {
-            EXPECT_NEAR(throw_deg(row[0], speeds[k], false, 0.0, 1.088), row[1 + 2 * k], 6e-4) << row[0] << " stun " << speeds[k];
-            EXPECT_NEAR(throw_deg(row[0], speeds[k], true, 0.0, 1.088), row[2 + 2 * k], 6e-4) << row[0] << " roll " << speeds[k];
+            EXPECT_NEAR(throw_deg(row[0], speeds[k], false, 0.0, 1.088), row[1 + 2 * k], 6e-4)
+                << row[0] << " stun " << speeds[k];
+            EXPECT_NEAR(throw_deg(row[0], speeds[k], true, 0.0, 1.088), row[2 + 2 * k], 6e-4)
+                << row[0] << " roll " << speeds[k];
         }
     }
     const double maxima[][3] = {{0.447, 5.3023, 33.01}, {1.341, 3.8754, 25.37}, {3.129, 2.6977, 18.26}};
@@ -74,7 +81,8 @@ TEST(Throw, Table7b) {
     }
 }
 
-// T11: without slip at the end, throw = atan(tan(phi) / 7); with e_b < 1 the normal speed is smaller: 2 / (1 + e_b) times that.
+// T11: without slip at the end, throw = atan(tan(phi) / 7); with e_b < 1 the normal speed is smaller: 2 / (1
+// + e_b) times that.
 TEST(Throw, NoSlipLimit) {
     EXPECT_NEAR(throw_deg(10.0, 0.1, false, 0.0, 0.0), 1.44295, 1e-5);
     EXPECT_NEAR(throw_deg(20.0, 0.1, false, 0.0, 0.0), 2.97646, 1e-5);
@@ -92,7 +100,8 @@ TEST(Throw, FrictionFallsWithTheSlip) {
     p.mu_b_more = 0.108;
     p.mu_b_fall = 1.088;
     EXPECT_EQ(ball_friction(p, 0.0), 9.951e-3 + 0.108);
-    for (const double u : {0.1, 1.0, 10.0}) EXPECT_NEAR(ball_friction(p, u), 9.951e-3 + 0.108 * std::exp(-1.088 * u), 1e-16);
+    for (const double u : {0.1, 1.0, 10.0})
+        EXPECT_NEAR(ball_friction(p, u), 9.951e-3 + 0.108 * std::exp(-1.088 * u), 1e-16);
     // Marlow's points (recalled: 0.11 at 0.1, 0.06 at 1, 0.01 at 10 m/s).
     EXPECT_NEAR(ball_friction(p, 0.1), 0.11, 0.01);
     EXPECT_NEAR(ball_friction(p, 1.0), 0.06, 0.015);
@@ -117,8 +126,9 @@ TEST(Throw, MathavanTakesTheFrictionOfItsSlip) {
     EXPECT_LE((a.tracks[1].segments.back().w - b.tracks[1].segments.back().w).norm(), 1e-12);
 }
 
-// Masse (T2, Coriolis): a raised cue with side curves the path; the final direction is that of v - (2/7) u, from the point
-// where the cue's line meets the cloth. Without elevation the path of a ball struck with side is straight.
+// Masse (T2, Coriolis): a raised cue with side curves the path; the final direction is that of v - (2/7) u,
+// from the point where the cue's line meets the cloth. Without elevation the path of a ball struck with side
+// is straight.
 TEST(Masse, ElevationAndSideCurveThePath) {
     const auto shot = [](double elevation, double side) {
         Scene scene = empty_scene();
@@ -147,7 +157,8 @@ TEST(Masse, ElevationAndSideCurveThePath) {
             // Halfway the ball has bent less than it will: a parabola, not a corner.
             const BallState middle = record.state_at(0, 0.5 * roll->time);
             EXPECT_NEAR(middle.position.y(), 0.25 * end.position.y(), 1e-12);
-            // The Coriolis construction: w = (5 v / 2R)(-a sin(th) t - a cos(th) z), so the final angle is known in closed form.
+            // The Coriolis construction: w = (5 v / 2R)(-a sin(th) t - a cos(th) z), so the final angle is
+            // known in closed form.
             const SinCos th = sin_cos_deg(elevation);
             EXPECT_NEAR(end.velocity.y() / end.velocity.x(), side * th.sin / th.cos, 1e-12);
         }
