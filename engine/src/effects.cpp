@@ -16,7 +16,8 @@ struct Need {
 
 class Decisions {
   public:
-    Decisions(const Scene& scene, Plan& plan) : scene_(scene), plan_(plan), p_(scene.balls), reach_(reach_of(scene)) {}
+    Decisions(const Scene& scene, Plan& plan)
+        : scene_(scene), plan_(plan), p_(scene.balls), reach_(reach_of(scene)) {}
 
     void run() {
         // Later decisions use earlier ones: what nothing can reach has no friction either.
@@ -50,8 +51,10 @@ class Decisions {
         for (const EffectOverride& o : scene_.effects) {
             if (o.keyword != keyword) continue;
             if (!o.in_force && need.needed) {
-                throw SceneError(scene_.file, o.where,
-                                 fmt::format("effects.{} = false, but the scene needs it: {}; remove the line", keyword, need.reason));
+                throw SceneError(
+                    scene_.file, o.where,
+                    fmt::format("effects.{} = false, but the scene needs it: {}; remove the line", keyword,
+                                need.reason));
             }
             if (o.in_force && !need.needed) {
                 decision.in_force = true;
@@ -62,7 +65,9 @@ class Decisions {
         return decision.in_force;
     }
 
-    Need coefficient(const char* symbol, double value) const { return {value != 0.0, fmt::format("{} = {}", symbol, value)}; }
+    Need coefficient(const char* symbol, double value) const {
+        return {value != 0.0, fmt::format("{} = {}", symbol, value)};
+    }
 
     bool impacts() const { return plan_.pairs || (reach_.cushions && has_cushions()); }
     bool has_cushions() const { return !scene_.table.cushions.empty() || !scene_.table.jaws.empty(); }
@@ -70,7 +75,8 @@ class Decisions {
     Need sliding() const {
         if (scene_.physics.gravity == 0.0) return {false, "gravity = 0: no friction on the cloth"};
         if (p_.mu_s == 0.0) return coefficient("mu_s", p_.mu_s);
-        if (!reach_.slips && !impacts()) return {false, "no ball ever slips: none does at the start, and none meets anything"};
+        if (!reach_.slips && !impacts())
+            return {false, "no ball ever slips: none does at the start, and none meets anything"};
         return coefficient("mu_s", p_.mu_s);
     }
     Need rolling() const {
@@ -85,14 +91,17 @@ class Decisions {
         bool side = scene_.cue && scene_.cue->side != 0.0 && scene_.cue->speed != 0.0;
         for (const BallStart& ball : scene_.ball) side = side || ball.spin.z() != 0.0;
         if (side) return {true, fmt::format("mu_sp = {}; a ball starts with vertical spin", p_.mu_sp)};
-        if (throw_) return {true, fmt::format("mu_sp = {}; friction between balls makes vertical spin", p_.mu_sp)};
+        if (throw_)
+            return {true, fmt::format("mu_sp = {}; friction between balls makes vertical spin", p_.mu_sp)};
         const bool rough = p_.f_c != 0.0 && (plan_.cushion->reads_friction || plan_.jaw->reads_friction);
-        if (cushions_ && rough) return {true, fmt::format("mu_sp = {}; cushion friction makes vertical spin", p_.mu_sp)};
+        if (cushions_ && rough)
+            return {true, fmt::format("mu_sp = {}; cushion friction makes vertical spin", p_.mu_sp)};
         return {false, "no ball can ever have vertical spin: none at the start, no friction in impacts"};
     }
     Need ball_friction_needed() const {
         if (scene_.ball.size() < 2) return {false, "one ball only"};
-        if (scene_.physics.ball_ball == BallBallModel::kElastic) return {false, "model elastic has no friction"};
+        if (scene_.physics.ball_ball == BallBallModel::kElastic)
+            return {false, "model elastic has no friction"};
         if (!p_.ball_friction()) return coefficient("mu_b", 0.0);
         if (!plan_.pairs) return {false, "no two balls can meet: " + reach_.why};
         if (p_.mu_b_more == 0.0) return coefficient("mu_b", p_.mu_b);
@@ -109,22 +118,26 @@ class Decisions {
     Need cushions() const {
         if (!has_cushions()) return {false, "the table has none"};
         if (!reach_.cushions) return {false, "none within reach: " + reach_.why};
-        return {true, fmt::format("{} cushions, {} jaws", scene_.table.cushions.size(), scene_.table.jaws.size())};
+        return {true,
+                fmt::format("{} cushions, {} jaws", scene_.table.cushions.size(), scene_.table.jaws.size())};
     }
-    // A frictionless nose at ball height reflects: the closed forms then are the smooth one. mathavan_2010 is left alone, because
-    // it gets there by an integration that rounds differently.
+    // A frictionless nose at ball height reflects: the closed forms then are the smooth one. mathavan_2010 is
+    // left alone, because it gets there by an integration that rounds differently.
     Need cushion_friction() const {
         if (!has_cushions()) return {false, "the table has no cushions"};
         if (!reach_.cushions) return {false, "no cushion within reach: " + reach_.why};
         const CushionModelInfo &straight = *plan_.cushion, &jaw = *plan_.jaw;
-        if (straight.model == CushionModel::kSmooth && (jaw.model == CushionModel::kSmooth || scene_.table.jaws.empty()))
+        if (straight.model == CushionModel::kSmooth &&
+            (jaw.model == CushionModel::kSmooth || scene_.table.jaws.empty()))
             return {false, "model smooth"};
-        bool level = p_.f_c == 0.0 && straight.model != CushionModel::kMathavan2010 && jaw.model != CushionModel::kMathavan2010;
+        bool level = p_.f_c == 0.0 && straight.model != CushionModel::kMathavan2010 &&
+                     jaw.model != CushionModel::kMathavan2010;
         for (const Cushion& c : scene_.table.cushions) level = level && c.height == p_.R;
         for (const Jaw& j : scene_.table.jaws) level = level && j.height == p_.R;
         if (level) return {false, "f_c = 0 and the noses at ball height: smooth"};
-        return {true, straight.model == jaw.model ? fmt::format("model {}, f_c = {}", straight.name, p_.f_c)
-                                                  : fmt::format("model {}, jaws {}, f_c = {}", straight.name, jaw.name, p_.f_c)};
+        return {true, straight.model == jaw.model
+                          ? fmt::format("model {}, f_c = {}", straight.name, p_.f_c)
+                          : fmt::format("model {}, jaws {}, f_c = {}", straight.name, jaw.name, p_.f_c)};
     }
     Need pockets() const {
         if (scene_.table.pockets.empty()) return {false, "the table has none"};
@@ -133,15 +146,19 @@ class Decisions {
     }
     Need squirt() const {
         if (!scene_.cue) return {false, "no cue"};
-        if (scene_.cue->side == 0.0 || scene_.cue->end_mass == 0.0) return {false, "no side offset, or end mass 0"};
+        if (scene_.cue->side == 0.0 || scene_.cue->end_mass == 0.0)
+            return {false, "no side offset, or end mass 0"};
         return {true, "the cue strikes off centre"};
     }
     Need clusters() const {
         if (scene_.ball.size() < 3) return {false, "fewer than three balls"};
-        if (scene_.physics.clusters == ClusterModel::kSequential) return {false, "clusters = \"sequential\": pair by pair"};
+        if (scene_.physics.clusters == ClusterModel::kSequential)
+            return {false, "clusters = \"sequential\": pair by pair"};
         if (!plan_.pairs) return {false, "no two balls can meet: " + reach_.why};
-        return {true, fmt::format("clusters = \"{}\"; decided per impact: no third ball within reach means the pair alone",
-                                  name(scene_.physics.clusters))};
+        return {true,
+                fmt::format(
+                    "clusters = \"{}\"; decided per impact: no third ball within reach means the pair alone",
+                    name(scene_.physics.clusters))};
     }
 
     // The order in which people know them.

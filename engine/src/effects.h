@@ -5,8 +5,8 @@
 
 namespace carom {
 
-/// Fills Plan::effects and leaves out of the plan what is skipped: lists, coefficients, models. The plan's geometry, balls,
-/// and cushion models must be those of the scene.
+/// Fills Plan::effects and leaves out of the plan what is skipped: lists, coefficients, models. The plan's
+/// geometry, balls, and cushion models must be those of the scene.
 /// @throws SceneError at the line of an [effects] key that refuses what the scene needs
 void decide_effects(const Scene& scene, Plan& plan);
 

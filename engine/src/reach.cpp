@@ -32,7 +32,9 @@ double distance_to(const Cushion& c, const Vec2& p) {
 class Bounds {
   public:
     explicit Bounds(const Scene& scene)
-        : scene_(scene), motion_(motion_params(scene.balls, scene.physics.gravity)), time_(scene.stop.time.value_or(kInfinity)) {
+        : scene_(scene),
+          motion_(motion_params(scene.balls, scene.physics.gravity)),
+          time_(scene.stop.time.value_or(kInfinity)) {
         motion_.sliding = motion_.rolling = motion_.spin_decay = false;  // only the states are asked for
         for (const BallStart& ball : scene.ball) {
             Vec3 v = ball.velocity, w = ball.spin;
@@ -41,7 +43,8 @@ class Bounds {
                 v = struck.v;
                 w = struck.w;
             }
-            starts_.push_back({ball.position.head<2>(), v, w, start_segment(0.0, ball.position, v, w, motion_)});
+            starts_.push_back(
+                {ball.position.head<2>(), v, w, start_segment(0.0, ball.position, v, w, motion_)});
         }
     }
 
@@ -60,14 +63,16 @@ class Bounds {
         if (movers == 1) {
             const std::size_t m = static_cast<std::size_t>(mover);
             radius[m] = alone(starts_[m]);
-            reach.why = fmt::format("ball {}, the only one that moves, goes no farther than {:.3g} m", scene_.ball[m].id, radius[m]);
+            reach.why = fmt::format("ball {}, the only one that moves, goes no farther than {:.3g} m",
+                                    scene_.ball[m].id, radius[m]);
         }
         // The bound of a ball that meets nothing holds as long as it indeed meets nothing.
         if (movers > 1 || meets_cushion(radius) || meets_ball(radius)) {
             const double far = by_energy();
             std::fill(radius.begin(), radius.end(), far);
-            reach.why = far < kInfinity ? fmt::format("no ball goes farther than {:.3g} m until the stop", far)
-                                        : std::string("nothing bounds how far a ball can go");
+            reach.why = far < kInfinity
+                            ? fmt::format("no ball goes farther than {:.3g} m until the stop", far)
+                            : std::string("nothing bounds how far a ball can go");
         }
         reach.pairs = meets_ball(radius);
         reach.cushions = meets_cushion(radius);
@@ -95,10 +100,12 @@ class Bounds {
         const Physics& p = scene_.physics;
         // The published sign, a coarse march and a loose tolerance gain energy.
         const bool coarse = p.substeps ? *p.substeps < 100 : p.tolerance > 1e-6;
-        const bool gains = p.ball_ball == BallBallModel::kMathavan && (p.cloth_slip == ClothSlipSign::kAsPublished || coarse);
+        const bool gains = p.ball_ball == BallBallModel::kMathavan &&
+                           (p.cloth_slip == ClothSlipSign::kAsPublished || coarse);
         if (gains || !(time_ < kInfinity)) return kInfinity;
         double energy = 0.0;
-        for (const Start& s : starts_) energy += 0.5 * s.v.squaredNorm() + 0.2 * motion_.R * motion_.R * s.w.squaredNorm();
+        for (const Start& s : starts_)
+            energy += 0.5 * s.v.squaredNorm() + 0.2 * motion_.R * motion_.R * s.w.squaredNorm();
         return wide(std::sqrt(2.0 * energy) * time_);
     }
 
@@ -106,7 +113,9 @@ class Bounds {
         for (std::size_t i = 0; i < starts_.size(); ++i) {
             for (std::size_t j = 0; j < i; ++j) {
                 if (radius[i] == 0.0 && radius[j] == 0.0) continue;  // both stay, even if they touch
-                if (length(starts_[i].place - starts_[j].place) <= wide(2.0 * motion_.R) + radius[i] + radius[j]) return true;
+                if (length(starts_[i].place - starts_[j].place) <=
+                    wide(2.0 * motion_.R) + radius[i] + radius[j])
+                    return true;
             }
         }
         return false;

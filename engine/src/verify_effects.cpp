@@ -45,20 +45,26 @@ class Skipped {
         if (found_) return;
         std::size_t event = 0;
         while (event < record_.events.size() && record_.events[event].time <= start_) ++event;
-        found_ = Violation{event, "E", fmt::format("the plan skips {}, but ball {} {} after {:.17g} s", keyword, *ball_, what, start_)};
+        found_ = Violation{
+            event, "E",
+            fmt::format("the plan skips {}, but ball {} {} after {:.17g} s", keyword, *ball_, what, start_)};
     }
 
     static Path path_of(const Segment& s, double duration) {
-        return {s.r.head<2>(), s.v.head<2>(), s.a, duration, s.state == MotionState::kRolling, translates(s.state)};
+        return {s.r.head<2>(),      s.v.head<2>(), s.a, duration, s.state == MotionState::kRolling,
+                translates(s.state)};
     }
 
     // A segment that another one replaces at the same instant never came to pass.
     void check_frictions(const Segment& s, bool lasts) {
         if (!lasts) return;
         const BallParams& p = plan_.scene.balls;
-        if (!plan_.spin_decay && p.mu_sp * plan_.gravity != 0.0 && s.w.z() != 0.0) need("spin_decay", "has vertical spin");
-        if (!plan_.sliding && p.mu_s * plan_.gravity != 0.0 && s.state == MotionState::kSliding) need("sliding", "slips");
-        if (!plan_.rolling && p.mu_r * plan_.gravity != 0.0 && s.state == MotionState::kRolling) need("rolling", "rolls");
+        if (!plan_.spin_decay && p.mu_sp * plan_.gravity != 0.0 && s.w.z() != 0.0)
+            need("spin_decay", "has vertical spin");
+        if (!plan_.sliding && p.mu_s * plan_.gravity != 0.0 && s.state == MotionState::kSliding)
+            need("sliding", "slips");
+        if (!plan_.rolling && p.mu_r * plan_.gravity != 0.0 && s.state == MotionState::kRolling)
+            need("rolling", "rolls");
     }
 
     void check_table(const Path& path) {
@@ -66,7 +72,8 @@ class Skipped {
             const Vec2 along = c.to - c.from;
             const double extent = length(along);
             const bool meets = time_to_line(path, c.from, along / extent, extent, R_) < kNever ||
-                               time_to_circle(path, c.from, R_) < kNever || time_to_circle(path, c.to, R_) < kNever;
+                               time_to_circle(path, c.from, R_) < kNever ||
+                               time_to_circle(path, c.to, R_) < kNever;
             if (meets) need("cushions", "meets cushion " + c.id);
         }
         for (const Jaw& j : plan_.scene.table.jaws)
@@ -76,7 +83,8 @@ class Skipped {
     void check_pocket(const Path& path) {
         for (const Pocket& p : plan_.scene.table.pockets) {
             const bool inside = length(path.r - p.center) < p.radius;
-            if (inside || time_to_pocket(path, p.center, p.radius) < kNever) need("pockets", "enters pocket " + p.id);
+            if (inside || time_to_pocket(path, p.center, p.radius) < kNever)
+                need("pockets", "enters pocket " + p.id);
         }
     }
 
@@ -85,7 +93,8 @@ class Skipped {
         for (std::size_t j = 0; j < record_.tracks.size(); ++j) {
             if (static_cast<int>(j) == ball) continue;
             const Path other = path_of(record_.tracks[j].segments.front(), kNever);
-            if (path.moves && time_to_ball(path, other, 2.0 * R_) < kNever) need("ball-ball impacts", "meets ball " + record_.tracks[j].id);
+            if (path.moves && time_to_ball(path, other, 2.0 * R_) < kNever)
+                need("ball-ball impacts", "meets ball " + record_.tracks[j].id);
         }
     }
 

@@ -1,4 +1,5 @@
-// Only what a scene calls for: decisions, refusals, late need, and proofs that a skipped effect changes no bit.
+// Only what a scene calls for: decisions, refusals, late need, and proofs that a skipped effect changes no
+// bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,9 +45,11 @@ Scene random_scene(SplitMix64& rng) {
     for (int i = 0; i < count; ++i) {
         const double x = 0.1 + 0.27 * i + rng.uniform(0.0, 0.15), y = rng.uniform(0.1, 2.3);
         const bool moves = i == 0 || rng.next() % 3 == 0;
-        const double R = scene.balls.R, vx = moves ? rng.uniform(-3.0, 3.0) : 0.0, vy = moves ? rng.uniform(-3.0, 3.0) : 0.0;
+        const double R = scene.balls.R, vx = moves ? rng.uniform(-3.0, 3.0) : 0.0,
+                     vy = moves ? rng.uniform(-3.0, 3.0) : 0.0;
         Vec3 w = rolling_spin(vx, vy, R);
-        if (moves && rng.next() % 2 == 0) w += Vec3(rng.uniform(-50.0, 50.0), rng.uniform(-50.0, 50.0), rng.uniform(-50.0, 50.0));
+        if (moves && rng.next() % 2 == 0)
+            w += Vec3(rng.uniform(-50.0, 50.0), rng.uniform(-50.0, 50.0), rng.uniform(-50.0, 50.0));
         add_ball(scene, std::to_string(i), x, y, vx, vy, w);
     }
     return scene;
@@ -77,26 +80,54 @@ struct Zero {
 const Zero kZeros[] = {
     {"sliding", [](Scene& s, SplitMix64&) { s.balls.mu_s = 0.0; }},
     {"rolling", [](Scene& s, SplitMix64&) { s.balls.mu_r = 0.0; }},
-    {"spin_decay", [](Scene& s, SplitMix64&) { s.balls.mu_b = s.balls.f_c = 0.0; no_side(s); }},
+    {"spin_decay",
+     [](Scene& s, SplitMix64&) {
+         s.balls.mu_b = s.balls.f_c = 0.0;
+         no_side(s);
+     }},
     {"spin_decay", [](Scene& s, SplitMix64&) { s.balls.mu_sp = 0.0; }},
     {"throw", [](Scene& s, SplitMix64&) { s.balls.mu_b = 0.0; }},
-    {"throw", [](Scene& s, SplitMix64&) { s.balls.mu_b = 0.0; s.physics.ball_ball = BallBallModel::kInelastic; }},
+    {"throw",
+     [](Scene& s, SplitMix64&) {
+         s.balls.mu_b = 0.0;
+         s.physics.ball_ball = BallBallModel::kInelastic;
+     }},
     {"cloth_in_impact", [](Scene& s, SplitMix64&) { s.balls.mu_b = 0.0; }},
-    {"cushions", [](Scene& s, SplitMix64&) { s.table = box(900.0, 900.0, 0.036576); s.table.cushions.erase(s.table.cushions.begin());
-                                             s.table.cushions.pop_back(); s.stop.time = 1.5; }},
-    {"cushion_friction", [](Scene& s, SplitMix64& rng) {
-         constexpr CushionModel kClosed[] = {CushionModel::kHan2005, CushionModel::kImpulse, CushionModel::kStronge};
+    {"cushions",
+     [](Scene& s, SplitMix64&) {
+         s.table = box(900.0, 900.0, 0.036576);
+         s.table.cushions.erase(s.table.cushions.begin());
+         s.table.cushions.pop_back();
+         s.stop.time = 1.5;
+     }},
+    {"cushion_friction",
+     [](Scene& s, SplitMix64& rng) {
+         constexpr CushionModel kClosed[] = {CushionModel::kHan2005, CushionModel::kImpulse,
+                                             CushionModel::kStronge};
          s.physics.cushion = kClosed[rng.next() % 3];
          s.balls.f_c = 0.0;
          for (Cushion& c : s.table.cushions) c.height = s.balls.R;
      }},
-    {"pockets", [](Scene& s, SplitMix64& rng) {
+    {"pockets",
+     [](Scene& s, SplitMix64& rng) {
          s.stop.time = 1.0;
-         for (int i = 0; i < 3; ++i) s.table.pockets.push_back({"p", Vec2(500.0 + 5.0 * i, rng.uniform(-500.0, 500.0)), 0.06, 0.08});
+         for (int i = 0; i < 3; ++i)
+             s.table.pockets.push_back({"p", Vec2(500.0 + 5.0 * i, rng.uniform(-500.0, 500.0)), 0.06, 0.08});
      }},
-    {"squirt", [](Scene& s, SplitMix64& rng) { strike_instead(s, rng); s.cue->side = 0.0; }},
-    {"squirt", [](Scene& s, SplitMix64& rng) { strike_instead(s, rng); s.cue->end_mass = 0.0; }},
-    {"clusters", [](Scene& s, SplitMix64&) { while (s.ball.size() > 2) s.ball.pop_back(); }},
+    {"squirt",
+     [](Scene& s, SplitMix64& rng) {
+         strike_instead(s, rng);
+         s.cue->side = 0.0;
+     }},
+    {"squirt",
+     [](Scene& s, SplitMix64& rng) {
+         strike_instead(s, rng);
+         s.cue->end_mass = 0.0;
+     }},
+    {"clusters",
+     [](Scene& s, SplitMix64&) {
+         while (s.ball.size() > 2) s.ball.pop_back();
+     }},
 };
 
 // Skipped, and forced on with nothing to do: the same record, bit for bit.
@@ -108,7 +139,8 @@ TEST(Effects, SkippedAndZeroGiveTheSameRecordOver1000Scenes) {
             Scene scene = random_scene(rng);
             zero.make(scene, rng);
             const Plan skipped = make_plan(scene, kernel::Isa::kScalar);
-            ASSERT_FALSE(decision(skipped, zero.keyword).in_force) << zero.keyword << " " << i << ": " << decision(skipped, zero.keyword).reason;
+            ASSERT_FALSE(decision(skipped, zero.keyword).in_force)
+                << zero.keyword << " " << i << ": " << decision(skipped, zero.keyword).reason;
             scene.effects.push_back({zero.keyword, true, {}});
             const Plan full = make_plan(scene, kernel::Isa::kScalar);
             ASSERT_TRUE(decision(full, zero.keyword).in_force);
@@ -144,8 +176,8 @@ TEST(Effects, RefusingWhatTheSceneNeedsIsAnErrorAtItsLine) {
     for (const char* keyword : kEffectKeywords) {
         const std::string line = std::string(keyword) + " = false";
         const std::string message = error_of("[effects]\n" + line + "\n" + kBreak);
-        const std::string place = "s.toml:2:" + std::to_string(std::string(keyword).size() + 4) + ": effects." + line +
-                                  ", but the scene needs it: ";
+        const std::string place = "s.toml:2:" + std::to_string(std::string(keyword).size() + 4) +
+                                  ": effects." + line + ", but the scene needs it: ";
         EXPECT_EQ(message.rfind(place, 0), 0u) << message;
         EXPECT_NE(message.find("; remove the line"), std::string::npos) << message;
         // Where it is not needed, both are accepted.
@@ -161,7 +193,8 @@ TEST(Effects, ListsHoldWhatIsNeeded) {
     EXPECT_EQ(full.pockets.size(), 6u);
     for (const EffectDecision& d : full.effects) EXPECT_EQ(d.in_force, d.keyword != "airborne") << d.keyword;
     // A slow ball in the middle of the table: it rests after 0.51 m.
-    const std::string slow = "[[ball]]\nposition = [0.635, 1.2]\nvelocity = [0, 0.3]\nspin = [-10.498687664041995, 0, 0]\n";
+    const std::string slow =
+        "[[ball]]\nposition = [0.635, 1.2]\nvelocity = [0, 0.3]\nspin = [-10.498687664041995, 0, 0]\n";
     const Plan alone = plan_of_text(slow);
     EXPECT_TRUE(alone.cushions.empty() && alone.noses.empty() && alone.pockets.empty());
     EXPECT_FALSE(alone.pairs);
@@ -227,10 +260,15 @@ TEST(Effects, LateNeedIsCaught) {
         return violation ? violation->law + ": " + violation->message : std::string();
     };
     EXPECT_EQ(law([](Plan&) {}), "");
-    EXPECT_NE(law([](Plan& p) { p.spin_decay = false; }).find("E: the plan skips spin_decay"), std::string::npos);
+    EXPECT_NE(law([](Plan& p) { p.spin_decay = false; }).find("E: the plan skips spin_decay"),
+              std::string::npos);
     EXPECT_NE(law([](Plan& p) { p.pockets.clear(); }).find("E: the plan skips pockets"), std::string::npos);
     scene.table.pockets.clear();
-    EXPECT_NE(law([](Plan& p) { p.cushions.clear(); p.noses.clear(); }).find("E: the plan skips cushions"), std::string::npos);
+    EXPECT_NE(law([](Plan& p) {
+                  p.cushions.clear();
+                  p.noses.clear();
+              }).find("E: the plan skips cushions"),
+              std::string::npos);
     scene.table = {};
     EXPECT_EQ(law([](Plan&) {}), "");
     EXPECT_NE(law([](Plan& p) { p.pairs = false; }), "");
@@ -258,7 +296,8 @@ TEST(Effects, VanishingFrictionIsNoFriction) {
         const Record some = simulate(plan_of(scene));
         const double t = std::min(none.duration, some.duration);
         for (std::size_t b = 0; b < scene.ball.size(); ++b) {
-            const Vec3 apart = none.state_at(static_cast<int>(b), t).position - some.state_at(static_cast<int>(b), t).position;
+            const Vec3 apart = none.state_at(static_cast<int>(b), t).position -
+                               some.state_at(static_cast<int>(b), t).position;
             EXPECT_LE(apart.norm(), 1e-8) << i;
         }
     }

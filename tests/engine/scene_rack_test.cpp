@@ -187,4 +187,50 @@ TEST(Racks, BallRadiusSetsThePitch) {
     EXPECT_EQ(touching_pairs(s, 2 * 0.02625), 30);
 }
 
+Vec2 of(const carom::Scene& scene, const std::string& id) {
+    for (const carom::BallStart& b : scene.ball)
+        if (b.id == id) return b.position.head<2>();
+    ADD_FAILURE() << "no ball " << id;
+    return Vec2::Zero();
+}
+
+// WPBSA rules, section 1: the spots; the reds behind the pink without touching it.
+TEST(SnookerRack, StandsOnItsSpots) {
+    const carom::Scene s = carom::parse_scene(
+        "[table]\npreset = \"snooker\"\n[balls]\npreset = \"snooker\"\n[rack]\ngame = \"snooker\"\ngap = 1e-3\n", "s.toml");
+    ASSERT_EQ(s.ball.size(), 21u);
+    const double R = 0.02625;
+    EXPECT_LE((of(s, "pink") - Vec2(0.889, 0.75 * 3.569)).norm(), 1e-12);
+    EXPECT_LE((of(s, "blue") - Vec2(0.889, 0.5 * 3.569)).norm(), 1e-12);
+    EXPECT_LE((of(s, "black") - Vec2(0.889, 3.569 - 0.324)).norm(), 1e-12);
+    EXPECT_LE((of(s, "brown") - Vec2(0.889, 0.737)).norm(), 1e-12);
+    EXPECT_LE((of(s, "yellow") - Vec2(0.889 + 0.292, 0.737)).norm(), 1e-12);
+    EXPECT_LE((of(s, "green") - Vec2(0.889 - 0.292, 0.737)).norm(), 1e-12);
+    EXPECT_LE((of(s, "1") - of(s, "pink") - Vec2(0.0, 2.0 * R + 1e-3)).norm(), 1e-12);
+    for (std::size_t i = 0; i < s.ball.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            EXPECT_GE((s.ball[i].position - s.ball[j].position).norm(), 2.0 * R + 1e-3 - 1e-12) << s.ball[i].id << " " << s.ball[j].id;
+}
+
+TEST(TriangleRack, HasItsRows) {
+    for (const int rows : {1, 2, 7}) {
+        const carom::Scene s = carom::parse_scene(
+            "[rack]\ngame = \"triangle\"\ngap = 0\nrows = " + std::to_string(rows) + "\n", "s.toml");
+        ASSERT_EQ(s.ball.size(), static_cast<std::size_t>(rows * (rows + 1) / 2));
+        EXPECT_EQ(s.ball[0].id, "1");
+        const double R = 0.028575;
+        const Vec2 last = s.ball.back().position.head<2>(), apex = s.ball[0].position.head<2>();
+        EXPECT_LE((last - apex - (rows - 1) * R * Vec2(1.0, std::sqrt(3.0))).norm(), 1e-12) << "right corner of the last row";
+    }
+}
+
+TEST(ThreeCushionRack, IsTheOpeningPosition) {
+    const carom::Scene s = carom::parse_scene(
+        "[table]\npreset = \"carom\"\n[balls]\npreset = \"carom\"\n[rack]\ngame = \"three_cushion\"\njitter = 0.01\n", "s.toml");
+    ASSERT_EQ(s.ball.size(), 3u);
+    EXPECT_LE((of(s, "red") - Vec2(0.71, 2.13)).norm(), 1e-12);
+    EXPECT_LE((of(s, "yellow") - Vec2(0.71, 0.71)).norm(), 1e-12);
+    EXPECT_LE((of(s, "white") - Vec2(0.71 - 0.1825, 0.71)).norm(), 1e-12);
+}
+
 }  // namespace

@@ -98,4 +98,50 @@ TEST(SceneShots, HelloMeetsTwice) {
     EXPECT_EQ(r.duration, 4.0);
 }
 
+/// What a ball meets, in order: ids of balls, cushions and jaws.
+std::vector<std::string> met_by(const Record& r, int ball) {
+    std::vector<std::string> met;
+    for (const carom::Event& e : r.events) {
+        const bool table = e.type == EventType::kBallCushion || e.type == EventType::kBallJaw;
+        const bool pair = e.type == EventType::kBallBall || e.type == EventType::kBallCluster;
+        if (table && e.a == ball) met.push_back(r.partner_id(e));
+        if (pair && (e.a == ball || e.b == ball)) met.push_back(r.tracks[static_cast<std::size_t>(e.a == ball ? e.b : e.a)].id);
+    }
+    return met;
+}
+
+TEST(SceneShots, CaromOpeningScores) {
+    const std::vector<std::string> met = met_by(run("carom_opening"), 0);
+    ASSERT_GE(met.size(), 5u);
+    EXPECT_EQ(std::vector<std::string>(met.begin(), met.begin() + 5), (std::vector<std::string>{"red", "c3", "c2", "c1", "yellow"}));
+}
+
+TEST(SceneShots, MasseGoesAroundYellow) {
+    const Record r = run("masse");
+    ASSERT_FALSE(met_by(r, 0).empty());
+    EXPECT_EQ(met_by(r, 0)[0], "red");
+    // Right of yellow first, then left of where it started out for.
+    const double hit = first(r, EventType::kBallBall);
+    double most = 0.0;
+    for (double t = 0.0; t < hit; t += 0.01) most = std::max(most, place(r, 0, t).x());
+    EXPECT_GT(most, 0.80);
+    EXPECT_LT(place(r, 0, hit).x(), 0.72);
+    // Red hides behind yellow: the straight line passes it by less than two radii.
+    const Vec2 to_red = (place(r, 2, 0.0) - place(r, 0, 0.0)).normalized();
+    EXPECT_LT(std::abs(carom::cross(to_red, place(r, 1, 0.0) - place(r, 0, 0.0))), 2.0 * r.balls.R);
+}
+
+TEST(SceneShots, SnookerBreakComesBackToBaulk) {
+    const Record r = run("snooker_break");
+    int cue = -1;
+    for (std::size_t i = 0; i < r.tracks.size(); ++i)
+        if (r.tracks[i].id == "cue") cue = static_cast<int>(i);
+    ASSERT_EQ(r.tracks.size(), 22u);
+    const std::vector<std::string> met = met_by(r, cue);
+    ASSERT_EQ(met.size(), 5u);
+    EXPECT_EQ(std::vector<std::string>(met.begin() + 1, met.end()), (std::vector<std::string>{"c9", "c12", "c3", "c18"}));
+    EXPECT_LT(place(r, cue, r.duration).y(), 1.0);
+    for (const carom::BallTrack& track : r.tracks) EXPECT_EQ(track.pocket, -1) << track.id;
+}
+
 }  // namespace

@@ -1,6 +1,7 @@
 // The tables that come with the program.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -205,6 +206,37 @@ TEST(CaromTable, HasFourRailsAndNothingElse) {
 TEST(Tables, UnknownPresetIsRefused) {
     EXPECT_THROW(make_table("ten_foot"), std::invalid_argument);
     EXPECT_THROW(make_table(""), std::invalid_argument);
+}
+
+// Published sizes; what is not published is said to be so in table_presets.cpp.
+TEST(Tables, PublishedSizes) {
+    EXPECT_NEAR(make_table("eight_foot").length, 2.3368, 1e-12);
+    EXPECT_NEAR(make_table("eight_foot").width, 1.1684, 1e-12);
+    EXPECT_EQ(make_table("snooker").length, 3.569);
+    EXPECT_EQ(make_table("snooker").width, 1.778);
+    EXPECT_NEAR(make_table("snooker").cushions[0].height, 1.4 * 0.02625, 1e-15);
+}
+
+// Every pocket takes a ball that rolls at its middle, and none takes one that rolls along a rail past a corner's jaw.
+TEST(Tables, NewTablesHaveSixPocketsThatABallFits) {
+    for (const char* preset : {"eight_foot", "snooker"}) {
+        const Table t = make_table(preset);
+        const double R = preset == std::string("snooker") ? 0.02625 : 0.028575;
+        ASSERT_EQ(t.pockets.size(), 6u);
+        EXPECT_EQ(t.jaws.size(), 12u);
+        EXPECT_EQ(t.cushions.size(), 18u);
+        for (const carom::Pocket& p : t.pockets) {
+            // The gap between the two nearest jaws.
+            std::vector<double> gaps;
+            for (const carom::Jaw& j : t.jaws) gaps.push_back((j.center - p.center).norm() - j.radius);
+            std::sort(gaps.begin(), gaps.end());
+            EXPECT_LT(gaps[1], 0.1) << preset << " " << p.id;
+            const Vec2 middle(t.width / 2.0, t.length / 2.0);
+            const Vec2 inward = (middle - p.center).normalized();
+            EXPECT_GT(p.radius, R * 0.9);
+            EXPECT_LT((p.center - middle).dot(inward), 0.0);
+        }
+    }
 }
 
 }  // namespace
