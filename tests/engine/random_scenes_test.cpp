@@ -1,5 +1,5 @@
-// Seeded scenes to rest without a violation, and the regressions they brought. What is left of the aim of 10
-// 000: see kOpen. See support/random_scenes.h.
+// Seeded scenes to rest without a violation, and the regressions they brought (support/random_scenes.h). The aim of 10 000
+// scenes is not met: see kOpen.
 #include <gtest/gtest.h>
 
 #include "support/random_scenes.h"
