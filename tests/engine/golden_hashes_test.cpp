@@ -1,7 +1,8 @@
-// Golden hashes of ten scenes: every bit of events and segments, with every compiler, build type and instruction set.
-// Constants: tests/data/engine/golden_hashes.json. To renew them after a change that is meant to change bits (say which and why
-// in CHANGELOG.md):  CAROM_GOLDEN_PRINT=1 build/release/tests/engine/engine_golden_test > tests/data/engine/golden_hashes.json
-// without the lines of the test runner.
+// Golden hashes of ten scenes: every bit of events and segments, with every compiler, build type and
+// instruction set. Constants: tests/data/engine/golden_hashes.json. To renew them after a change that is
+// meant to change bits (say which and why in CHANGELOG.md):  CAROM_GOLDEN_PRINT=1
+// build/release/tests/engine/engine_golden_test > tests/data/engine/golden_hashes.json without the lines of
+// the test runner.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -26,7 +27,8 @@ Scene chaotic_break(ClusterModel clusters) {
 
 std::vector<std::pair<std::string, Scene>> golden_scenes() {
     std::vector<std::pair<std::string, Scene>> scenes;
-    for (const char* file : {"draw", "eight_ball_break", "follow", "half_ball_throw", "hello", "nine_ball_break", "stop", "three_cushion"})
+    for (const char* file : {"draw", "eight_ball_break", "follow", "half_ball_throw", "hello",
+                             "nine_ball_break", "stop", "three_cushion"})
         scenes.emplace_back(file, read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + file + ".toml"));
     scenes.emplace_back("chaotic break, compliant", chaotic_break(ClusterModel::kCompliant));
     scenes.emplace_back("chaotic break, sequential", chaotic_break(ClusterModel::kSequential));
@@ -47,7 +49,8 @@ TEST(Golden, TenScenes) {
         for (const kernel::Isa isa : {kernel::Isa::kScalar, kernel::Isa::kV3, kernel::Isa::kV4}) {
             if (!kernel::available(isa)) continue;
             const Record record = simulate(make_plan(scene, isa));
-            EXPECT_EQ(record.hash(), golden.at(label).get<std::string>()) << label << " " << kernel::name(isa);
+            EXPECT_EQ(record.hash(), golden.at(label).get<std::string>())
+                << label << " " << kernel::name(isa);
         }
     }
 }

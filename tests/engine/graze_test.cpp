@@ -24,14 +24,17 @@ Vec2 turned(const Vec2& a, const Vec2& e) {
 }
 
 Path random_path(SplitMix64& rng, int kind, double speed) {
-    const SinCos c = sin_cos(rng.uniform(0.0, 6.283185307179586)), d = sin_cos(rng.uniform(0.0, 6.283185307179586));
+    const SinCos c = sin_cos(rng.uniform(0.0, 6.283185307179586)),
+                 d = sin_cos(rng.uniform(0.0, 6.283185307179586));
     const Vec2 v = speed * Vec2(c.cos, c.sin);
-    if (kind == 0) return {{0, 0}, {0, 0}, {0, 0}, kNever, true, false};                                     // at rest
-    if (kind == 1) return {{0, 0}, v, v * (-0.0981 / speed), speed / 0.0981, true, true};                    // rolls
-    return {{0, 0}, v, 1.962 * Vec2(d.cos, d.sin), rng.uniform(0.05, 1.0) * speed / 1.962, false, true};     // slides
+    if (kind == 0) return {{0, 0}, {0, 0}, {0, 0}, kNever, true, false};                   // at rest
+    if (kind == 1) return {{0, 0}, v, v * (-0.0981 / speed), speed / 0.0981, true, true};  // rolls
+    return {{0, 0}, v,   1.962 * Vec2(d.cos, d.sin), rng.uniform(0.05, 1.0) * speed / 1.962,
+            false,  true};  // slides
 }
 
-// Puts ball 2 so that at the time t the two pass at right angles to their relative velocity, `depth` within reach.
+// Puts ball 2 so that at the time t the two pass at right angles to their relative velocity, `depth` within
+// reach.
 void set_to_graze(const Path& one, Path& two, double t, double depth, SplitMix64& rng) {
     const Vec2 v = (two.v - one.v) + t * (two.a - one.a);
     const double speed = length(v);
@@ -44,7 +47,10 @@ TEST(Graze, OracleKnowsAStraightLine) {
     const GrazeOracle oracle({0, 0}, {0, 0}, {0, 0}, {kReach + 1.0, 0}, {-2.0, 0}, {0, 0}, kReach, 1.0);
     EXPECT_TRUE(oracle.meet().hit);
     EXPECT_NEAR(oracle.meet().time, 0.5, 1e-15);
-    EXPECT_FALSE(GrazeOracle({0, 0}, {0, 0}, {0, 0}, {kReach + 1.0, kReach + 1e-15}, {-2.0, 0}, {0, 0}, kReach, 1.0).meet().hit);
+    EXPECT_FALSE(
+        GrazeOracle({0, 0}, {0, 0}, {0, 0}, {kReach + 1.0, kReach + 1e-15}, {-2.0, 0}, {0, 0}, kReach, 1.0)
+            .meet()
+            .hit);
 }
 
 TEST(Graze, HundredThousandPairs) {

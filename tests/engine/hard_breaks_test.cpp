@@ -20,7 +20,8 @@ TEST_P(Breaks, NoneExplodes) {
     for (int i = 0; i < 250; ++i) {
         char text[400];
         std::snprintf(text, sizeof text,
-                      "[rack]\ngame = \"eight_ball\"\ngap = %.17g\nseed = %d\n[[ball]]\nid = \"cue\"\nposition = [%.17g, 0.5]\n"
+                      "[rack]\ngame = \"eight_ball\"\ngap = %.17g\nseed = %d\n[[ball]]\nid = "
+                      "\"cue\"\nposition = [%.17g, 0.5]\n"
                       "velocity = [0, %.17g]\n",
                       GetParam(), i + 1, 0.635 + rng.uniform(-0.012, 0.012), rng.uniform(5.0, 12.0));
         SCOPED_TRACE(text);

@@ -36,14 +36,18 @@ TEST(HardContacts, HeadOnBreakOnTheAxis) {
         double worst = 0.0;
         for (std::size_t i = 0; i < cue; ++i) {
             for (std::size_t j = 0; j < cue; ++j) {
-                if (scene.ball[j].position.x() != -scene.ball[i].position.x() || scene.ball[j].position.y() != scene.ball[i].position.y()) continue;
-                const Vec3 p = record.state_at(static_cast<int>(i), wave->time).velocity, q = record.state_at(static_cast<int>(j), wave->time).velocity;
+                if (scene.ball[j].position.x() != -scene.ball[i].position.x() ||
+                    scene.ball[j].position.y() != scene.ball[i].position.y())
+                    continue;
+                const Vec3 p = record.state_at(static_cast<int>(i), wave->time).velocity,
+                           q = record.state_at(static_cast<int>(j), wave->time).velocity;
                 worst = std::max({worst, std::abs(p.x() + q.x()), std::abs(p.y() - q.y())});
             }
         }
         report("H1 asymmetry", worst);
         EXPECT_LE(worst, 1e-12);
-        // Not exactly 0: the order in which the sums of the cluster's contacts run decides the last bit of the apex ball's spin.
+        // Not exactly 0: the order in which the sums of the cluster's contacts run decides the last bit of
+        // the apex ball's spin.
         for (const double t : {0.2, 0.5, 1.0}) {
             const double x = std::abs(record.state_at(static_cast<int>(cue), t).position.x());
             report("H1 cue ball off the axis", x);
@@ -90,7 +94,8 @@ TEST(HardContacts, ThreeBallsInTableCoordinates) {
             ASSERT_EQ(record.events.size(), 1u);
             ASSERT_EQ(record.events[0].type, EventType::kBallCluster);
             const double t = record.events[0].time, tolerance = model == ClusterModel::kRigid ? 1e-12 : 1e-6;
-            const Vec3 a = record.state_at(0, t).velocity, b = record.state_at(1, t).velocity, cue = record.state_at(2, t).velocity;
+            const Vec3 a = record.state_at(0, t).velocity, b = record.state_at(1, t).velocity,
+                       cue = record.state_at(2, t).velocity;
             EXPECT_NEAR(cue.y(), 1.0 - 0.6 * (1.0 + restitution), tolerance);
             EXPECT_NEAR(a.norm(), 0.2 * std::sqrt(3.0) * (1.0 + restitution), tolerance);
             EXPECT_NEAR(a.x(), -b.x(), 1e-12);
@@ -133,7 +138,8 @@ TEST(HardContacts, CradleIsOneEvent) {
 
 // H6: two balls squeeze a resting one, and a cue ball meets a line of three from its side.
 TEST(HardContacts, SqueezedBall) {
-    for (const ClusterModel model : {ClusterModel::kCompliant, ClusterModel::kSequential, ClusterModel::kRigid}) {
+    for (const ClusterModel model :
+         {ClusterModel::kCompliant, ClusterModel::kSequential, ClusterModel::kRigid}) {
         SCOPED_TRACE(name(model));
         Scene scene = frictionless();
         scene.balls.e_b = 0.95;
@@ -145,8 +151,10 @@ TEST(HardContacts, SqueezedBall) {
         add_ball(scene, "a", 0.0, 0.0);
         add_ball(scene, "c", 2.0 * R, 0.0, -1.0, 0.0);
         const Record record = run_verified(scene);
-        const Vec3 b = record.state_at(0, 0.1).velocity, a = record.state_at(1, 0.1).velocity, c = record.state_at(2, 0.1).velocity;
-        if (model == ClusterModel::kSequential) continue;  // pair by pair: a convention, symmetric for neither order
+        const Vec3 b = record.state_at(0, 0.1).velocity, a = record.state_at(1, 0.1).velocity,
+                   c = record.state_at(2, 0.1).velocity;
+        if (model == ClusterModel::kSequential)
+            continue;  // pair by pair: a convention, symmetric for neither order
         EXPECT_LE(std::abs(a.x()), 1e-15);
         EXPECT_EQ(b.x(), -c.x());
         EXPECT_NEAR(b.x(), -0.95, 1e-6);
@@ -159,7 +167,8 @@ TEST(HardContacts, SqueezedBall) {
     add_ball(line, "cue", 0.0, -0.3, 0.0, 1.0);
     for (int k = 0; k < 3; ++k) add_ball(line, std::to_string(k), 0.0, 2.0 * k * R);
     const Record record = run_verified(line);
-    for (int k = 0; k < 4; ++k) EXPECT_NEAR(record.state_at(k, record.duration).velocity.y(), expected[k], 1e-6) << k;
+    for (int k = 0; k < 4; ++k)
+        EXPECT_NEAR(record.state_at(k, record.duration).velocity.y(), expected[k], 1e-6) << k;
 }
 
 }  // namespace

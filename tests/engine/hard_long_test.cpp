@@ -11,7 +11,8 @@ namespace {
 
 using namespace test;
 
-// H32: 1e6 events of 16 elastic disks: energy and distances stay. In ten parts, each from where the last one stopped.
+// H32: 1e6 events of 16 elastic disks: energy and distances stay. In ten parts, each from where the last one
+// stopped.
 TEST(HardLong, AMillionEvents) {
     Scene scene = frictionless();
     scene.table = box(1.0, 2.0, 0.036576);
@@ -20,8 +21,11 @@ TEST(HardLong, AMillionEvents) {
     while (scene.ball.size() < 16) {
         const double x = rng.uniform(0.05, 0.95), y = rng.uniform(0.05, 1.95);
         bool free = true;
-        for (const BallStart& b : scene.ball) free = free && std::hypot(b.position.x() - x, b.position.y() - y) > 0.1;
-        if (free) add_ball(scene, std::to_string(scene.ball.size()), x, y, rng.uniform(-2.0, 2.0), rng.uniform(-2.0, 2.0));
+        for (const BallStart& b : scene.ball)
+            free = free && std::hypot(b.position.x() - x, b.position.y() - y) > 0.1;
+        if (free)
+            add_ball(scene, std::to_string(scene.ball.size()), x, y, rng.uniform(-2.0, 2.0),
+                     rng.uniform(-2.0, 2.0));
     }
     const auto energy = [](const Scene& s) {
         double sum = 0.0;

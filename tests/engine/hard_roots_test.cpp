@@ -15,8 +15,8 @@ using namespace test;
 
 // H10: a rolling ball that grazes: hit or miss by the sign of h, the gap to ulps.
 TEST(HardRoots, Graze) {
-    const double depths[] = {1e-4,  1e-5,  1e-6,  1e-7,  1e-8,  1e-9,  1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15, 1e-16,
-                             0.0,   -1e-16, -1e-15, -1e-14, -1e-12, -1e-10, -1e-8};
+    const double depths[] = {1e-4,  1e-5,  1e-6,  1e-7, 1e-8,   1e-9,   1e-10,  1e-11,  1e-12,  1e-13,
+                             1e-14, 1e-15, 1e-16, 0.0,  -1e-16, -1e-15, -1e-14, -1e-12, -1e-10, -1e-8};
     double worst_gap = 0.0, worst_time = 0.0;
     for (const double v : {1.0, 5.0, 0.5}) {
         for (const double h : depths) {
@@ -63,7 +63,8 @@ TEST(HardRoots, CatchUp) {
         const Record record = run_verified(scene);
         const Event* hit = first(record, EventType::kBallBall);
         const double relative = v - 1.0;
-        if (dv < 1e-14) continue;  // the closing speed is 5 ulp of the speeds: rounding, either answer is right
+        if (dv < 1e-14)
+            continue;  // the closing speed is 5 ulp of the speeds: rounding, either answer is right
         ASSERT_NE(hit, nullptr);
         const double error = std::abs(hit->time * relative / gap - 1.0);
         report("H11 relative error of the time, in ulp of v / dv", error * relative / 2.2e-16);
@@ -80,9 +81,11 @@ TEST(HardRoots, ScalesBitwise) {
         scene.balls.R *= L;
         scene.physics.clusters = ClusterModel::kSequential;
         const double V = L / T;
-        add_ball(scene, "a", Vec3(0.0, 0.0, 0.028575) * L, Vec3(0.3, 3.0, 0.0) * V, Vec3(20.0, -50.0, 10.0) / T);
+        add_ball(scene, "a", Vec3(0.0, 0.0, 0.028575) * L, Vec3(0.3, 3.0, 0.0) * V,
+                 Vec3(20.0, -50.0, 10.0) / T);
         add_ball(scene, "b", Vec3(0.05, 0.5, 0.028575) * L, Vec3(0.0, 0.5, 0.0) * V);
-        add_ball(scene, "c", Vec3(0.1, 0.9, 0.028575) * L, Vec3(-0.2, -2.0, 0.0) * V, Vec3(0.0, 40.0, 0.0) / T);
+        add_ball(scene, "c", Vec3(0.1, 0.9, 0.028575) * L, Vec3(-0.2, -2.0, 0.0) * V,
+                 Vec3(0.0, 40.0, 0.0) / T);
         return run_verified(scene);
     };
     const Record one = scaled(1.0, 1.0);
@@ -94,11 +97,14 @@ TEST(HardRoots, ScalesBitwise) {
             EXPECT_EQ(other.events[i].type, one.events[i].type);
             EXPECT_EQ(other.events[i].time, one.events[i].time * T) << i;
             const int a = one.events[i].a;
-            EXPECT_EQ(other.state_at(a, other.events[i].time).position, one.state_at(a, one.events[i].time).position * L) << i;
+            EXPECT_EQ(other.state_at(a, other.events[i].time).position,
+                      one.state_at(a, one.events[i].time).position * L)
+                << i;
         }
     }
     // A tiny leading coefficient is never divided by.
-    const Path slow{{0.0, 0.0}, {0.0, 40.0}, {0.0, -1e-11}, 1e3, true, true}, rest{{0.0, 2 * 0.0286 + 1e-12}, {0, 0}, {0, 0}, kNever, true, false};
+    const Path slow{{0.0, 0.0}, {0.0, 40.0}, {0.0, -1e-11}, 1e3, true, true},
+        rest{{0.0, 2 * 0.0286 + 1e-12}, {0, 0}, {0, 0}, kNever, true, false};
     const double t = time_to_ball(slow, rest, 2 * 0.0286);
     EXPECT_NEAR(t, (rest.r.y() - 2 * 0.0286) / 40.0, 1e-18);
 }
@@ -112,7 +118,8 @@ TEST(HardRoots, StopsAtContact) {
         add_ball(scene, "b", 2.0 * R + 0.5, 0.0);
         const Record record = run_verified(scene);
         EXPECT_LE(record.events.size(), 6u);
-        const double gap = record.state_at(1, record.duration).position.x() - record.state_at(0, record.duration).position.x() - 2.0 * R;
+        const double gap = record.state_at(1, record.duration).position.x() -
+                           record.state_at(0, record.duration).position.x() - 2.0 * R;
         report("H13 final gap", gap);
         EXPECT_GE(gap, -1e-15);
         EXPECT_LE(gap, 1e-9);
@@ -210,8 +217,10 @@ TEST(HardRoots, JawRattle) {
             Scene scene = friction ? empty_scene() : frictionless();
             scene.balls.e_c = e;
             const double L = 4.0;
-            scene.table.cushions = {{"l", {0.0, 0.0}, {-L * ten.sin, L * ten.cos}, 0.036576}, {"r", {L * ten.sin, L * ten.cos}, {0.0, 0.0}, 0.036576}};
-            add_ball(scene, "a", 1e-3, 3.0, 0.0, -2.0, friction ? rolling_spin(0.0, -2.0, scene.balls.R) : Vec3::Zero());
+            scene.table.cushions = {{"l", {0.0, 0.0}, {-L * ten.sin, L * ten.cos}, 0.036576},
+                                    {"r", {L * ten.sin, L * ten.cos}, {0.0, 0.0}, 0.036576}};
+            add_ball(scene, "a", 1e-3, 3.0, 0.0, -2.0,
+                     friction ? rolling_spin(0.0, -2.0, scene.balls.R) : Vec3::Zero());
             scene.stop.time = 3.0;
             const Record record = run_verified(scene);
             const int bounces = count(record, EventType::kBallCushion);
@@ -246,7 +255,8 @@ TEST(HardRoots, Ties) {
         Scene scene = frictionless();
         const double R = scene.balls.R;
         scene.table.cushions = {{"c", {-1.0, 0.0}, {1.0, 0.0}, 0.036576}};
-        std::vector<Pocket> pockets{{"left", {-0.25, 0.5 + R}, 0.25, 0.08}, {"right", {0.25, 0.5 + R}, 0.25, 0.08}};
+        std::vector<Pocket> pockets{{"left", {-0.25, 0.5 + R}, 0.25, 0.08},
+                                    {"right", {0.25, 0.5 + R}, 0.25, 0.08}};
         add_ball(scene, "a", 0.0, 1.0 + R, 0.0, -1.0);
         // Its path is tangent to neither: both circles are entered at their common point's height.
         pockets[0].radius = pockets[1].radius = 0.3125;
@@ -254,7 +264,9 @@ TEST(HardRoots, Ties) {
         scene.table.pockets = pockets;
         const Record record = run_verified(scene);
         ASSERT_EQ(count(record, EventType::kBallPocket), 1);
-        EXPECT_EQ(record.table.pockets[static_cast<std::size_t>(first(record, EventType::kBallPocket)->b)].id, "left") << "by place, not by number";
+        EXPECT_EQ(record.table.pockets[static_cast<std::size_t>(first(record, EventType::kBallPocket)->b)].id,
+                  "left")
+            << "by place, not by number";
         // Pocket before cushion.
         Scene tie = frictionless();
         tie.table.cushions = scene.table.cushions;

@@ -23,11 +23,13 @@ Table centred_box(double half_w, double half_l) {
     table.length = 2.0 * half_l;
     table.corner = Vec2(-half_w, -half_l);
     const Vec2 a(-half_w, -half_l), b(-half_w, half_l), c(half_w, half_l), d(half_w, -half_l);
-    table.cushions = {{"c1", a, b, 0.036576}, {"c2", b, c, 0.036576}, {"c3", c, d, 0.036576}, {"c4", d, a, 0.036576}};
+    table.cushions = {
+        {"c1", a, b, 0.036576}, {"c2", b, c, 0.036576}, {"c3", c, d, 0.036576}, {"c4", d, a, 0.036576}};
     return table;
 }
 
-/// A break that ends in chaos: 15 racked balls 1e-4 m apart and a cue ball off the axis, on a table around the origin.
+/// A break that ends in chaos: 15 racked balls 1e-4 m apart and a cue ball off the axis, on a table around
+/// the origin.
 Scene chaotic_break(ClusterModel clusters = ClusterModel::kCompliant) {
     Scene scene = empty_scene();
     scene.table = centred_box(0.635, 1.27);
@@ -85,9 +87,11 @@ TEST(HardRuns, MirrorsAndQuarterTurnBitwise) {
         for (const Case& c : cases) {
             SCOPED_TRACE(std::string(name(model)) + ", " + c.name);
             const Record two = run_verified(mapped(scene, c.map, c.determinant));
-            // The sum over a cluster runs in the order of places, which a mirror turns round: there to rounding, through 30 events.
+            // The sum over a cluster runs in the order of places, which a mirror turns round: there to
+            // rounding, through 30 events.
             const bool bitwise = model == ClusterModel::kSequential;
-            const std::size_t events = bitwise ? one.events.size() : std::min<std::size_t>(one.events.size(), 30);
+            const std::size_t events =
+                bitwise ? one.events.size() : std::min<std::size_t>(one.events.size(), 30);
             if (bitwise) {
                 ASSERT_EQ(two.events.size(), one.events.size());
             }
@@ -97,7 +101,9 @@ TEST(HardRuns, MirrorsAndQuarterTurnBitwise) {
                     ASSERT_EQ(two.events[k].time, one.events[k].time) << "event " << k;
                 }
                 for (int i = 0; i < 16; ++i)
-                    worst = std::max(worst, (two.state_at(i, one.events[k].time).position - c.map(one.state_at(i, one.events[k].time).position)).norm());
+                    worst = std::max(worst, (two.state_at(i, one.events[k].time).position -
+                                             c.map(one.state_at(i, one.events[k].time).position))
+                                                .norm());
             }
             report("H34", worst);
             EXPECT_LE(worst, bitwise ? 0.0 : 1e-11);
@@ -115,8 +121,11 @@ TEST(HardRuns, TimeReversal) {
         while (scene.ball.size() < 10) {
             const double x = rng.uniform(-0.6, 0.6), y = rng.uniform(-1.2, 1.2);
             bool free = true;
-            for (const BallStart& b : scene.ball) free = free && std::hypot(b.position.x() - x, b.position.y() - y) > 0.1;
-            if (free) add_ball(scene, std::to_string(scene.ball.size()), x, y, rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0));
+            for (const BallStart& b : scene.ball)
+                free = free && std::hypot(b.position.x() - x, b.position.y() - y) > 0.1;
+            if (free)
+                add_ball(scene, std::to_string(scene.ball.size()), x, y, rng.uniform(-1.0, 1.0),
+                         rng.uniform(-1.0, 1.0));
         }
         scene.stop.events = events;
         const Record forth = run_verified(scene);
@@ -125,7 +134,8 @@ TEST(HardRuns, TimeReversal) {
         Scene longer = scene;
         longer.stop.events = events + 1;
         const Record next = simulate(plan_of(longer));
-        const double t = 0.5 * (next.events[static_cast<std::size_t>(events) - 1].time + next.events.back().time);
+        const double t =
+            0.5 * (next.events[static_cast<std::size_t>(events) - 1].time + next.events.back().time);
         Scene back = scene;
         back.stop = {};
         back.stop.time = t;
@@ -137,7 +147,8 @@ TEST(HardRuns, TimeReversal) {
         const Record home = run_verified(back);
         double worst = 0.0;
         for (std::size_t i = 0; i < scene.ball.size(); ++i)
-            worst = std::max(worst, (home.state_at(static_cast<int>(i), t).position - scene.ball[i].position).norm());
+            worst = std::max(
+                worst, (home.state_at(static_cast<int>(i), t).position - scene.ball[i].position).norm());
         report("H35", worst);
         EXPECT_LE(worst, 1e-10) << events;
     }
@@ -145,7 +156,8 @@ TEST(HardRuns, TimeReversal) {
 
 // H36: another order of the balls, the same bits.
 TEST(HardRuns, PermutedIdsBitwise) {
-    for (const ClusterModel model : {ClusterModel::kSequential, ClusterModel::kCompliant, ClusterModel::kRigid}) {
+    for (const ClusterModel model :
+         {ClusterModel::kSequential, ClusterModel::kCompliant, ClusterModel::kRigid}) {
         SCOPED_TRACE(name(model));
         const Scene scene = chaotic_break(model);
         Scene permuted = scene;
@@ -168,7 +180,8 @@ TEST(HardRuns, PermutedIdsBitwise) {
 // H39: stopped, written, read and taken up again: the same bits; also in the middle of sustained contacts.
 TEST(HardRuns, Restart) {
     std::vector<std::pair<std::string, Scene>> scenes;
-    for (const ClusterModel model : {ClusterModel::kCompliant, ClusterModel::kSequential}) scenes.emplace_back(name(model), chaotic_break(model));
+    for (const ClusterModel model : {ClusterModel::kCompliant, ClusterModel::kSequential})
+        scenes.emplace_back(name(model), chaotic_break(model));
     Scene push = empty_scene();
     push.table = box(1.0, 2.0, 0.036576);
     const double R = push.balls.R;
@@ -183,10 +196,12 @@ TEST(HardRuns, Restart) {
         const Record whole = run_verified(scene);
         const auto events = static_cast<std::int64_t>(whole.events.size());
         int stops_in_hold = 0;
-        std::set<std::int64_t> stops{1, 2, 3, 4, 5, 7, 10, events / 3, events / 2, 2 * events / 3, events - 2};
+        std::set<std::int64_t> stops{1,         2, 3, 4, 5, 7, 10, events / 3, events / 2, 2 * events / 3,
+                                     events - 2};
         for (std::size_t k = 0; k < whole.events.size(); ++k) {
             const EventType type = whole.events[k].type;
-            if (type == EventType::kBallBallHold || type == EventType::kBallCushionHold) stops.insert(static_cast<std::int64_t>(k) + 1);
+            if (type == EventType::kBallBallHold || type == EventType::kBallCushionHold)
+                stops.insert(static_cast<std::int64_t>(k) + 1);
         }
         for (const std::int64_t stop : stops) {
             if (stop < 1 || stop >= events) continue;
@@ -210,8 +225,9 @@ TEST(HardRuns, Restart) {
 // H40: one seed, one hash; another seed, another rack.
 TEST(HardRuns, SeededRacks) {
     const auto run = [](int seed) {
-        const std::string text = "[rack]\ngame = \"eight_ball\"\njitter = 1e-4\nseed = " + std::to_string(seed) +
-                                 "\n[[ball]]\nid = \"cue\"\nposition = [0.635, 0.5]\nvelocity = [0.01, 9]\n[stop]\nevents = 40\n";
+        const std::string text =
+            "[rack]\ngame = \"eight_ball\"\njitter = 1e-4\nseed = " + std::to_string(seed) +
+            "\n[[ball]]\nid = \"cue\"\nposition = [0.635, 0.5]\nvelocity = [0.01, 9]\n[stop]\nevents = 40\n";
         return simulate(plan_of(parse_scene(text, "rack.toml"))).hash();
     };
     const std::string first_hash = run(1);

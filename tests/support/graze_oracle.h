@@ -1,5 +1,5 @@
-// When do two balls meet? A derivative cascade in __float128, independent of the engine's: the roots of f'' split f', the roots
-// of f' split f, every piece by bisection down to 2^-110 of the horizon.
+// When do two balls meet? A derivative cascade in __float128, independent of the engine's: the roots of f''
+// split f', the roots of f' split f, every piece by bisection down to 2^-110 of the horizon.
 #pragma once
 
 #include <array>
@@ -14,19 +14,21 @@ __extension__ typedef __float128 Quad;
 struct Meeting {
     bool hit = false;
     double time = 0.0;
-    double depth = 0.0;  ///< m: how far within reach the centres get before the horizon (from the distance; negative: the gap left)
+    double depth = 0.0;  ///< m: how far within reach the centres get before the horizon (from the distance;
+                         ///< negative: the gap left)
 };
 
 class GrazeOracle {
   public:
     /// Relative motion r + v t + a t^2 / 2 with all inputs exact doubles.
-    GrazeOracle(const Vec2& r1, const Vec2& v1, const Vec2& a1, const Vec2& r2, const Vec2& v2, const Vec2& a2, double reach, double horizon)
+    GrazeOracle(const Vec2& r1, const Vec2& v1, const Vec2& a1, const Vec2& r2, const Vec2& v2,
+                const Vec2& a2, double reach, double horizon)
         : reach_(reach), T_(horizon) {
         const Quad rx = Quad(r2.x()) - Quad(r1.x()), ry = Quad(r2.y()) - Quad(r1.y());
         const Quad vx = Quad(v2.x()) - Quad(v1.x()), vy = Quad(v2.y()) - Quad(v1.y());
         const Quad ax = Quad(a2.x()) - Quad(a1.x()), ay = Quad(a2.y()) - Quad(a1.y());
-        f_ = {rx * rx + ry * ry - reach_ * reach_, 2 * (rx * vx + ry * vy), vx * vx + vy * vy + rx * ax + ry * ay, vx * ax + vy * ay,
-              (ax * ax + ay * ay) / 4};
+        f_ = {rx * rx + ry * ry - reach_ * reach_, 2 * (rx * vx + ry * vy),
+              vx * vx + vy * vy + rx * ax + ry * ay, vx * ax + vy * ay, (ax * ax + ay * ay) / 4};
     }
 
     Meeting meet() const {
@@ -53,7 +55,9 @@ class GrazeOracle {
 
   private:
     using Poly = std::array<Quad, 5>;
-    static Quad value(const Poly& p, const Quad& t) { return p[0] + t * (p[1] + t * (p[2] + t * (p[3] + t * p[4]))); }
+    static Quad value(const Poly& p, const Quad& t) {
+        return p[0] + t * (p[1] + t * (p[2] + t * (p[3] + t * p[4])));
+    }
     static Poly derivative(const Poly& p) { return {p[1], 2 * p[2], 3 * p[3], 4 * p[4], 0}; }
     static Quad bisect(const Poly& p, Quad lo, Quad hi) {
         const bool positive = value(p, lo) > 0;

@@ -39,9 +39,14 @@ class RandomScene {
 
     void choose_table() {
         switch (whole(4)) {
-            case 0: break;  // endless cloth
-            case 1: scene_.table = box(1.0, 2.0, 0.036576); break;
-            default: scene_.table = make_table("seven_foot"); break;
+            case 0:
+                break;  // endless cloth
+            case 1:
+                scene_.table = box(1.0, 2.0, 0.036576);
+                break;
+            default:
+                scene_.table = make_table("seven_foot");
+                break;
         }
     }
 
@@ -55,18 +60,23 @@ class RandomScene {
         b.e_c = one_of<double>({0.85, 0.85, 0.0, 0.5, 1.0});
         b.f_c = one_of<double>({0.2, 0.2, 0.0});
         Physics& p = scene_.physics;
-        p.ball_ball = one_of<BallBallModel>({BallBallModel::kMathavan, BallBallModel::kMathavan, BallBallModel::kInelastic, BallBallModel::kElastic});
-        // The published march gains energy by construction where nothing is lost: 1e-4 of it at N = 1000 and e = 1.
+        p.ball_ball = one_of<BallBallModel>({BallBallModel::kMathavan, BallBallModel::kMathavan,
+                                             BallBallModel::kInelastic, BallBallModel::kElastic});
+        // The published march gains energy by construction where nothing is lost: 1e-4 of it at N = 1000 and
+        // e = 1.
         if (p.ball_ball == BallBallModel::kMathavan && b.e_b == 1.0) b.e_b = 0.95;
         p.cushion = chance(0.7) ? CushionModel::kHan2005 : CushionModel::kSmooth;
-        p.clusters = one_of<ClusterModel>({ClusterModel::kCompliant, ClusterModel::kCompliant, ClusterModel::kSequential, ClusterModel::kRigid});
+        p.clusters = one_of<ClusterModel>({ClusterModel::kCompliant, ClusterModel::kCompliant,
+                                           ClusterModel::kSequential, ClusterModel::kRigid});
     }
 
     // No overlap with balls, cushions or jaws, and outside the pockets' circles.
     bool fits(const Vec2& r) const {
         const double R = scene_.balls.R;
         const Table& t = scene_.table;
-        if (t.width > 0.0 && (r.x() < R - 1e-13 || r.y() < R - 1e-13 || r.x() > t.width - R + 1e-13 || r.y() > t.length - R + 1e-13)) return false;
+        if (t.width > 0.0 && (r.x() < R - 1e-13 || r.y() < R - 1e-13 || r.x() > t.width - R + 1e-13 ||
+                              r.y() > t.length - R + 1e-13))
+            return false;
         for (const BallStart& b : scene_.ball)
             if ((Vec2(b.position.x(), b.position.y()) - r).norm() < 2.0 * R - 1e-14) return false;
         for (const Jaw& j : t.jaws)
@@ -98,17 +108,26 @@ class RandomScene {
         const Vec2 anywhere(uniform(R, w - R), uniform(R, l - R));
         const int kind = whole(5);
         if (kind <= 1 && !scene_.ball.empty()) {  // touches another ball, or nearly
-            const Vec3& p = scene_.ball[static_cast<std::size_t>(whole(static_cast<int>(scene_.ball.size())))].position;
+            const Vec3& p =
+                scene_.ball[static_cast<std::size_t>(whole(static_cast<int>(scene_.ball.size())))].position;
             const double gap = one_of<double>({0.0, 0.0, 1e-15, 1e-9, 1e-5});
             place(Vec2(p.x(), p.y()) + (2.0 * R + gap) * direction());
         } else if (kind == 2 && t.width > 0.0) {  // on a cushion, sometimes in a corner
             const double gap = one_of<double>({0.0, 0.0, 1e-12, 1e-7});
             const bool corner = chance(0.15);
             switch (whole(4)) {
-                case 0: place({R + gap, corner ? R : anywhere.y()}); break;
-                case 1: place({w - R - gap, corner ? l - R : anywhere.y()}); break;
-                case 2: place({corner ? w - R : anywhere.x(), R + gap}); break;
-                default: place({corner ? R : anywhere.x(), l - R - gap}); break;
+                case 0:
+                    place({R + gap, corner ? R : anywhere.y()});
+                    break;
+                case 1:
+                    place({w - R - gap, corner ? l - R : anywhere.y()});
+                    break;
+                case 2:
+                    place({corner ? w - R : anywhere.x(), R + gap});
+                    break;
+                default:
+                    place({corner ? R : anywhere.x(), l - R - gap});
+                    break;
             }
         } else if (kind == 3 && !t.jaws.empty()) {  // against a jaw
             const Jaw& j = one_of<Jaw>(t.jaws);
@@ -135,12 +154,19 @@ class RandomScene {
             const bool last = &b == &scene_.ball.back();
             if (!chance(moving) && !(last && !any)) continue;
             any = true;
-            const Vec2 v = direction() * one_of<double>({0.0, 1e-6, 0.05, 1.0, 5.0, 12.0}) * uniform(0.5, 1.0);
+            const Vec2 v =
+                direction() * one_of<double>({0.0, 1e-6, 0.05, 1.0, 5.0, 12.0}) * uniform(0.5, 1.0);
             b.velocity = Vec3(v.x(), v.y(), 0.0);
             switch (whole(3)) {
-                case 0: b.spin = rolling_spin(v.x(), v.y(), R); break;
-                case 1: b.spin = Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)) * one_of<double>({1e-3, 10.0, 100.0, 400.0}); break;
-                default: break;
+                case 0:
+                    b.spin = rolling_spin(v.x(), v.y(), R);
+                    break;
+                case 1:
+                    b.spin = Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)) *
+                             one_of<double>({1e-3, 10.0, 100.0, 400.0});
+                    break;
+                default:
+                    break;
             }
         }
     }
@@ -155,13 +181,16 @@ inline std::string dump(const Scene& scene) {
     std::string text;
     char line[400];
     const BallParams& b = scene.balls;
-    std::snprintf(line, sizeof line, "table %s %g, mu_s %g mu_r %g mu_sp %g mu_b %g e_b %g e_c %g f_c %g, models %s %s %s\n",
-                  scene.table.preset.c_str(), scene.table.width, b.mu_s, b.mu_r, b.mu_sp, b.mu_b, b.e_b, b.e_c, b.f_c,
-                  name(scene.physics.ball_ball), name(scene.physics.cushion), name(scene.physics.clusters));
+    std::snprintf(line, sizeof line,
+                  "table %s %g, mu_s %g mu_r %g mu_sp %g mu_b %g e_b %g e_c %g f_c %g, models %s %s %s\n",
+                  scene.table.preset.c_str(), scene.table.width, b.mu_s, b.mu_r, b.mu_sp, b.mu_b, b.e_b,
+                  b.e_c, b.f_c, name(scene.physics.ball_ball), name(scene.physics.cushion),
+                  name(scene.physics.clusters));
     text += line;
     for (const BallStart& s : scene.ball) {
-        std::snprintf(line, sizeof line, "%s: r %.17g %.17g v %.17g %.17g w %.17g %.17g %.17g\n", s.id.c_str(), s.position.x(),
-                      s.position.y(), s.velocity.x(), s.velocity.y(), s.spin.x(), s.spin.y(), s.spin.z());
+        std::snprintf(line, sizeof line, "%s: r %.17g %.17g v %.17g %.17g w %.17g %.17g %.17g\n",
+                      s.id.c_str(), s.position.x(), s.position.y(), s.velocity.x(), s.velocity.y(),
+                      s.spin.x(), s.spin.y(), s.spin.z());
         text += line;
     }
     return text;
@@ -172,7 +201,9 @@ inline std::string what_breaks(const Scene& scene) {
     const Plan plan = plan_of(scene);
     try {
         const Record record = simulate(plan);
-        if (const auto violation = verify(record, plan)) return violation->law + " at event " + std::to_string(violation->event) + ": " + violation->message;
+        if (const auto violation = verify(record, plan))
+            return violation->law + " at event " + std::to_string(violation->event) + ": " +
+                   violation->message;
         if (record.stopped != StopReason::kAtRest) return "did not come to rest";
     } catch (const std::exception& error) {
         return error.what();

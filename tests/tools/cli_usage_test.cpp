@@ -24,7 +24,7 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         {{"simulate"}, "SCENE is required; see carom simulate --help"},
         {{"simulate", folder.file("none.toml")}, "none.toml: "},
         {{"simulate", "/"}, "/: "},
-        {{"simulate", scene, "--verify"}, "--verify"},
+        {{"simulate", scene, "--verified"}, "--verified"},
         {{"simulate", scene, "--until", "soon"}, "soon"},
         {{"simulate", scene, "--until", "-1"}, "--until: expected a number of seconds of at least 0"},
         {{"simulate", scene, "--until", "nan"}, "--until: expected a number of seconds of at least 0"},
