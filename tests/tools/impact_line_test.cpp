@@ -17,7 +17,9 @@ using Json = nlohmann::json;
 ImpactSettings settings(ImpactSettings::Method method = ImpactSettings::Method::kMathavan) {
     ImpactSettings s;
     s.method = method;
+    s.substeps = 1000;
     s.march = kernel::march_function(kernel::Isa::kScalar);
+    s.by_tolerance = kernel::tolerance_function(kernel::Isa::kScalar);
     return s;
 }
 
@@ -61,6 +63,23 @@ TEST(ImpactLine, BallBallIsTheKernelsResult) {
     EXPECT_EQ(out["steps"], expected.steps);
     EXPECT_GT(out["ns"].get<double>(), 0.0);
     EXPECT_EQ(out.size(), 6u);
+}
+
+TEST(ImpactLine, ByToleranceUnlessSubstepsAreAskedFor) {
+    ImpactSettings by_tolerance = settings();
+    by_tolerance.substeps.reset();
+    const ImpactAnswer answer = answer_impact(ball_ball_line().dump(), by_tolerance);
+    ASSERT_TRUE(answer.ok) << answer.json;
+    const Json out = Json::parse(answer.json);
+    kernel::Ball ball1{{0.0, 0.0, 0.028575}, {1.0, 0.25, 0.0}, {0.0, 3.0, 4.0}};
+    kernel::Ball ball2{{0.05715, 0.0, 0.028575}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    kernel::ImpactResult expected{};
+    kernel::tolerance_function(kernel::Isa::kScalar)(ball1, ball2, {0.028575, 0.17, 0.2, 0.2, 0.05, 0.95}, 1e-6, expected);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(out["v1"][i].get<double>(), expected.v1[i]);
+        EXPECT_EQ(out["w2"][i].get<double>(), expected.w2[i]);
+    }
+    EXPECT_LT(out["steps"].get<long>(), 100);
 }
 
 TEST(ImpactLine, ElasticExchangesTheNormalVelocities) {
