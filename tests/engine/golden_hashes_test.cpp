@@ -19,8 +19,8 @@ Scene chaotic_break(ClusterModel clusters) {
     Scene scene = empty_scene();
     scene.table = make_table("seven_foot");
     scene.physics.clusters = clusters;
-    for (const RackedBall& b : make_rack(Rack{}, foot_spot(scene.table), scene.balls.R))
-        add_ball(scene, std::to_string(b.number), b.position.x(), b.position.y());
+    for (const RackedBall& b : make_rack(Rack{}, scene.table, scene.balls.R))
+        add_ball(scene, b.id, b.position.x(), b.position.y());
     add_ball(scene, "cue", 0.5, 0.5, 0.0, 9.0, Vec3(-40.0, 0.0, 25.0));
     return scene;
 }

@@ -17,8 +17,8 @@ Scene axis_break(double gap, double cue_x, double speed) {
     Scene scene = empty_scene();
     Rack rack;
     rack.gap = gap;
-    for (const RackedBall& b : make_rack(rack, Vec2(0.0, 0.0), scene.balls.R))
-        add_ball(scene, std::to_string(b.number), b.position.x(), b.position.y());
+    for (const RackedBall& b : make_rack(rack, spot_at(Vec2(0.0, 0.0)), scene.balls.R))
+        add_ball(scene, b.id, b.position.x(), b.position.y());
     add_ball(scene, "cue", cue_x, -1.0, 0.0, speed);
     return scene;
 }
