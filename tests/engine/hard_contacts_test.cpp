@@ -17,7 +17,7 @@ Scene axis_break(double gap, double cue_x, double speed) {
     Scene scene = empty_scene();
     Rack rack;
     rack.gap = gap;
-    for (const RackedBall& b : make_rack(rack, cloth_with_foot_spot(Vec2(0.0, 0.0)), scene.balls.R))
+    for (const RackedBall& b : make_rack(rack, spot_at(Vec2(0.0, 0.0)), scene.balls.R))
         add_ball(scene, b.id, b.position.x(), b.position.y());
     add_ball(scene, "cue", cue_x, -1.0, 0.0, speed);
     return scene;

@@ -36,7 +36,7 @@ Scene chaotic_break(ClusterModel clusters = ClusterModel::kCompliant) {
     scene.physics.clusters = clusters;
     Rack rack;
     rack.jitter = 2e-5;
-    for (const RackedBall& b : make_rack(rack, cloth_with_foot_spot(Vec2(0.0, 0.6)), scene.balls.R))
+    for (const RackedBall& b : make_rack(rack, spot_at(Vec2(0.0, 0.6)), scene.balls.R))
         add_ball(scene, b.id, b.position.x(), b.position.y());
     add_ball(scene, "cue", 0.0123, -0.6, 0.0, 8.0, Vec3(-30.0, 5.0, 20.0));
     return scene;

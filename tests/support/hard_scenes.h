@@ -12,6 +12,13 @@ inline void report(const char* what, double residual) {
     if (std::getenv("CAROM_RESIDUALS") != nullptr) std::printf("residual %s: %.3g\n", what, residual);
 }
 
+/// A table of no size whose foot spot is `apex`: for racks that stand where a case wants them.
+inline Table spot_at(const Vec2& apex) {
+    Table table;
+    table.corner = apex;
+    return table;
+}
+
 /// No friction anywhere, balls and cushions elastic.
 inline Scene frictionless() {
     Scene scene = empty_scene();

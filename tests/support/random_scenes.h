@@ -9,7 +9,7 @@
 
 #include "carom/engine/math.h"
 #include "rack.h"
-#include "support/engine_cases.h"
+#include "support/hard_scenes.h"
 #include "support/random_impacts.h"
 
 namespace carom::test {
@@ -143,7 +143,7 @@ class RandomScene {
         rack.gap = one_of<double>({0.0, 1e-12, 1e-6, 1e-4});
         rack.seed = 1 + static_cast<std::uint64_t>(whole(1000));
         const Vec2 spot(0.5 * scene_.table.width, 0.72 * scene_.table.length);
-        for (const RackedBall& b : make_rack(rack, cloth_with_foot_spot(spot), scene_.balls.R)) place(b.position);
+        for (const RackedBall& b : make_rack(rack, spot_at(spot), scene_.balls.R)) place(b.position);
     }
 
     void set_in_motion() {
