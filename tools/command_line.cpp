@@ -80,7 +80,7 @@ void add_render(CLI::App& app, Action& action) {
         ->check(CLI::IsMember({"top", "rail", "player", "follow"}));
     CLI::Option* eye = sub->add_option("--eye", args->eye, "Free camera: where the eye is, in m (default: a named camera)")
                            ->type_name("X,Y,Z");
-    sub->add_option("--target", args->target, "Free camera: what it looks at, in m")->type_name("X,Y,Z")->needs(eye);
+    sub->add_option("--target", args->target, "Free camera: what it looks at, in m (default: a named camera)")->type_name("X,Y,Z")->needs(eye);
     sub->add_option("--ball", args->ball, "Ball that camera follow follows (default: the one that moves first)")->type_name("ID");
     sub->add_option("--overlay", args->overlay,
                     "Drawn over the picture: trails, events, spin, ghost, clock, margin, or all (default: none)")

@@ -91,7 +91,8 @@ class Solver {
     void settle() {
         for (std::size_t k = 0; k < bodies_.size(); ++k) {
             HeldBall& ball = group_.balls[k];
-            if (bodies_[k].mode != Mode::kRolling || length(planar(ball.v)) > noise_) continue;
+            const double slowest = std::max(noise_, kHoldRest * motion_.roll);
+            if (bodies_[k].mode != Mode::kRolling || length(planar(ball.v)) > slowest) continue;
             bodies_[k].mode = Mode::kResting;
             ball.v = Vec3::Zero();
             ball.w.x() = ball.w.y() = 0.0;

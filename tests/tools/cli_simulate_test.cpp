@@ -144,7 +144,7 @@ TEST_F(CliSimulate, ProfileAddsColumnsAndAReport) {
     for (const std::string& line : lines) {
         if (line.find(",ball_ball,") == std::string::npos) continue;
         ++marches;
-        EXPECT_EQ(line.substr(line.rfind(',')), ",march") << line;
+        EXPECT_EQ(line.substr(line.rfind(',')), ",collocation_4") << line;
     }
     EXPECT_GT(marches, 0);
     const Json json = Json::parse(run({"--profile", "--json"}).out);

@@ -55,6 +55,8 @@ inline constexpr long kRigidSweeps = 100000;
 /// [s] Longest and shortest interval over which a sustained contact keeps the directions of its forces where they turn.
 inline constexpr double kHoldRefresh = 2e-3;
 inline constexpr double kHoldShortest = 1e-5;
+/// [s] A held ball that its own rolling friction would stop within this time rests: it would stop again and again.
+inline constexpr double kHoldRest = 1e-12;
 /// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the straight line.
 inline constexpr double kHoldStraight = 1e-9;
 
