@@ -45,7 +45,7 @@ struct Subject {
     std::function<void(const Impact&, int n, ImpactResult&)> one;
     std::function<void(const BatchArrays&, int n)> many;
     std::vector<double> five_ns, random_ns;  ///< per impact, one entry a round
-    int five_calls = 1;
+    int five_calls = 1, random_calls = 1;
 
     /// Every impact of the set once.
     void run(const ImpactSet& set, int n, std::vector<ImpactResult>& results) const {
@@ -134,6 +134,10 @@ void time_all(std::vector<Subject>& list, const ImpactSet& five, const ImpactSet
     for (Subject& s : list) {  // warm up, and find how many calls make a block worth a probe
         const double once = s.time(five, kSubsteps, 2, results) * static_cast<double>(s.size(five));
         s.five_calls = std::max(1, static_cast<int>(3e5 / std::max(once, 1.0)));
+        // Random impacts likewise. A run so long that one will do needs no warming either.
+        const double all = s.time(random, kSubsteps, 1, results) * static_cast<double>(s.size(random));
+        s.random_calls = std::max(1, static_cast<int>(5e6 / std::max(all, 1.0)));
+        s.random_calls = std::min(s.random_calls, 4);
     }
     test::SplitMix64 rng(99);
     std::vector<std::size_t> order(list.size());
@@ -147,7 +151,8 @@ void time_all(std::vector<Subject>& list, const ImpactSet& five, const ImpactSet
             // The first run brings code and data back into the caches.
             s.time(five, kSubsteps, 1, results);
             s.five_ns.push_back(s.time(five, kSubsteps, s.five_calls, results));
-            s.random_ns.push_back(s.time(random, kSubsteps, 1, results));
+            if (s.random_calls > 1) s.time(random, kSubsteps, 1, results);
+            s.random_ns.push_back(s.time(random, kSubsteps, s.random_calls, results));
             if (progress.due())
                 progress.show_bar(round * static_cast<long>(order.size()) + static_cast<long>(k),
                                   repeats * static_cast<long>(order.size()));

@@ -1,11 +1,13 @@
-// Batches by tolerance: easy impacts in lanes, harder ones compacted into lanes of 8 nodes, the rest one at a
-// time. Built once per instruction set, together with the single kernel; CAROM_TOLERANCE_BATCH_NAME is the
+// Batches by tolerance: easy impacts in lanes, harder ones compacted into lanes of 8 nodes, those that need
+// stretches in lanes that take up the next impact as soon as one is through; special cases one at a time.
+// Built once per instruction set, together with the single kernel; CAROM_TOLERANCE_BATCH_NAME is the
 // function's name.
 #pragma once
 
 #include "carom/kernel/batch.h"
 #include "tolerance_impl.h"
 #include "tolerance_wide.h"
+#include "tolerance_wide_adaptive.h"
 
 namespace carom::kernel {
 namespace {
@@ -28,6 +30,8 @@ enum Input {
 };
 constexpr int kOutputs = 12;
 constexpr long kChunk = 256;
+constexpr int kMostHard = 256;  // impacts that need stretches are solved once so many have come together
+constexpr int kPool = 128;      // of these, so many at once
 
 struct BatchView {
     const double* in[kInputs];
@@ -67,9 +71,9 @@ inline BatchView view(const ImpactBatch& batch, const ImpactBatchResult& result)
 
 // What a block of lanes leaves: results, and which lanes have one or are worth a try with more nodes.
 struct BlockResult {
-    alignas(64) double out[kOutputs][kWidth];
-    alignas(64) double sweeps[kWidth];
-    WideMask done, resolvable;
+    Wide out[kOutputs];
+    Wide sweeps;
+    WideMask good, done, resolvable;
 };
 
 struct WideFrame {
@@ -113,12 +117,20 @@ CAROM_INLINE Wide wide_ellipse(Wide sum_of_axes) {
     return 0.5 * (S + wide_root(S * S - 4.0));
 }
 
-// pose(), the guards of solve(), the collocation and apply() in lanes.
-template <int N>
-inline void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, double tolerance,
-                        BlockResult& block) {
+// Impacts in their canonical form, scaled by the approach speed.
+struct WidePose {
     WideFrame f;
-    WideMask good = wide_enter(in, f);
+    WideModel m;
+    WideStart start;
+    Wide n;                      // approach speed
+    WideMask second, from_rest;  // ball 2 is pressed on the cloth; its cloth slip is zero
+    WideMask good;               // an impact between balls with slip between them
+};
+
+// As enter_frame and pose().
+CAROM_INLINE void wide_pose(const Wide (&in)[kInputs], ClothSlip cloth_slip, double tolerance, WidePose& q) {
+    const WideMask entered = wide_enter(in, q.f);
+    const WideFrame& f = q.f;
     const Wide R = in[kRadius], n = f.y1 - f.y2, scale = 1.0 / n;
     const Wide x = f.x1 - f.x2 - R * (f.wz1 + f.wz2), z = R * (f.wx1 + f.wx2);
     const WideMask second = z < 0.0;
@@ -128,40 +140,27 @@ inline void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, double 
     const Wide a = published ? vx + wy : vx - wy, b = published ? vy - wx : vy + wx;
     const Wide noise = kSlipNoise * ((magnitude(vx) + magnitude(wy)) + (magnitude(vy) + magnitude(wx)));
     const Wide slight = choose(noise > (0.01 * tolerance) * n, noise, (0.01 * tolerance) * n);
-    const WideMask from_rest = a * a + b * b <= slight * slight;
-    WideModel m;
-    m.mu_b = in[kMuB];
-    m.mu_s = choose(second, in[kMuS2], in[kMuS1]);
-    m.e_b = in[kEB];
-    m.sigma = published ? 2.5 : -2.5;
-    m.kappa = published ? -1.5 : 3.5;
-    WideStart start;
-    start.x = x * scale;
-    start.z = magnitude(z) * scale;
-    start.a = choose(from_rest, wide(0.0), a * scale);
-    start.b = choose(from_rest, wide(0.0), b * scale);
-    good &= start.z > 0.0;
+    q.from_rest = a * a + b * b <= slight * slight;
+    q.m.mu_b = in[kMuB];
+    q.m.mu_s = choose(second, in[kMuS2], in[kMuS1]);
+    q.m.e_b = in[kEB];
+    q.m.sigma = published ? 2.5 : -2.5;
+    q.m.kappa = published ? -1.5 : 3.5;
+    q.start.x = x * scale;
+    q.start.z = magnitude(z) * scale;
+    q.start.a = choose(q.from_rest, wide(0.0), a * scale);
+    q.start.b = choose(q.from_rest, wide(0.0), b * scale);
+    q.n = n;
+    q.second = second;
+    q.good = entered & (q.start.z > 0.0);
+}
 
-    const Wide guess = 0.5 * (1.0 + m.e_b);
-    const Wide s = wide_root(start.x * start.x + start.z * start.z), cx = start.x / s, cz = start.z / s;
-    const Wide fall = m.mu_b * ((7.0 * cx * cx + 5.0 * cz * cz) + 2.7 * (m.mu_s * cz));
-    const Wide rho_s = wide_ellipse(4.0 * s / (fall * guess) - 2.0);
-    const Wide a1 = start.a + guess * (m.mu_b * cx), b1 = start.b + guess * (1.0 - m.sigma * (m.mu_b * cz));
-    const Wide u0 = wide_root(start.a * start.a + start.b * start.b), u1 = wide_root(a1 * a1 + b1 * b1);
-    const Wide bend = guess * ((published ? 1.5 : 3.5) * (m.mu_s * m.mu_b));
-    const Wide beside = wide_ellipse(2.0 * ((u0 + u1) - bend) / (guess * (1.0 + 2.5 * m.mu_b)));
-    const Wide rho_u = choose(from_rest, wide(1e30), beside);
-    const Wide s2 = rho_s * rho_s, u2 = rho_u * rho_u, s4 = s2 * s2, u4 = u2 * u2;
-    const Wide size_s = kSizeS * m.mu_b, size_u = kSizeU * (m.mu_b * m.mu_s);
-    block.resolvable =
-        good & (tolerance * (s4 * s4 * s4) >= size_s) & (tolerance * (u4 * u4 * u2) >= 0.5 * size_u);
-    const WideMask four = good & (tolerance * (s4 * s2) >= size_s) & (tolerance * (u4 * rho_u) >= size_u);
-    const WideMask wanted = N == 4 ? four : block.resolvable;
-
-    WideResult t = {};
-    wide_collocate<N>(m, start, wanted, tolerance, t);
-    block.done = t.converged;
-    wide_store(block.sweeps, t.sweeps);
+// As apply() and leave_frame.
+CAROM_INLINE void wide_apply(const Wide (&in)[kInputs], const WidePose& q, const WideResult& t,
+                             BlockResult& block) {
+    const WideFrame& f = q.f;
+    const Wide n = q.n, R = in[kRadius];
+    const WideMask second = q.second;
     const Wide p = n * t.p, xi = n * t.xi, down = n * t.zeta, zeta = choose(second, down, -down);
     const Wide g_a = n * t.g_a, g_b = n * t.g_b, spin = 2.5 / R, none = {};
     const Wide on_a1 = choose(second, none, g_a), on_b1 = choose(second, none, g_b);
@@ -170,18 +169,51 @@ inline void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, double 
                y2 = f.y2 + (on_b2 + p);
     const Wide wx1 = f.wx1 + spin * (zeta + on_b1), wy1 = f.wy1 - spin * on_a1, wz1 = f.wz1 + spin * xi;
     const Wide wx2 = f.wx2 + spin * (zeta + on_b2), wy2 = f.wy2 - spin * on_a2, wz2 = f.wz2 + spin * xi;
-    wide_store(block.out[0], x1 * f.yy + y1 * f.yx);
-    wide_store(block.out[1], y1 * f.yy - x1 * f.yx);
-    wide_store(block.out[2], in[kV1 + 2]);
-    wide_store(block.out[3], wx1 * f.yy + wy1 * f.yx);
-    wide_store(block.out[4], wy1 * f.yy - wx1 * f.yx);
-    wide_store(block.out[5], wz1);
-    wide_store(block.out[6], x2 * f.yy + y2 * f.yx);
-    wide_store(block.out[7], y2 * f.yy - x2 * f.yx);
-    wide_store(block.out[8], in[kV2 + 2]);
-    wide_store(block.out[9], wx2 * f.yy + wy2 * f.yx);
-    wide_store(block.out[10], wy2 * f.yy - wx2 * f.yx);
-    wide_store(block.out[11], wz2);
+    block.out[0] = x1 * f.yy + y1 * f.yx;
+    block.out[1] = y1 * f.yy - x1 * f.yx;
+    block.out[2] = in[kV1 + 2];
+    block.out[3] = wx1 * f.yy + wy1 * f.yx;
+    block.out[4] = wy1 * f.yy - wx1 * f.yx;
+    block.out[5] = wz1;
+    block.out[6] = x2 * f.yy + y2 * f.yx;
+    block.out[7] = y2 * f.yy - x2 * f.yx;
+    block.out[8] = in[kV2 + 2];
+    block.out[9] = wx2 * f.yy + wy2 * f.yx;
+    block.out[10] = wy2 * f.yy - wx2 * f.yx;
+    block.out[11] = wz2;
+}
+
+// The guards of solve(), and the collocation, in lanes.
+template <int N>
+CAROM_INLINE void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, double tolerance,
+                              BlockResult& block) {
+    WidePose q;
+    wide_pose(in, cloth_slip, tolerance, q);
+    const WideModel& m = q.m;
+    const WideStart& start = q.start;
+    const bool published = cloth_slip == ClothSlip::kAsPublished;
+    const Wide guess = 0.5 * (1.0 + m.e_b);
+    const Wide s = wide_root(start.x * start.x + start.z * start.z), cx = start.x / s, cz = start.z / s;
+    const Wide fall = m.mu_b * ((7.0 * cx * cx + 5.0 * cz * cz) + 2.7 * (m.mu_s * cz));
+    const Wide rho_s = wide_ellipse(4.0 * s / (fall * guess) - 2.0);
+    const Wide a1 = start.a + guess * (m.mu_b * cx), b1 = start.b + guess * (1.0 - m.sigma * (m.mu_b * cz));
+    const Wide u0 = wide_root(start.a * start.a + start.b * start.b), u1 = wide_root(a1 * a1 + b1 * b1);
+    const Wide bend = guess * ((published ? 1.5 : 3.5) * (m.mu_s * m.mu_b));
+    const Wide beside = wide_ellipse(2.0 * ((u0 + u1) - bend) / (guess * (1.0 + 2.5 * m.mu_b)));
+    const Wide rho_u = choose(q.from_rest, wide(1e30), beside);
+    const Wide s2 = rho_s * rho_s, u2 = rho_u * rho_u, s4 = s2 * s2, u4 = u2 * u2;
+    const Wide size_s = kSizeS * m.mu_b, size_u = kSizeU * (m.mu_b * m.mu_s);
+    block.resolvable =
+        q.good & (tolerance * (s4 * s4 * s4) >= size_s) & (tolerance * (u4 * u4 * u2) >= 0.5 * size_u);
+    const WideMask four = q.good & (tolerance * (s4 * s2) >= size_s) & (tolerance * (u4 * rho_u) >= size_u);
+    const WideMask wanted = N == 4 ? four : block.resolvable;
+
+    WideResult t = {};
+    wide_collocate<N>(m, start, wanted, tolerance, t);
+    block.good = q.good;
+    block.done = t.converged;
+    block.sweeps = t.sweeps;
+    wide_apply(in, q, t, block);
 }
 
 CAROM_INLINE void write_lane(const BatchView& v, const BlockResult& block, int lane, long i,
@@ -218,62 +250,70 @@ inline void solve_single(const BatchView& v, long i, double tolerance) {
     if (v.method != nullptr) v.method[i] = result.method;
 }
 
+// What is left to do. Whole registers of impacts for 8 nodes are solved chunk by chunk, the others wait for
+// more of their kind.
 struct Remaining {
-    long resolvable[kChunk], hard[kChunk];
+    long resolvable[kChunk + kWidth], hard[kMostHard + kChunk + kWidth];
     int resolvables, hards;
 };
+
+CAROM_INLINE void gather(const BatchView& v, const long* index, int lanes, Wide (&in)[kInputs]) {
+    long from[kWidth];
+    for (int lane = 0; lane < kWidth; ++lane) from[lane] = index[lane < lanes ? lane : 0];
+    for (int k = 0; k < kInputs; ++k) {
+        for (int lane = 0; lane < kWidth; ++lane) in[k][lane] = v.in[k][from[lane]];
+    }
+}
 
 // Four nodes over the lanes [begin, end).
 inline void sweep_easy(const BatchView& v, long begin, long end, double tolerance, Remaining& rest) {
     Wide in[kInputs];
     BlockResult block;
     for (long i = begin; i < end; i += kWidth) {
-        const long lanes = end - i < kWidth ? end - i : kWidth;
-        for (int k = 0; k < kInputs; ++k) {
-            if (lanes == kWidth) {
-                in[k] = wide_load(v.in[k] + i);
-            } else {  // a lane past the end repeats the last one
-                alignas(64) double copy[kWidth];
-                for (long lane = 0; lane < kWidth; ++lane)
-                    copy[lane] = v.in[k][lane < lanes ? i + lane : end - 1];
-                in[k] = wide_load(copy);
-            }
+        const int lanes = static_cast<int>(end - i < kWidth ? end - i : kWidth);
+        if (lanes == kWidth) {
+            for (int k = 0; k < kInputs; ++k) in[k] = wide_load(v.in[k] + i);
+        } else {
+            long index[kWidth] = {};
+            for (int lane = 0; lane < lanes; ++lane) index[lane] = i + lane;
+            gather(v, index, lanes, in);
         }
         solve_block<4>(in, v.cloth_slip, tolerance, block);
-        if (lanes == kWidth && !any(~block.done)) {
-            for (int k = 0; k < kOutputs; ++k) wide_store(v.out[k] + i, wide_load(block.out[k]));
-            for (int lane = 0; lane < kWidth; ++lane) {
-                v.status[i + lane] = ImpactStatus::kOk;
-                if (v.steps != nullptr) v.steps[i + lane] = static_cast<long>(block.sweeps[lane]);
-                if (v.method != nullptr) v.method[i + lane] = ToleranceMethod::kCollocation4;
+        if (lanes == kWidth) {  // lanes without a result are written again later
+            for (int k = 0; k < kOutputs; ++k) wide_store(v.out[k] + i, block.out[k]);
+            for (int lane = 0; lane < kWidth; ++lane) v.status[i + lane] = ImpactStatus::kOk;
+            if (v.steps != nullptr) {
+                for (int lane = 0; lane < kWidth; ++lane)
+                    v.steps[i + lane] = static_cast<long>(block.sweeps[lane]);
             }
-            continue;
+            if (v.method != nullptr) {
+                for (int lane = 0; lane < kWidth; ++lane) v.method[i + lane] = ToleranceMethod::kCollocation4;
+            }
+            if (!any(~block.done)) continue;
         }
         for (int lane = 0; lane < lanes; ++lane) {
-            if (block.done[lane] != 0)
-                write_lane(v, block, lane, i + lane, ToleranceMethod::kCollocation4);
-            else if (block.resolvable[lane] != 0)
+            if (block.done[lane] != 0) {
+                if (lanes < kWidth) write_lane(v, block, lane, i + lane, ToleranceMethod::kCollocation4);
+            } else if (block.good[lane] == 0) {
+                solve_single(v, i + lane, tolerance);
+            } else if (block.resolvable[lane] != 0) {
                 rest.resolvable[rest.resolvables++] = i + lane;
-            else
+            } else {
                 rest.hard[rest.hards++] = i + lane;
+            }
         }
     }
 }
 
-// Eight nodes over compacted lanes.
-inline void sweep_resolvable(const BatchView& v, double tolerance, Remaining& rest) {
+// Eight nodes over compacted lanes; those that do not fill a register stay, unless `all` are wanted.
+inline void sweep_resolvable(const BatchView& v, double tolerance, bool all, Remaining& rest) {
     Wide in[kInputs];
     BlockResult block;
-    for (int first = 0; first < rest.resolvables; first += kWidth) {
+    int first = 0;
+    for (; rest.resolvables - first >= (all ? 1 : kWidth); first += kWidth) {
         const int lanes = rest.resolvables - first < kWidth ? rest.resolvables - first : kWidth;
-        long index[kWidth];
-        for (int lane = 0; lane < kWidth; ++lane)
-            index[lane] = rest.resolvable[first + (lane < lanes ? lane : 0)];
-        for (int k = 0; k < kInputs; ++k) {
-            alignas(64) double copy[kWidth];
-            for (int lane = 0; lane < kWidth; ++lane) copy[lane] = v.in[k][index[lane]];
-            in[k] = wide_load(copy);
-        }
+        const long* index = rest.resolvable + first;
+        gather(v, index, lanes, in);
         solve_block<8>(in, v.cloth_slip, tolerance, block);
         for (int lane = 0; lane < lanes; ++lane) {
             if (block.done[lane] != 0)
@@ -282,6 +322,155 @@ inline void sweep_resolvable(const BatchView& v, double tolerance, Remaining& re
                 rest.hard[rest.hards++] = index[lane];
         }
     }
+    const int left = rest.resolvables > first ? rest.resolvables - first : 0;
+    for (int k = 0; k < left; ++k) rest.resolvable[k] = rest.resolvable[first + k];
+    rest.resolvables = left;
+}
+
+// Posed impacts that need stretches, and what becomes of them.
+struct HardPool {
+    double x[kPool], z[kPool], a[kPool], b[kPool], mu_b[kPool], mu_s[kPool], e_b[kPool];
+    double p[kPool], xi[kPool], zeta[kPool], g_a[kPool], g_b[kPool], sweeps[kPool];
+    bool from_rest[kPool], solved[kPool];
+};
+
+CAROM_INLINE Problem problem_of(const HardPool& pool, int i, double tolerance, ClothSlip cloth_slip) {
+    const bool published = cloth_slip == ClothSlip::kAsPublished;
+    Problem problem;
+    problem.model = {pool.mu_b[i], pool.mu_s[i], published ? 2.5 : -2.5, published ? -1.5 : 3.5, pool.e_b[i]};
+    problem.start = {pool.x[i], pool.z[i], pool.a[i], pool.b[i], -1.0};
+    problem.tolerance = tolerance;
+    problem.from_rest = pool.from_rest[i];
+    return problem;
+}
+
+CAROM_INLINE void keep_result(const Adaptive& run, int i, HardPool& pool) {
+    pool.p[i] = run.total.p;
+    pool.xi[i] = run.total.xi;
+    pool.zeta[i] = run.total.zeta;
+    pool.g_a[i] = run.total.g_a;
+    pool.g_b[i] = run.total.g_b;
+    pool.sweeps[i] = run.sweeps;
+    pool.solved[i] = run.stretches < kMostStretches;
+}
+
+// From this tolerance on lanes do better with stretches of 4 nodes: they are shorter, but a sweep of 8 nodes
+// costs more than twice as much and spills its registers.
+constexpr double kLooseWide = 1e-7;
+
+// Impacts by stretches: a lane that is through with one takes up the next.
+template <int N>
+inline void run_stretches(int count, double tolerance, ClothSlip cloth_slip, HardPool& pool) {
+    constexpr int K = N / 4;
+    Adaptive runs[kWidth];
+    int impact[kWidth];
+    int next = 0;
+    WideStretch w = {};
+    w.m.sigma = cloth_slip == ClothSlip::kAsPublished ? 2.5 : -2.5;
+    w.m.kappa = cloth_slip == ClothSlip::kAsPublished ? -1.5 : 3.5;
+    w.tolerance = tolerance;
+    for (int lane = 0; lane < kWidth; ++lane) impact[lane] = -1;
+    WideStretchResult result;
+    for (;;) {
+        bool busy = false;
+        for (int lane = 0; lane < kWidth; ++lane) {
+            Adaptive& run = runs[lane];
+            for (;;) {  // until the lane has a stretch to do or nothing is left for it
+                if (impact[lane] < 0) {
+                    if (next == count) break;
+                    begin_adaptive<K>(problem_of(pool, next, tolerance, cloth_slip), run);
+                    impact[lane] = next++;
+                    w.m.mu_b[lane] = run.m.mu_b;
+                    w.m.mu_s[lane] = run.m.mu_s;
+                }
+                if (run.stretches < kMostStretches && plan(run)) break;
+                finish(run);
+                keep_result(run, impact[lane], pool);
+                impact[lane] = -1;
+            }
+            w.wanted[lane] = impact[lane] < 0 ? 0 : -1;
+            if (impact[lane] < 0) continue;
+            busy = true;
+            w.start.x[lane] = run.at.x;
+            w.start.z[lane] = run.at.z;
+            w.start.a[lane] = run.at.a;
+            w.start.b[lane] = run.at.b;
+            w.v[lane] = run.at.v;
+            w.h[lane] = run.asked;
+            w.work[lane] = run.left;
+            w.root_s[lane] = run.root_s;
+            w.to_zero[lane] = run.last && run.compressing ? -1 : 0;
+            w.to_work[lane] = run.last && !run.compressing ? -1 : 0;
+            w.exact[lane] = run.shrink < 1.0 ? -1 : 0;
+        }
+        if (!busy) break;
+        wide_stretch<N>(w, result);
+        for (int lane = 0; lane < kWidth; ++lane) {
+            if (impact[lane] < 0) continue;
+            Adaptive& run = runs[lane];
+            State at = run.at;
+            Impulses total = run.total;
+            const Impulses add = {result.t.p[lane], result.t.xi[lane], result.t.zeta[lane],
+                                  result.t.g_a[lane], result.t.g_b[lane]};
+            add_stretch(run.m, add, at, total);
+            run.sweeps += static_cast<int>(result.t.sweeps[lane]);
+            const bool going = advance(run, result.t.converged[lane] != 0, at, total, result.done[lane]);
+            ++run.stretches;
+            if (going) continue;
+            --run.stretches;
+            finish(run);
+            keep_result(run, impact[lane], pool);
+            impact[lane] = -1;
+        }
+    }
+}
+
+// The impacts that no single collocation solves.
+inline void sweep_hard(const BatchView& v, double tolerance, Remaining& rest) {
+    Wide in[kInputs];
+    WidePose q;
+    HardPool pool;
+    for (int first = 0; first < rest.hards; first += kPool) {
+        const int count = rest.hards - first < kPool ? rest.hards - first : kPool;
+        const long* index = rest.hard + first;
+        for (int i = 0; i < count; i += kWidth) {
+            gather(v, index + i, count - i, in);
+            wide_pose(in, v.cloth_slip, tolerance, q);
+            wide_store(pool.x + i, q.start.x);
+            wide_store(pool.z + i, q.start.z);
+            wide_store(pool.a + i, q.start.a);
+            wide_store(pool.b + i, q.start.b);
+            wide_store(pool.mu_b + i, q.m.mu_b);
+            wide_store(pool.mu_s + i, q.m.mu_s);
+            wide_store(pool.e_b + i, q.m.e_b);
+            for (int lane = 0; lane < kWidth; ++lane) pool.from_rest[i + lane] = q.from_rest[lane] != 0;
+        }
+        if (tolerance >= kLooseWide)
+            run_stretches<4>(count, tolerance, v.cloth_slip, pool);
+        else
+            run_stretches<8>(count, tolerance, v.cloth_slip, pool);
+        for (int i = 0; i < count; i += kWidth) {
+            const int lanes = count - i < kWidth ? count - i : kWidth;
+            gather(v, index + i, lanes, in);
+            wide_pose(in, v.cloth_slip, tolerance, q);
+            WideResult t;
+            t.p = wide_load(pool.p + i);
+            t.xi = wide_load(pool.xi + i);
+            t.zeta = wide_load(pool.zeta + i);
+            t.g_a = wide_load(pool.g_a + i);
+            t.g_b = wide_load(pool.g_b + i);
+            BlockResult block;
+            wide_apply(in, q, t, block);
+            block.sweeps = wide_load(pool.sweeps + i);
+            for (int lane = 0; lane < lanes; ++lane) {
+                if (pool.solved[i + lane])
+                    write_lane(v, block, lane, index[i + lane], ToleranceMethod::kAdaptive);
+                else
+                    solve_single(v, index[i + lane], tolerance);
+            }
+        }
+    }
+    rest.hards = 0;
 }
 
 }  // namespace
@@ -289,19 +478,19 @@ inline void sweep_resolvable(const BatchView& v, double tolerance, Remaining& re
 void CAROM_TOLERANCE_BATCH_NAME(const ImpactBatch& batch, double tolerance,
                                 const ImpactBatchResult& result) noexcept {
     const BatchView v = view(batch, result);
+    if (!(tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance)) {
+        // The single kernel says what is wrong.
+        for (long i = 0; i < batch.count; ++i) solve_single(v, i, tolerance);
+        return;
+    }
     const double solved = smallest(tolerance, kLoosestSolved);
-    const bool allowed = tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance;
     Remaining rest;
+    rest.resolvables = rest.hards = 0;
     for (long begin = 0; begin < batch.count; begin += kChunk) {
-        const long end = batch.count - begin < kChunk ? batch.count : begin + kChunk;
-        rest.resolvables = rest.hards = 0;
-        if (allowed) {
-            sweep_easy(v, begin, end, solved, rest);
-            sweep_resolvable(v, solved, rest);
-        } else {  // the single kernel says what is wrong
-            for (long i = begin; i < end; ++i) rest.hard[rest.hards++] = i;
-        }
-        for (int k = 0; k < rest.hards; ++k) solve_single(v, rest.hard[k], tolerance);
+        const bool last = batch.count - begin <= kChunk;
+        sweep_easy(v, begin, last ? batch.count : begin + kChunk, solved, rest);
+        sweep_resolvable(v, solved, last, rest);
+        if (last || rest.hards >= kMostHard) sweep_hard(v, solved, rest);
     }
 }
 

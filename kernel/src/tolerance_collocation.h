@@ -242,6 +242,20 @@ CAROM_INLINE V4 slips(const Model& m, const State& start, double h, Nodes<K>& n)
     return change;
 }
 
+// The impulses of a stretch change the state.
+CAROM_INLINE void add_stretch(const Model& m, const Impulses& t, State& state, Impulses& total) {
+    state.x += t.g_a - 7.0 * t.xi;
+    state.z += 2.5 * t.g_b - 5.0 * t.zeta;
+    state.a += t.xi - m.kappa * t.g_a;
+    state.b += t.p - (m.sigma * t.zeta + m.kappa * t.g_b);
+    state.v += 2.0 * t.p - t.g_b;
+    total.p += t.p;
+    total.xi += t.xi;
+    total.zeta += t.zeta;
+    total.g_a += t.g_a;
+    total.g_b += t.g_b;
+}
+
 // Solves one stretch. False if the sweeps do not converge; then nothing has changed but `stretch.h`.
 // The roots of the first `exact` sweeps are fresh, those of later ones carried; `root_s` is 1/|s| at the
 // start.
@@ -310,16 +324,7 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
     stretch.s_top = square_root(tx * tx + tz * tz);
     stretch.g_top = square_root(ta * ta + tb * tb);
     if constexpr (kEnd != End::kWhole) stretch.done = start.v * h + h * h * (1.0 - late_share<K>(n.g_b));
-    state.x = start.x + (g_a - 7.0 * xi);
-    state.z = start.z + (2.5 * g_b - 5.0 * zeta);
-    state.a = start.a + (xi - m.kappa * g_a);
-    state.b = start.b + (h - (m.sigma * zeta + m.kappa * g_b));
-    state.v = start.v + (2.0 * h - g_b);
-    total.p += h;
-    total.xi += xi;
-    total.zeta += zeta;
-    total.g_a += g_a;
-    total.g_b += g_b;
+    add_stretch(m, {h, xi, zeta, g_a, g_b}, state, total);
     return true;
 }
 

@@ -127,89 +127,134 @@ CAROM_INLINE bool resolved(const Model& m, const Stretch& stretch, double tolera
                9.0 * (tolerance * tolerance) * (m.mu_b * m.mu_s);
 }
 
-// Intervals, each so long that |s| and |u| keep a share of their size over it.
-//
-// False if their number meets its bound: then `solution` is finite but may miss the tolerance.
+// An impact on its way through stretches, each so long that |s| and |u| keep a share of their size over it.
+// `plan` chooses the next stretch, `advance` takes or refuses what a collocation made of it.
+struct Adaptive {
+    Model m;
+    double tolerance, S, shortest;
+    State at;
+    Impulses total;
+    double compressed, left, shrink;
+    bool compressing, from_rest;
+    int sweeps, stretches;
+    // The stretch that was planned.
+    double end, asked, root_s;
+    bool last;
+};
+
+template <int K>
+CAROM_INLINE void begin_adaptive(const Problem& problem, Adaptive& run) {
+    run.m = problem.model;
+    run.tolerance = problem.tolerance;
+    run.at = problem.start;
+    run.total = {0.0, 0.0, 0.0, 0.0, 0.0};
+    const double rho = needed_ellipse<K>(0.3 * run.m.mu_b / run.tolerance);
+    run.S = rho + 1.0 / rho;
+    run.shortest = 1e-3 * run.tolerance / run.m.mu_b;
+    run.compressing = true;
+    run.from_rest = problem.from_rest;
+    run.compressed = run.left = 0.0;
+    run.shrink = 1.0;
+    run.sweeps = run.stretches = 0;
+}
+
+// False if the slip is all but gone: then the impulses are complete but for what frictionless motion adds.
+CAROM_INLINE bool plan(Adaptive& run) {
+    const Model& m = run.m;
+    State& at = run.at;
+    const double end =
+        run.compressing ? -0.5 * at.v : 2.0 * run.left / (at.v + square_root(at.v * at.v + 4.0 * run.left));
+    const double total_left = run.compressing ? end * (1.0 + m.e_b) : end;
+    const Rates r = rates(m, at);
+    const double u = square_root(at.a * at.a + at.b * at.b);
+    const bool surely_sticks = total_left * m.mu_b * 2.0 > r.s;
+    const double vanished2 = surely_sticks ? run.tolerance * m.mu_b * smallest(u, 1.0) : 0.0;
+    if (r.s * r.s <= vanished2 || r.s <= 0.25 * run.tolerance) {
+        finish_stuck(m, at, total_left, run.total, at.v);
+        return false;
+    }
+    const double S = run.S;
+    double h = 4.0 * r.s / (r.fall * (S + 2.0));
+    if (!run.from_rest) {
+        // The cloth force itself hastens or delays the closest approach of u to zero.
+        const double drag = u > 0.0 ? m.kappa * (m.mu_s * (m.mu_b * (at.z * r.root_s))) / u : 0.0;
+        const double fx = r.fx - drag * at.a, fy = r.fy - drag * at.b, f2 = fx * fx + fy * fy;
+        const double along = -(at.a * fx + at.b * fy) / f2;
+        h = smallest(h, (S * (u / square_root(f2)) - 2.0 * along) / (0.25 * S * S - 1.0));
+    }
+    h = largest(run.shrink * smallest(h, 1.25 * end), run.shortest);
+    run.end = end;
+    run.root_s = r.root_s;
+    run.last = h >= 1.1 * end;
+    run.asked = run.last ? end : smallest(h, 0.6 * end);
+    return true;
+}
+
+// False if that was the last stretch. `done` is the work of the normal impulse over it.
+CAROM_INLINE bool advance(Adaptive& run, bool ok, State next, Impulses sum_next, double done) {
+    if (!ok) {
+        if (run.asked > run.shortest) {
+            run.shrink *= 0.4;
+            return true;
+        }
+        next = run.at;
+        sum_next = run.total;
+        frozen_step(run.m, smallest(run.shortest, run.end), next, sum_next, done);
+        run.from_rest = false;
+    }
+    run.shrink = smallest(1.0, 1.6 * run.shrink);
+    run.at = next;
+    run.total = sum_next;
+    if (run.compressing)
+        run.compressed -= done;
+    else
+        run.left -= done;
+    if (run.compressing && (run.at.v >= 0.0 || (ok && run.last))) {
+        run.compressing = false;
+        run.left = run.m.e_b * run.m.e_b * run.compressed;
+        run.at.v = 0.0;
+        return run.left > 0.0;
+    }
+    if (!run.compressing && (!(run.left > 0.0) || (ok && run.last))) {
+        run.left = 0.0;
+        return false;
+    }
+    return true;
+}
+
+CAROM_INLINE void finish(Adaptive& run) {
+    finish_frictionless(run.at.v, run.left, run.compressing, run.compressed, run.m.e_b, run.total);
+    if (run.sweeps == 0) run.sweeps = 1;  // slip so small that it ends at once
+}
+
+// False if the number of stretches meets its bound: then `solution` is finite but may miss the tolerance.
 template <int K>
 inline bool solve_adaptive(const Problem& problem, Solution& solution) {
-    const Model& m = problem.model;
-    const double tolerance = problem.tolerance;
-    State at = problem.start;
-    Impulses total = {0.0, 0.0, 0.0, 0.0, 0.0};
-    const double rho = needed_ellipse<K>(0.3 * m.mu_b / tolerance), S = rho + 1.0 / rho;
-    const double shortest = 1e-3 * tolerance / m.mu_b;
-    const Goals goal = goals(m, tolerance);
-    bool compressing = true, from_rest = problem.from_rest;
-    double compressed = 0.0, left = 0.0, shrink = 1.0;
-    solution.method = ToleranceMethod::kAdaptive;
-    int stretches = 0;
-    for (; stretches < kMostStretches; ++stretches) {
-        const double end =
-            compressing ? -0.5 * at.v : 2.0 * left / (at.v + square_root(at.v * at.v + 4.0 * left));
-        const double total_left = compressing ? end * (1.0 + m.e_b) : end;
-        const Rates r = rates(m, at);
-        const double u = square_root(at.a * at.a + at.b * at.b);
-        const bool surely_sticks = total_left * m.mu_b * 2.0 > r.s;
-        const double vanished2 = surely_sticks ? tolerance * m.mu_b * smallest(u, 1.0) : 0.0;
-        if (r.s * r.s <= vanished2 || r.s <= 0.25 * tolerance) {
-            finish_stuck(m, at, total_left, total, at.v);
-            break;
-        }
-        double h = 4.0 * r.s / (r.fall * (S + 2.0));
-        if (!from_rest) {
-            // The cloth force itself hastens or delays the closest approach of u to zero.
-            const double drag = u > 0.0 ? m.kappa * (m.mu_s * (m.mu_b * (at.z * r.root_s))) / u : 0.0;
-            const double fx = r.fx - drag * at.a, fy = r.fy - drag * at.b, f2 = fx * fx + fy * fy;
-            const double along = -(at.a * fx + at.b * fy) / f2;
-            h = smallest(h, (S * (u / square_root(f2)) - 2.0 * along) / (0.25 * S * S - 1.0));
-        }
-        h = largest(shrink * smallest(h, 1.25 * end), shortest);
-        const bool last = h >= 1.1 * end;
-        const double asked = last ? end : smallest(h, 0.6 * end);
-        Stretch stretch{asked, left, 0.0, 0.0, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0};
-        State next = at;
-        Impulses sum_next = total;
-        const int exact = shrink < 1.0 ? Tables<K>::sweeps : 3;
+    Adaptive run;
+    begin_adaptive<K>(problem, run);
+    const Goals goal = goals(run.m, run.tolerance);
+    for (; run.stretches < kMostStretches; ++run.stretches) {
+        if (!plan(run)) break;
+        Stretch stretch{run.asked, run.left, 0.0, 0.0, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0};
+        State next = run.at;
+        Impulses sum_next = run.total;
+        const int exact = run.shrink < 1.0 ? Tables<K>::sweeps : 3;
         bool ok;
-        if (!last)
-            ok = collocate<K, End::kFixed>(m, next, sum_next, stretch, r.root_s, exact);
-        else if (compressing)
-            ok = collocate<K, End::kToZero>(m, next, sum_next, stretch, r.root_s, exact);
+        if (!run.last)
+            ok = collocate<K, End::kFixed>(run.m, next, sum_next, stretch, run.root_s, exact);
+        else if (run.compressing)
+            ok = collocate<K, End::kToZero>(run.m, next, sum_next, stretch, run.root_s, exact);
         else
-            ok = collocate<K, End::kToWork>(m, next, sum_next, stretch, r.root_s, exact);
-        solution.sweeps += stretch.sweeps;
-        ok = ok && resolved(m, stretch, tolerance);
-        if (!ok) {
-            if (asked > shortest) {
-                shrink *= 0.4;
-                continue;
-            }
-            next = at;
-            sum_next = total;
-            frozen_step(m, smallest(shortest, end), next, sum_next, stretch.done);
-            from_rest = false;
-        }
-        shrink = smallest(1.0, 1.6 * shrink);
-        at = next;
-        total = sum_next;
-        if (compressing)
-            compressed -= stretch.done;
-        else
-            left -= stretch.done;
-        if (compressing && (at.v >= 0.0 || (ok && last))) {
-            compressing = false;
-            left = m.e_b * m.e_b * compressed;
-            at.v = 0.0;
-            if (!(left > 0.0)) break;
-        } else if (!compressing && (!(left > 0.0) || (ok && last))) {
-            left = 0.0;
-            break;
-        }
+            ok = collocate<K, End::kToWork>(run.m, next, sum_next, stretch, run.root_s, exact);
+        run.sweeps += stretch.sweeps;
+        ok = ok && resolved(run.m, stretch, run.tolerance);
+        if (!advance(run, ok, next, sum_next, stretch.done)) break;
     }
-    finish_frictionless(at.v, left, compressing, compressed, m.e_b, total);
-    if (solution.sweeps == 0) solution.sweeps = 1;  // slip so small that it ends at once
-    solution.total = total;
-    return stretches < kMostStretches;
+    finish(run);
+    solution.method = ToleranceMethod::kAdaptive;
+    solution.sweeps = run.sweeps;
+    solution.total = run.total;
+    return run.stretches < kMostStretches;
 }
 
 template <int K>

@@ -117,22 +117,74 @@ CAROM_INLINE Wide wide_dot(const double* row, int stride, const Wide (&f)[N]) {
     return even + odd;
 }
 
-template <int N, bool kExact>
-CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n) {
+// Integrals from 0 to every node. The nodes lie symmetrically, so that the even and the odd part of f need
+// only half a table each: `even` and `odd` are half the sum and half the difference of mirrored columns.
+struct Mirrored8 {
+    double even[4][4], odd[4][4];
+    constexpr Mirrored8() : even{}, odd{} {
+        for (int i = 0; i < 4; ++i) {
+            for (int j = 0; j < 4; ++j) {
+                even[i][j] = 0.5 * (kIntegral8[j][i] + kIntegral8[7 - j][i]);
+                odd[i][j] = 0.5 * (kIntegral8[j][i] - kIntegral8[7 - j][i]);
+            }
+        }
+    }
+};
+constexpr Mirrored8 kMirrored8;
+
+// integral[i] = start + h Int f up to node i
+template <int N>
+CAROM_INLINE void wide_integrals(Wide start, Wide h, const Wide (&f)[N], Wide (&integral)[N]) {
+    if constexpr (N == 4) {
+        for (int i = 0; i < N; ++i) integral[i] = start + h * wide_dot<N>(WideTables<N>::integral + i, N, f);
+    } else {
+        constexpr int H = N / 2;
+        Wide sums[H], differences[H];
+        for (int j = 0; j < H; ++j) {
+            sums[j] = f[j] + f[N - 1 - j];
+            differences[j] = f[j] - f[N - 1 - j];
+        }
+        const Wide total = wide_dot<H>(WideTables<N>::weights, 1, sums);
+        for (int i = 0; i < H; ++i) {
+            const Wide even = wide_dot<H>(kMirrored8.even[i], 1, sums);
+            const Wide odd = wide_dot<H>(kMirrored8.odd[i], 1, differences);
+            integral[i] = start + h * (odd + even);
+            integral[N - 1 - i] = start + h * (odd + (total - even));
+        }
+    }
+}
+
+enum class Roots : unsigned char { kFresh, kCarried, kMixed };
+
+// Forces at the nodes. Reciprocal roots are fresh, or the old ones corrected by one cubic Newton step; mixed:
+// fresh in the lanes of `exact`.
+template <int N, Roots kRoots>
+CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exact = WideMask{}) {
     Wide worst = {};
     for (int i = 0; i < N; ++i) {
         const Wide ss = n.x[i] * n.x[i] + n.z[i] * n.z[i], uu = n.a[i] * n.a[i] + n.b[i] * n.b[i];
-        if constexpr (kExact) {
+        Wide fresh_s, fresh_u;
+        if constexpr (kRoots != Roots::kCarried) {
             // One division for both roots.
             const Wide s = wide_root(ss), u = wide_root(uu), share = 1.0 / (s * u);
-            n.root_s[i] = share * u;
-            n.root_u[i] = share * s;
+            fresh_s = share * u;
+            fresh_u = share * s;
+        }
+        if constexpr (kRoots == Roots::kFresh) {
+            n.root_s[i] = fresh_s;
+            n.root_u[i] = fresh_u;
         } else {
             const Wide rs = 1.0 - ss * (n.root_s[i] * n.root_s[i]),
                        ru = 1.0 - uu * (n.root_u[i] * n.root_u[i]);
             n.root_s[i] += n.root_s[i] * (rs * (0.5 + 0.375 * rs));
             n.root_u[i] += n.root_u[i] * (ru * (0.5 + 0.375 * ru));
-            worst += rs * rs + ru * ru;
+            Wide left = rs * rs + ru * ru;
+            if constexpr (kRoots == Roots::kMixed) {
+                n.root_s[i] = choose(exact, fresh_s, n.root_s[i]);
+                n.root_u[i] = choose(exact, fresh_u, n.root_u[i]);
+                left = choose(exact, Wide{}, left);
+            }
+            worst += left;
         }
         const Wide by_s = m.mu_b * n.root_s[i];
         n.xi[i] = by_s * n.x[i];
@@ -153,11 +205,14 @@ CAROM_INLINE Wide wide_slips(const WideModel& m, const WideStart& start, Wide h,
         da[i] = n.xi[i] - m.kappa * n.g_a[i];
         db[i] = 1.0 - (m.sigma * n.zeta[i] + m.kappa * n.g_b[i]);
     }
+    Wide nx[N], nz[N], na[N], nb[N];
+    wide_integrals<N>(start.x, h, dx, nx);
+    wide_integrals<N>(start.z, h, dz, nz);
+    wide_integrals<N>(start.a, h, da, na);
+    wide_integrals<N>(start.b, h, db, nb);
     const Wide mu2 = m.mu_s * m.mu_s;
     for (int i = 0; i < N; ++i) {
-        const double* row = WideTables<N>::integral + i;
-        const Wide x = start.x + h * wide_dot<N>(row, N, dx), z = start.z + h * wide_dot<N>(row, N, dz);
-        const Wide a = start.a + h * wide_dot<N>(row, N, da), b = start.b + h * wide_dot<N>(row, N, db);
+        const Wide x = nx[i], z = nz[i], a = na[i], b = nb[i];
         const Wide ex = x - n.x[i], ez = z - n.z[i], ea = a - n.a[i], eb = b - n.b[i];
         change += (ex * ex + ez * ez) * (n.root_s[i] * n.root_s[i]) +
                   mu2 * ((ea * ea + eb * eb) * (n.root_u[i] * n.root_u[i]));
@@ -214,6 +269,44 @@ CAROM_INLINE Wide wide_find_end(const WideModel& m, const Wide (&g_b)[N], const 
     return p_c + m.e_b * wide_root(work * (both * share));
 }
 
+// The forces of the sweep at which a lane converged.
+template <int N>
+struct WideForces {
+    Wide xi[N], zeta[N], g_a[N], g_b[N];
+};
+
+template <int N>
+CAROM_INLINE void wide_keep(WideMask lanes, const WideNodes<N>& n, WideForces<N>& kept) {
+    if (!any(lanes)) return;
+    for (int i = 0; i < N; ++i) {
+        kept.xi[i] = choose(lanes, n.xi[i], kept.xi[i]);
+        kept.zeta[i] = choose(lanes, n.zeta[i], kept.zeta[i]);
+        kept.g_a[i] = choose(lanes, n.g_a[i], kept.g_a[i]);
+        kept.g_b[i] = choose(lanes, n.g_b[i], kept.g_b[i]);
+    }
+}
+
+// As resolved().
+template <int N>
+CAROM_INLINE WideMask wide_resolved(const WideModel& m, Wide p, double tolerance, const WideForces<N>& f) {
+    using T = WideTables<N>;
+    const Wide tx = wide_dot<N>(T::top, 1, f.xi), tz = wide_dot<N>(T::top, 1, f.zeta);
+    const Wide ta = wide_dot<N>(T::top, 1, f.g_a), tb = wide_dot<N>(T::top, 1, f.g_b);
+    const Wide s2 = tx * tx + tz * tz, g2 = ta * ta + tb * tb;
+    return (7.0 * p * s2 <= 3.0 * tolerance * m.mu_b) &
+           (81.0 * (p * p) * (g2 * wide_root(g2)) <= 9.0 * (tolerance * tolerance) * (m.mu_b * m.mu_s));
+}
+
+template <int N>
+CAROM_INLINE void wide_integrate(Wide p, const WideForces<N>& f, WideResult& out) {
+    using T = WideTables<N>;
+    out.p = p;
+    out.xi = p * wide_dot<N>(T::weights, 1, f.xi);
+    out.zeta = p * wide_dot<N>(T::weights, 1, f.zeta);
+    out.g_a = p * wide_dot<N>(T::weights, 1, f.g_a);
+    out.g_b = p * wide_dot<N>(T::weights, 1, f.g_b);
+}
+
 // Solves `wanted` lanes; those that do not converge are not in `out.converged`.
 template <int N>
 CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, WideMask wanted,
@@ -232,7 +325,7 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
         n.a[i] = start.a + p * xi0;
         n.b[i] = start.b + p * (1.0 - m.sigma * zeta0);
     }
-    wide_forces<N, true>(m, n);
+    wide_forces<N, Roots::kFresh>(m, n);
     const Wide mu2 = m.mu_s * m.mu_s, reach2 = (7.0 * m.mu_b * h) * (7.0 * m.mu_b * h);
     Wide steep = {};
     for (int i = 0; i < N; ++i) steep += n.root_s[i] * n.root_s[i] + mu2 * (n.root_u[i] * n.root_u[i]);
@@ -241,8 +334,8 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
     const double sweep_goal = 8.0 * tolerance * tolerance;
     const Wide root_goal = (0.05 * tolerance * tolerance) / (m.mu_b * m.mu_b);
     Wide dh_before = {};
-    WideMask open = wanted;
-    out.converged = WideMask{};
+    WideMask open = wanted, finished = {};
+    WideForces<N> kept = {};
     for (int k = 1; k < T::sweeps && any(open); ++k) {
         const Wide change = wide_slips<N>(m, start, h, n);
         Wide p_c;
@@ -253,29 +346,21 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
         if (any(moved)) wide_set_rows<N>(choose(moved, t_c, rows.t), rows);
         t_c = 2.0 * p_c / h_new - 1.0;
         h = h_new;
-        const Wide r = wide_forces<N, false>(m, n);
+        const Wide r = wide_forces<N, Roots::kCarried>(m, n);
         const Wide left = (change + dh * dh * steep) * slope + (dh * dh + dh_before * dh_before) * end_slope;
         const double slow = 1.0 + 0.03125 * (k * k);
         const WideMask now = open & (left * slow <= sweep_goal) & (r * r * r <= root_goal);
         dh_before = dh;
-        if (!any(now)) continue;
-        const Wide p = wide_find_end<N>(m, n.g_b, rows, p_c);
-        const Wide tx = wide_dot<N>(T::top, 1, n.xi), tz = wide_dot<N>(T::top, 1, n.zeta);
-        const Wide ta = wide_dot<N>(T::top, 1, n.g_a), tb = wide_dot<N>(T::top, 1, n.g_b);
-        const Wide s2 = tx * tx + tz * tz, g2 = ta * ta + tb * tb;
-        const WideMask resolved =
-            (7.0 * p * s2 <= 3.0 * tolerance * m.mu_b) &
-            (81.0 * (p * p) * (g2 * wide_root(g2)) <= 9.0 * (tolerance * tolerance) * (m.mu_b * m.mu_s));
-        const WideMask good = now & resolved;
-        out.p = choose(good, p, out.p);
-        out.xi = choose(good, p * wide_dot<N>(T::weights, 1, n.xi), out.xi);
-        out.zeta = choose(good, p * wide_dot<N>(T::weights, 1, n.zeta), out.zeta);
-        out.g_a = choose(good, p * wide_dot<N>(T::weights, 1, n.g_a), out.g_a);
-        out.g_b = choose(good, p * wide_dot<N>(T::weights, 1, n.g_b), out.g_b);
-        out.sweeps = choose(good, wide(k + 1.0), out.sweeps);
-        out.converged |= good;
+        wide_keep<N>(now, n, kept);
+        finished |= now;
+        out.sweeps = choose(now, wide(k + 1.0), out.sweeps);
         open &= ~now;
     }
+    // The rows of a lane stand still once it has converged.
+    Wide p_c;
+    const Wide p = wide_find_end<N>(m, kept.g_b, rows, p_c);
+    out.converged = finished & wide_resolved<N>(m, p, tolerance, kept);
+    wide_integrate<N>(p, kept, out);
 }
 
 }  // namespace
