@@ -138,7 +138,7 @@ int run_render(const RenderArgs& args) {
     throw_if_interrupted();
     if (args.raw) {
         flush_output();
-        message(fmt::format("{} frames of RGB; in front of a film: ... --raw | ffmpeg -f rawvideo -pix_fmt rgb24 -s {}x{} -framerate {} "
+        message(fmt::format("{} frames of RGB; to make a film of them, pipe them into: ffmpeg -f rawvideo -pix_fmt rgb24 -s {}x{} -framerate {} "
                             "-i - -pix_fmt yuv420p shot.mp4", timings.size(), options.size.width, options.size.height, options.fps));
         return kOk;
     }
