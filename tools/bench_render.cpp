@@ -16,17 +16,26 @@ int run_bench_render(const BenchRenderArgs& args) {
     if (args.json) {
         nlohmann::ordered_json list = nlohmann::ordered_json::array();
         for (const render::RenderBenchRow& row : rows) {
-            list.push_back({{"name", row.name}, {"draw_ms", row.draw_ms}, {"readback_ms", row.readback_ms}, {"encode_ms", row.encode_ms},
-                            {"write_ms", row.write_ms}, {"setup_ms", row.setup_ms}, {"fps", row.fps}});
+            list.push_back({{"name", row.name},
+                            {"draw_ms", row.draw_ms},
+                            {"readback_ms", row.readback_ms},
+                            {"encode_ms", row.encode_ms},
+                            {"write_ms", row.write_ms},
+                            {"setup_ms", row.setup_ms},
+                            {"fps", row.fps}});
         }
-        print(nlohmann::ordered_json{{"gl", args.gl}, {"frames", args.frames}, {"rows", list}}.dump(2) + "\n");
+        print(nlohmann::ordered_json{{"gl", args.gl}, {"frames", args.frames}, {"rows", list}}.dump(2) +
+              "\n");
         return kOk;
     }
-    print(fmt::format("{}: {} frames at each size; CPU ms a frame, medians after the first; write is wall time\n\n", args.scene, args.frames));
-    print(fmt::format("{:8}{:>9}{:>10}{:>9}{:>9}{:>10}{:>12}\n", "size", "draw", "readback", "encode", "write", "set-up", "frames/s"));
+    print(fmt::format(
+        "{}: {} frames at each size; CPU ms a frame, medians after the first; write is wall time\n\n",
+        args.scene, args.frames));
+    print(fmt::format("{:8}{:>9}{:>10}{:>9}{:>9}{:>10}{:>12}\n", "size", "draw", "readback", "encode",
+                      "write", "set-up", "frames/s"));
     for (const render::RenderBenchRow& row : rows) {
-        print(fmt::format("{:8}{:>9.2f}{:>10.2f}{:>9.2f}{:>9.2f}{:>10.0f}{:>12.1f}\n", row.name, row.draw_ms, row.readback_ms,
-                          row.encode_ms, row.write_ms, row.setup_ms, row.fps));
+        print(fmt::format("{:8}{:>9.2f}{:>10.2f}{:>9.2f}{:>9.2f}{:>10.0f}{:>12.1f}\n", row.name, row.draw_ms,
+                          row.readback_ms, row.encode_ms, row.write_ms, row.setup_ms, row.fps));
     }
     return kOk;
 }

@@ -22,9 +22,10 @@ std::string kernel_line(const Plan& plan) {
     switch (physics.ball_ball) {
         case BallBallModel::kMathavan:
             if (physics.substeps)
-                return fmt::format("published march, {} substeps, cloth slip {}", *physics.substeps, name(physics.cloth_slip));
-            return fmt::format("by tolerance {}: closed forms, else collocation; cloth slip {}", physics.tolerance,
-                               name(physics.cloth_slip));
+                return fmt::format("published march, {} substeps, cloth slip {}", *physics.substeps,
+                                   name(physics.cloth_slip));
+            return fmt::format("by tolerance {}: closed forms, else collocation; cloth slip {}",
+                               physics.tolerance, name(physics.cloth_slip));
         case BallBallModel::kInelastic:
         case BallBallModel::kElastic:
             return "closed form";
@@ -54,7 +55,8 @@ std::string report(const Plan& plan) {
         "          {}: R {} m, mass {} kg, mu_s {}, mu_r {}, mu_sp {}, mu_b {}, e_b {}, e_c {}, f_c {}\n",
         scene.ball_preset, p.R, p.m, p.mu_s, p.mu_r, p.mu_sp, scene.balls.mu_b, p.e_b, p.e_c, p.f_c);
     if (scene.balls.mu_b_more > 0.0)
-        fmt::format_to(line, "          mu_b at a slip u: {} + {} exp(-{} u)\n", scene.balls.mu_b, scene.balls.mu_b_more, scene.balls.mu_b_fall);
+        fmt::format_to(line, "          mu_b at a slip u: {} + {} exp(-{} u)\n", scene.balls.mu_b,
+                       scene.balls.mu_b_more, scene.balls.mu_b_fall);
     if (scene.cue) {
         const Cue& cue = *scene.cue;
         fmt::format_to(line,
@@ -64,8 +66,8 @@ std::string report(const Plan& plan) {
                        cue.end_mass);
     }
     fmt::format_to(line, "models    ball-ball {}, cushion {}, jaws {}, clusters {}, gravity {} m/s^2\n",
-                   name(scene.physics.ball_ball), name(scene.physics.cushion), name(scene.physics.jaw_model()), name(scene.physics.clusters),
-                   plan.gravity);
+                   name(scene.physics.ball_ball), name(scene.physics.cushion),
+                   name(scene.physics.jaw_model()), name(scene.physics.clusters), plan.gravity);
     fmt::format_to(line, "kernel    {}\n", kernel_line(plan));
     fmt::format_to(line, "isa       {} (available: {})\n", kernel::name(plan.isa), available_isas());
     fmt::format_to(line, "stop      {}\n", stop_line(scene.stop));

@@ -42,8 +42,9 @@ void add_simulate(CLI::App& app, Action& action) {
                   "Time every event: cost by kind, kernel by ball-ball event, columns in the events file "
                   "(default: off)");
     sub->add_flag("--json", args->json, "Print JSON (default: off)");
-    sub->add_flag("--verify", args->verify,
-                  "Check the laws after every event; a broken one is named, and the exit status is 1 (default: off)");
+    sub->add_flag(
+        "--verify", args->verify,
+        "Check the laws after every event; a broken one is named, and the exit status is 1 (default: off)");
     sub->callback([args, &action] { action = [args] { return run_simulate(*args); }; });
 }
 
@@ -78,22 +79,30 @@ void add_render(CLI::App& app, Action& action) {
                     "Camera (default: the scene's, which is top unless it says otherwise)")
         ->type_name("NAME")
         ->check(CLI::IsMember({"top", "rail", "player", "follow"}));
-    CLI::Option* eye = sub->add_option("--eye", args->eye, "Free camera: where the eye is, in m (default: a named camera)")
-                           ->type_name("X,Y,Z");
-    sub->add_option("--target", args->target, "Free camera: what it looks at, in m (default: a named camera)")->type_name("X,Y,Z")->needs(eye);
-    sub->add_option("--ball", args->ball, "Ball that camera follow follows (default: the one that moves first)")->type_name("ID");
-    sub->add_option("--overlay", args->overlay,
-                    "Drawn over the picture: trails, events, spin, ghost, clock, margin, or all (default: none)")
+    CLI::Option* eye =
+        sub->add_option("--eye", args->eye, "Free camera: where the eye is, in m (default: a named camera)")
+            ->type_name("X,Y,Z");
+    sub->add_option("--target", args->target, "Free camera: what it looks at, in m (default: a named camera)")
+        ->type_name("X,Y,Z")
+        ->needs(eye);
+    sub->add_option("--ball", args->ball,
+                    "Ball that camera follow follows (default: the one that moves first)")
+        ->type_name("ID");
+    sub->add_option(
+           "--overlay", args->overlay,
+           "Drawn over the picture: trails, events, spin, ghost, clock, margin, or all (default: none)")
         ->type_name("LIST");
     sub->add_flag("--trails", args->trails, "The same as --overlay trails (default: off)");
-    sub->add_option("--sheet", args->sheet, "One contact sheet of columns x rows pictures instead of frames (default: off)")
+    sub->add_option("--sheet", args->sheet,
+                    "One contact sheet of columns x rows pictures instead of frames (default: off)")
         ->type_name("CxR");
     sub->add_option("--jobs", args->jobs, "Threads that encode and write; 0: one per core")
         ->type_name("N")
         ->check(CLI::Range(0, 256))
         ->capture_default_str();
     sub->add_flag("--resume", args->resume, "Leave out frames whose finished file is there (default: off)");
-    sub->add_flag("--raw", args->raw, "RGB bytes on standard output instead of PNG files, for ffmpeg (default: off)");
+    sub->add_flag("--raw", args->raw,
+                  "RGB bytes on standard output instead of PNG files, for ffmpeg (default: off)");
     add_gl(*sub, args->gl);
     sub->add_option("--png-level", args->png_level, "Compression, 0 (large, fast) to 9 (small, slow)")
         ->type_name("L")
@@ -141,11 +150,12 @@ void add_impact(CLI::App& app, Action& action) {
         ->type_name("NAME")
         ->check(CLI::IsMember({"mathavan", "inelastic", "elastic"}))
         ->capture_default_str();
-    CLI::Option* substeps =
-        sub->add_option("--substeps", args->substeps, "Use the published march with this N (mathavan; default: off)")
-            ->type_name("N")
-            ->check(CLI::Range(1, 100000000));
-    sub->add_option("--tolerance", args->tolerance, "Error allowed, relative to the approach speed (mathavan)")
+    CLI::Option* substeps = sub->add_option("--substeps", args->substeps,
+                                            "Use the published march with this N (mathavan; default: off)")
+                                ->type_name("N")
+                                ->check(CLI::Range(1, 100000000));
+    sub->add_option("--tolerance", args->tolerance,
+                    "Error allowed, relative to the approach speed (mathavan)")
         ->type_name("E")
         ->check(CLI::Range(kernel::kTightestTolerance, kernel::kLoosestTolerance))
         ->excludes(substeps)
@@ -186,7 +196,8 @@ void add_bench(CLI::App& app, Action& action) {
 
 void add_bench_render(CLI::App& app, Action& action) {
     auto args = std::make_shared<BenchRenderArgs>();
-    CLI::App* sub = app.get_subcommand("bench")->add_subcommand("render", "What drawing, reading back and encoding a frame costs");
+    CLI::App* sub = app.get_subcommand("bench")->add_subcommand(
+        "render", "What drawing, reading back and encoding a frame costs");
     sub->add_option("SCENE", args->scene, "Scene file (TOML)")->capture_default_str();
     sub->add_option("--frames", args->frames, "Frames at each size, spread over the shot")
         ->type_name("N")

@@ -111,8 +111,10 @@ Json ball_ball(const Json& line, const ImpactSettings& settings) {
     const auto start = std::chrono::steady_clock::now();
     switch (settings.method) {
         case ImpactSettings::Method::kMathavan:
-            if (settings.substeps) settings.march(ball1, ball2, p, *settings.substeps, result);
-            else settings.by_tolerance(ball1, ball2, p, settings.tolerance, result);
+            if (settings.substeps)
+                settings.march(ball1, ball2, p, *settings.substeps, result);
+            else
+                settings.by_tolerance(ball1, ball2, p, settings.tolerance, result);
             break;
         case ImpactSettings::Method::kInelastic:
             kernel::collide_inelastic(ball1, ball2, p, result);
@@ -132,8 +134,8 @@ CushionModel cushion_model(const Json& line) {
     const Json& json = need(line, "model");
     if (!json.is_string()) throw LineError("\"model\": expected a string");
     std::string known;
-    for (const CushionModel model : {CushionModel::kHan2005, CushionModel::kMathavan2010, CushionModel::kStronge,
-                                     CushionModel::kImpulse, CushionModel::kSmooth}) {
+    for (const CushionModel model : {CushionModel::kHan2005, CushionModel::kMathavan2010,
+                                     CushionModel::kStronge, CushionModel::kImpulse, CushionModel::kSmooth}) {
         if (json.get_ref<const std::string&>() == name(model)) return model;
         known += (known.empty() ? "" : ", ") + std::string(name(model));
     }
@@ -166,7 +168,8 @@ Json cushion(const Json& line) {
     contact.f_c = parameter(params, "f_c", 0.0, kInfinite);
     contact.height = parameter(params, "height", 0.0, 2.0 * contact.R, true);
     if (model == CushionModel::kMathavan2010 && !mathavan_2010_ends(contact))
-        throw LineError("\"params\": with this f_c and mu_s the ball could jam under the nose; lower one of them");
+        throw LineError(
+            "\"params\": with this f_c and mu_s the ball could jam under the nose; lower one of them");
     double v_in[3], w_in[3];
     read_vector(line, "v", v_in);
     read_vector(line, "w", w_in);

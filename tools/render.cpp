@@ -123,7 +123,8 @@ int write_sheet(const RenderArgs& args, const Record& record, const render::Sequ
 
 int run_render(const RenderArgs& args) {
     check_args(args);
-    if (args.raw && (args.resume || !args.sheet.empty())) throw UsageError("--raw goes with neither --resume nor --sheet");
+    if (args.raw && (args.resume || !args.sheet.empty()))
+        throw UsageError("--raw goes with neither --resume nor --sheet");
     if (!args.size.empty()) parse_size(args.size);
     const Record record =
         is_record_file(args.input) ? read_record(args.input) : simulate_plan(plan_scene(args.input), {});
@@ -138,8 +139,11 @@ int run_render(const RenderArgs& args) {
     throw_if_interrupted();
     if (args.raw) {
         flush_output();
-        message(fmt::format("{} frames of RGB; to make a film of them, pipe them into: ffmpeg -f rawvideo -pix_fmt rgb24 -s {}x{} -framerate {} "
-                            "-i - -pix_fmt yuv420p shot.mp4", timings.size(), options.size.width, options.size.height, options.fps));
+        message(
+            fmt::format("{} frames of RGB; to make a film of them, pipe them into: ffmpeg -f rawvideo "
+                        "-pix_fmt rgb24 -s {}x{} -framerate {} "
+                        "-i - -pix_fmt yuv420p shot.mp4",
+                        timings.size(), options.size.width, options.size.height, options.fps));
         return kOk;
     }
     if (timings.size() == 1) {

@@ -177,7 +177,8 @@ int verified(const Record& record, const Plan& plan) {
     if (violation->event < record.events.size()) {
         const Event& event = record.events[violation->event];
         where = fmt::format("event {} ({} {} {}, t = {:.17g} s)", violation->event, name(event.type),
-                            record.tracks.at(static_cast<std::size_t>(event.a)).id, record.partner_id(event), event.time);
+                            record.tracks.at(static_cast<std::size_t>(event.a)).id, record.partner_id(event),
+                            event.time);
     }
     message(fmt::format("{} broken at {}: {}", violation->law, where, violation->message));
     return kFailed;

@@ -10,7 +10,8 @@
 namespace carom {
 
 double fifth_root(double x) {
-    // x = 2^(5 q) f with f in [1, 32): start from a straight line in f, then Newton on y^5 = f with a fixed number of steps.
+    // x = 2^(5 q) f with f in [1, 32): start from a straight line in f, then Newton on y^5 = f with a fixed
+    // number of steps.
     int exponent = static_cast<int>((std::bit_cast<std::uint64_t>(x) >> 52) & 0x7FF) - 1023;
     if (exponent == -1023) return fifth_root(x * 0x1p500) * 0x1p-100;  // subnormal
     int q = exponent / 5, left = exponent % 5;
@@ -41,7 +42,8 @@ namespace {
 
 constexpr std::size_t kPerBall = 5;
 
-// The exponent p of the unloading law: the smallest power of 2 with e^2 >= 2.5 / (2.5 + p), so that the force stays a push.
+// The exponent p of the unloading law: the smallest power of 2 with e^2 >= 2.5 / (2.5 + p), so that the force
+// stays a push.
 int law_exponent(double e_b) {
     int p = 1;
     while (p < kLargestLawExponent && e_b * e_b < 2.5 / (2.5 + p)) p *= 2;
@@ -55,7 +57,8 @@ double power(double x, int p) {  // p a power of 2
 
 }  // namespace
 
-void ClusterMap::load(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double R, double V, double L) {
+void ClusterMap::load(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                      double R, double V, double L) {
     balls_ = balls.size();
     contacts_ = contacts.size();
     y_.resize(kPerBall * balls_);
@@ -85,13 +88,15 @@ void ClusterMap::load(const std::vector<ClusterBall>& balls, const std::vector<C
 }
 
 // Equations 1 to 4, in units of V and L: forces d^1.5, mass 1.
-void ClusterMap::derivative(const std::vector<double>& y, const std::vector<double>& d, const ClusterSettings& s, const Law& law,
-                            std::vector<double>& dy, std::vector<double>& dd) {
+void ClusterMap::derivative(const std::vector<double>& y, const std::vector<double>& d,
+                            const ClusterSettings& s, const Law& law, std::vector<double>& dy,
+                            std::vector<double>& dd) {
     std::fill(dy.begin(), dy.end(), 0.0);
     std::fill(lift_.begin(), lift_.end(), 0.0);
     const double eps2 = s.epsilon * s.epsilon;
     for (std::size_t c = 0; c < contacts_; ++c) {
-        const double *yi = &y[kPerBall * static_cast<std::size_t>(i_[c])], *yj = &y[kPerBall * static_cast<std::size_t>(j_[c])];
+        const double *yi = &y[kPerBall * static_cast<std::size_t>(i_[c])],
+                     *yj = &y[kPerBall * static_cast<std::size_t>(j_[c])];
         const double nx = nx_[c], ny = ny_[c];
         const double dvx = yi[0] - yj[0], dvy = yi[1] - yj[1];
         dd[c] = dvx * nx + dvy * ny;
@@ -103,7 +108,8 @@ void ClusterMap::derivative(const std::vector<double>& y, const std::vector<doub
         const double s_z = (yi[2] + yj[2]) * ny - (yi[3] + yj[3]) * nx;
         const double k = -s.mu_b * F / std::sqrt(s_x * s_x + s_z * s_z + eps2);
         const double f_x = k * s_x, f_z = k * s_z;
-        double *ai = &dy[kPerBall * static_cast<std::size_t>(i_[c])], *aj = &dy[kPerBall * static_cast<std::size_t>(j_[c])];
+        double *ai = &dy[kPerBall * static_cast<std::size_t>(i_[c])],
+               *aj = &dy[kPerBall * static_cast<std::size_t>(j_[c])];
         const double fx = -F * nx + f_x * ny, fy = -F * ny - f_x * nx;
         const double tx = 2.5 * f_z * ny, ty = -2.5 * f_z * nx, tz = -2.5 * f_x;
         ai[0] += fx;
@@ -145,7 +151,8 @@ void ClusterMap::step(const ClusterSettings& s, const Law& law, double h) {
         derivative(y_stage_, d_stage_, s, law, ky_[k], kd_[k]);
     }
     const double sixth = h / 6.0;
-    for (std::size_t n = 0; n < y_.size(); ++n) y_[n] += sixth * ((ky_[0][n] + ky_[3][n]) + 2.0 * (ky_[1][n] + ky_[2][n]));
+    for (std::size_t n = 0; n < y_.size(); ++n)
+        y_[n] += sixth * ((ky_[0][n] + ky_[3][n]) + 2.0 * (ky_[1][n] + ky_[2][n]));
     for (std::size_t c = 0; c < contacts_; ++c) {
         d_stage_[c] = d_[c];  // overlap before the step, for remember()
         rate_before_[c] = kd_[0][c];
@@ -153,20 +160,22 @@ void ClusterMap::step(const ClusterSettings& s, const Law& law, double h) {
     }
 }
 
-// Largest overlap since a contact opened, with the peak inside a step from the cubic Hermite interpolant: without it the
-// energy of each contact carries an error of order h^2.
+// Largest overlap since a contact opened, with the peak inside a step from the cubic Hermite interpolant:
+// without it the energy of each contact carries an error of order h^2.
 void ClusterMap::remember(double h) {
     for (std::size_t c = 0; c < contacts_; ++c) {
         if (!(d_[c] > 0.0)) {
             memory_[c] = 0.0;
             continue;
         }
-        const double *yi = &y_[kPerBall * static_cast<std::size_t>(i_[c])], *yj = &y_[kPerBall * static_cast<std::size_t>(j_[c])];
+        const double *yi = &y_[kPerBall * static_cast<std::size_t>(i_[c])],
+                     *yj = &y_[kPerBall * static_cast<std::size_t>(j_[c])];
         const double rate = (yi[0] - yj[0]) * nx_[c] + (yi[1] - yj[1]) * ny_[c];
         double most = std::max(memory_[c], d_[c]);
         if (rate_before_[c] > 0.0 && rate < 0.0) {
             const double d0 = d_stage_[c], m0 = h * rate_before_[c], m1 = h * rate, rise = d_[c] - d0;
-            // d(s) = d0 + m0 s + (3 rise - 2 m0 - m1) s^2 + (m0 + m1 - 2 rise) s^3; its slope falls from m0 > 0 to m1 < 0.
+            // d(s) = d0 + m0 s + (3 rise - 2 m0 - m1) s^2 + (m0 + m1 - 2 rise) s^3; its slope falls from m0 >
+            // 0 to m1 < 0.
             const double q2 = 3.0 * rise - 2.0 * m0 - m1, q3 = m0 + m1 - 2.0 * rise;
             const double root = std::sqrt(std::max(0.0, q2 * q2 - 3.0 * q3 * m0));
             const double s = m0 / (root - q2);
@@ -179,7 +188,8 @@ void ClusterMap::remember(double h) {
 bool ClusterMap::finished() const {
     for (std::size_t c = 0; c < contacts_; ++c) {
         if (d_[c] > 0.0) return false;
-        const double *yi = &y_[kPerBall * static_cast<std::size_t>(i_[c])], *yj = &y_[kPerBall * static_cast<std::size_t>(j_[c])];
+        const double *yi = &y_[kPerBall * static_cast<std::size_t>(i_[c])],
+                     *yj = &y_[kPerBall * static_cast<std::size_t>(j_[c])];
         const double rate = (yi[0] - yj[0]) * nx_[c] + (yi[1] - yj[1]) * ny_[c];
         if (rate > 0.0 && -d_[c] < kClusterLookAhead * rate) return false;
     }
@@ -195,8 +205,8 @@ double ClusterMap::energy() const {
     return e;
 }
 
-// Step error can raise the energy where e = 1 and mu = 0: scale the velocities about their mean so that it does not. Momentum and
-// the signs of relative velocities are kept.
+// Step error can raise the energy where e = 1 and mu = 0: scale the velocities about their mean so that it
+// does not. Momentum and the signs of relative velocities are kept.
 void ClusterMap::keep_energy(double before) {
     const double after = energy();
     if (!(after > before)) return;
@@ -228,7 +238,8 @@ long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<Cl
     law.b = std::min(1.0, (1.0 - settings.e_b * settings.e_b) * 0.4 / (0.4 - 1.0 / (2.5 + law.p)));
     law.a = 1.0 - law.b;
     // The second limit is the stiffness of the regularised friction (equation 6).
-    const double h = settings.mu_b > 0.0 ? std::min(settings.step, 0.31 * settings.epsilon / settings.mu_b) : settings.step;
+    const double h = settings.mu_b > 0.0 ? std::min(settings.step, 0.31 * settings.epsilon / settings.mu_b)
+                                         : settings.step;
     const double before = energy();
     const long limit = static_cast<long>(kClusterTimeLimit / h);
     long steps = 0;
@@ -246,7 +257,8 @@ long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<Cl
     return steps;
 }
 
-long ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double e_b) {
+long ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                       double e_b) {
     std::vector<Vec2> v;
     for (const ClusterBall& b : balls) v.push_back(Vec2(b.v.x(), b.v.y()));
     std::vector<double> impulse(contacts.size(), 0.0);
@@ -256,7 +268,8 @@ long ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<Cluste
     for (; sweeps < kRigidSweeps; ++sweeps) {
         double change = 0.0;
         for (std::size_t c = 0; c < contacts.size(); ++c) {
-            const auto i = static_cast<std::size_t>(contacts[c].i), j = static_cast<std::size_t>(contacts[c].j);
+            const auto i = static_cast<std::size_t>(contacts[c].i),
+                       j = static_cast<std::size_t>(contacts[c].j);
             const Vec2& n = contacts[c].n;
             const double closing = (v[i] - v[j]).dot(n);
             const double next = std::max(0.0, impulse[c] + 0.5 * closing);

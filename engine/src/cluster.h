@@ -1,6 +1,6 @@
-// Many contacts at once: the compliant map (Hertz contacts of the whole cluster, frozen normals, instantaneous for the engine)
-// and the rigid symmetric projection. Source: clusters.md of the design notes (equations 1 to 8); docs/hard_cases.md says what
-// such a model can and cannot claim.
+// Many contacts at once: the compliant map (Hertz contacts of the whole cluster, frozen normals,
+// instantaneous for the engine) and the rigid symmetric projection. Source: clusters.md of the design notes
+// (equations 1 to 8); docs/hard_cases.md says what such a model can and cannot claim.
 #pragma once
 
 #include <vector>
@@ -21,14 +21,15 @@ struct ClusterContact {
 };
 
 struct ClusterSettings {
-    double R;     ///< [m]
+    double R;  ///< [m]
     double mu_s, mu_b, e_b;
     bool published_cloth_slip = false;
     double epsilon;  ///< regularisation of the friction directions, in units of V
     double step;     ///< largest step, in units of L / V
 };
 
-/// Duration of a Hertz contact at the approach speed V, t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation 5).
+/// Duration of a Hertz contact at the approach speed V, t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation
+/// 5).
 double contact_time(double V);
 
 /// L = (V^2 m / k)^0.4 [m] with kContactStiffness.
@@ -40,13 +41,14 @@ double fifth_root(double x);
 /// The two maps. Scratch memory is kept between calls.
 class ClusterMap {
   public:
-    /// Compliant: integrates the contact phase by RK4 in its own time, scaled by the approach speed V [m/s] of the triggering pair.
-    /// Gives back velocities and spins. Returns the number of steps, or -1 if the contacts did not part within kClusterTimeLimit.
-    long compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, const ClusterSettings& settings,
-                   double V);
+    /// Compliant: integrates the contact phase by RK4 in its own time, scaled by the approach speed V [m/s]
+    /// of the triggering pair. Gives back velocities and spins. Returns the number of steps, or -1 if the
+    /// contacts did not part within kClusterTimeLimit.
+    long compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                   const ClusterSettings& settings, double V);
 
-    /// Rigid: v := (1 + e) P(v) - e v with P the nearest velocities that close no contact (equations 7, 8); frictionless.
-    /// Returns the number of sweeps.
+    /// Rigid: v := (1 + e) P(v) - e v with P the nearest velocities that close no contact (equations 7, 8);
+    /// frictionless. Returns the number of sweeps.
     long rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double e_b);
 
   private:
@@ -54,9 +56,10 @@ class ClusterMap {
         double a, b;
         int p;
     };
-    void load(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double R, double V, double L);
-    void derivative(const std::vector<double>& y, const std::vector<double>& d, const ClusterSettings& s, const Law& law,
-                    std::vector<double>& dy, std::vector<double>& dd);
+    void load(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double R,
+              double V, double L);
+    void derivative(const std::vector<double>& y, const std::vector<double>& d, const ClusterSettings& s,
+                    const Law& law, std::vector<double>& dy, std::vector<double>& dd);
     void step(const ClusterSettings& s, const Law& law, double h);
     void remember(double h);
     bool finished() const;
@@ -64,7 +67,8 @@ class ClusterMap {
     double energy() const;
 
     std::size_t balls_ = 0, contacts_ = 0;
-    // Per ball five numbers: v_x, v_y, R w_x, R w_y, R w_z in units of V. Per contact: overlap d and memory d_m in units of L.
+    // Per ball five numbers: v_x, v_y, R w_x, R w_y, R w_z in units of V. Per contact: overlap d and memory
+    // d_m in units of L.
     std::vector<double> y_, d_, memory_, rate_before_;
     std::vector<int> i_, j_;
     std::vector<double> nx_, ny_;

@@ -27,12 +27,14 @@ StruckBall strike(const Cue& cue, const BallParams& balls, bool squirt) {
     const double v = 2.0 * cue.speed / (1.0 + balls.m / cue.mass + 2.5 * (a * a + b * b));
     // w = (5 v / 2 R) (b l - a sin(th) t - a cos(th) z), l = left of the aim t.
     const double turn = 2.5 * v / balls.R;
-    const Vec3 w(turn * (-b * sin_aim - a * sin_up * cos_aim), turn * (b * cos_aim - a * sin_up * sin_aim), -turn * a * cos_up);
+    const Vec3 w(turn * (-b * sin_aim - a * sin_up * cos_aim), turn * (b * cos_aim - a * sin_up * sin_aim),
+                 -turn * a * cos_up);
     SinCos turned{0.0, 1.0};
     if (squirt) turned = effects::squirt(cue, balls);
     const double cos_squirt = turned.cos, sin_squirt = turned.sin;
     const double speed = v * cos_up;
-    return {Vec3(speed * (cos_aim * cos_squirt - sin_aim * sin_squirt), speed * (sin_aim * cos_squirt + cos_aim * sin_squirt), 0.0),
+    return {Vec3(speed * (cos_aim * cos_squirt - sin_aim * sin_squirt),
+                 speed * (sin_aim * cos_squirt + cos_aim * sin_squirt), 0.0),
             w, v * sin_up};
 }
 

@@ -5,8 +5,8 @@
 
 namespace carom {
 
-/// Velocity and spin of a resting ball after the strike. Source: physics, section 5 (instantaneous point impact; squirt after
-/// Alciatore's end-mass analysis, TP A.31).
+/// Velocity and spin of a resting ball after the strike. Source: physics, section 5 (instantaneous point
+/// impact; squirt after Alciatore's end-mass analysis, TP A.31).
 struct StruckBall {
     Vec3 v, w;
     double dropped_vertical;  ///< vertical speed that a planar scene drops [m/s]

@@ -36,8 +36,9 @@ double closing_speed(const Relative& m, double t) {
     return d > 0.0 ? -dot(r, rate(m, t)) / d : length(rate(m, t));
 }
 
-// The polynomial root, refined by the distance itself: Newton steps on |r(t)| - reach that are kept only while the gap
-// falls (at a graze they would run away), then at most one ulp-sized step back to the side that does not penetrate.
+// The polynomial root, refined by the distance itself: Newton steps on |r(t)| - reach that are kept only
+// while the gap falls (at a graze they would run away), then at most one ulp-sized step back to the side that
+// does not penetrate.
 double refine(const Relative& m, double reach, double t, double horizon) {
     double gap = length(at(m, t)) - reach;
     for (int i = 0; i < 3 && gap != 0.0; ++i) {
@@ -61,8 +62,8 @@ double refine(const Relative& m, double reach, double t, double horizon) {
     return t;
 }
 
-// Speed by which a contact that is pressed together has to close to count as an impact: above the rounding, and a
-// vanishing share of what the closing acceleration reaches within the horizon.
+// Speed by which a contact that is pressed together has to close to count as an impact: above the rounding,
+// and a vanishing share of what the closing acceleration reaches within the horizon.
 constexpr double kPressShare = 1e-12;
 
 double press_delay(double closing_acceleration, double noise, double horizon) {
@@ -91,14 +92,16 @@ double along_line(const Relative& m, double reach, double speed, double alpha, d
     return t <= horizon ? refine(m, reach, t, horizon) : kNever;
 }
 
-// The same motion from a later origin, before which the gap cannot close. The coefficients of |r|^2 - reach^2 are as large as the
-// squares of the ways until then; at a graze their rounding would decide (1e-11 m over 100 m) instead of the distance.
+// The same motion from a later origin, before which the gap cannot close. The coefficients of |r|^2 - reach^2
+// are as large as the squares of the ways until then; at a graze their rounding would decide (1e-11 m over
+// 100 m) instead of the distance.
 Relative brought_near(Relative m, double reach, double horizon, double& elapsed) {
     for (int i = 0; i < kApproaches; ++i) {
         const double gap = length(m.r) - reach;
         if (!(gap > 0.25 * reach)) break;
         const double speed = length(m.v), pull = length(m.a);
-        const double step = kApproachShare * 2.0 * gap / (speed + std::sqrt(speed * speed + 2.0 * pull * gap));
+        const double step =
+            kApproachShare * 2.0 * gap / (speed + std::sqrt(speed * speed + 2.0 * pull * gap));
         elapsed += step;
         if (!(elapsed < horizon)) break;
         m.r = at(m, step);
@@ -107,7 +110,8 @@ Relative brought_near(Relative m, double reach, double horizon, double& elapsed)
     return m;
 }
 
-// First time within the horizon at which |r| falls to reach, closing or only touching; c0 = |r|^2 - reach^2 now.
+// First time within the horizon at which |r| falls to reach, closing or only touching; c0 = |r|^2 - reach^2
+// now.
 double first_touch(const Relative& m, double reach, double c0, double horizon, bool straight) {
     const double speed = length(m.v), pull = length(m.a);
     if (speed == 0.0 && pull == 0.0) return kNever;
@@ -131,14 +135,14 @@ double first_touch(const Relative& m, double reach, double c0, double horizon, b
         const double d = length(near.r);
         c0 = (d - reach) * (d + reach);
     }
-    const double c[5] = {c0, 2.0 * dot(near.r, near.v), dot(near.v, near.v) + dot(near.r, near.a), dot(near.v, near.a),
-                         0.25 * dot(near.a, near.a)};
+    const double c[5] = {c0, 2.0 * dot(near.r, near.v), dot(near.v, near.v) + dot(near.r, near.a),
+                         dot(near.v, near.a), 0.25 * dot(near.a, near.a)};
     const double t = first_descent(c, horizon - elapsed);
     return t == kNever ? kNever : refine(m, reach, std::min(horizon, elapsed + t), horizon);
 }
 
-// First contact that closes by more than rounding. A graze below that is passed over; a contact that closes only because
-// it is pressed together counts from when its closing speed can be told from 0.
+// First contact that closes by more than rounding. A graze below that is passed over; a contact that closes
+// only because it is pressed together counts from when its closing speed can be told from 0.
 double time_to_reach(Relative m, double reach, double horizon, bool straight) {
     const double d = length(m.r);
     double c0 = (d - reach) * (d + reach);
@@ -171,7 +175,8 @@ double time_to_reach(Relative m, double reach, double horizon, bool straight) {
 
 double time_to_ball(const Path& b1, const Path& b2, double reach) {
     if (!b1.moves && !b2.moves) return kNever;
-    const Relative m{b2.r - b1.r, b2.v - b1.v, b2.a - b1.a, kNoise * ((length(b1.v) + b1.surface) + (length(b2.v) + b2.surface))};
+    const Relative m{b2.r - b1.r, b2.v - b1.v, b2.a - b1.a,
+                     kNoise * ((length(b1.v) + b1.surface) + (length(b2.v) + b2.surface))};
     const bool straight = (b1.straight && !b2.moves) || (b2.straight && !b1.moves);
     return time_to_reach(m, reach, std::min(b1.horizon, b2.horizon), straight);
 }
@@ -200,7 +205,8 @@ double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, d
     const double d0 = dot(normal, offset), d1 = dot(normal, ball.v), d2 = dot(normal, ball.a);
     const double noise = kNoise * (length(ball.v) + ball.surface);
     const auto foot_inside = [&](double t) {
-        const double foot = dot(direction, offset) + t * (dot(direction, ball.v) + 0.5 * t * dot(direction, ball.a));
+        const double foot =
+            dot(direction, offset) + t * (dot(direction, ball.v) + 0.5 * t * dot(direction, ball.a));
         return foot >= 0.0 && foot <= line_length;
     };
     double best = kNever;
@@ -208,19 +214,25 @@ double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, d
         const double h0 = side * d0 - R, h1 = side * d1, h2 = side * d2;
         const bool here = side * d0 >= 0.0;  // the ball is on this side now
         double t = kNever;
-        if (here && h0 <= 0.0 && h1 < -noise) t = 0.0;
+        if (here && h0 <= 0.0 && h1 < -noise)
+            t = 0.0;
         else if (here && h0 <= 0.0 && h2 < 0.0 && !(h1 > noise && h1 * h1 > 2.0 * h2 * h0))
             t = std::max(0.0, -h1 / h2) + press_delay(-h2, noise, ball.horizon);  // pressed against the nose
-        else t = first_descent_quadratic(h0, h1, h2, ball.horizon);
+        else
+            t = first_descent_quadratic(h0, h1, h2, ball.horizon);
         if (t < best && t <= ball.horizon && h1 + t * h2 < -noise && foot_inside(t)) best = t;
-        // A ball held to the nose at the end comes round it and onto the cushion: closing when the foot point enters.
-        const double enter = time_to_enter(dot(direction, offset), dot(direction, ball.v), dot(direction, ball.a), line_length, ball.horizon);
+        // A ball held to the nose at the end comes round it and onto the cushion: closing when the foot point
+        // enters.
+        const double enter = time_to_enter(dot(direction, offset), dot(direction, ball.v),
+                                           dot(direction, ball.a), line_length, ball.horizon);
         if (enter == kNever) continue;
         const double h = h0 + enter * (h1 + 0.5 * enter * h2), rate = h1 + enter * h2;
         if (h > 0.0 || !(h + R > 0.0)) continue;
         double closing = kNever;
-        if (rate < -noise) closing = enter;
-        else if (rate <= noise && h2 < 0.0) closing = enter + press_delay(-h2, noise, ball.horizon - enter);
+        if (rate < -noise)
+            closing = enter;
+        else if (rate <= noise && h2 < 0.0)
+            closing = enter + press_delay(-h2, noise, ball.horizon - enter);
         if (closing < best && closing <= ball.horizon && foot_inside(closing)) best = closing;
     }
     return best;

@@ -1,5 +1,5 @@
-// When does the next contact begin? One rule everywhere, instead of any epsilon or spacer: a pair collides only while closing;
-// overlapped and closing means now; overlapped and receding means no event.
+// When does the next contact begin? One rule everywhere, instead of any epsilon or spacer: a pair collides
+// only while closing; overlapped and closing means now; overlapped and receding means no event.
 #pragma once
 
 #include "carom/engine/vec.h"
@@ -12,20 +12,23 @@ struct Path {
     double horizon;  ///< s, may be infinite
     bool straight;   ///< v and a are parallel (rolling; sliding with u parallel to v; at rest)
     bool moves;
-    double surface = 0.0;  ///< R |w| [m/s]: the speed of the centre is not known better than to the rounding of this, either
+    double surface = 0.0;  ///< R |w| [m/s]: the speed of the centre is not known better than to the rounding
+                           ///< of this, either
 };
 
-/// Closing speeds below this many ulp of the speeds involved (of the centres and of the surfaces) are rounding noise of the projection, not an approach.
+/// Closing speeds below this many ulp of the speeds involved (of the centres and of the surfaces) are
+/// rounding noise of the projection, not an approach.
 inline constexpr double kClosingUlp = 8.0;
 
-/// Time until the centres of two balls come within `reach` (R1 + R2) while closing; kNever if not within both horizons.
+/// Time until the centres of two balls come within `reach` (R1 + R2) while closing; kNever if not within both
+/// horizons.
 double time_to_ball(const Path& ball1, const Path& ball2, double reach);
 
 /// Time until the centre comes within `reach` of a fixed point while closing.
 double time_to_circle(const Path& ball, const Vec2& center, double reach);
 
-/// Time until the centre comes within R of a segment of a straight line (its ends are circles of their own), from either
-/// side, with the foot point between the ends.
+/// Time until the centre comes within R of a segment of a straight line (its ends are circles of their own),
+/// from either side, with the foot point between the ends.
 /// @param direction unit, from -> to
 double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, double line_length, double R);
 

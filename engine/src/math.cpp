@@ -142,8 +142,8 @@ double arc_cos(double x) {
     constexpr double kPi = 3.141592653589793;
     if (!(x >= -1.0 && x <= 1.0)) return std::numeric_limits<double>::quiet_NaN();
     if (x < 0.0) return kPi - arc_cos(-x);
-    // Half the angle y in [0, pi/4]: sin y = sqrt((1 - x) / 2), by Newton from the series of the arc sine. The guess is off by
-    // less than 6e-3, and every step squares that.
+    // Half the angle y in [0, pi/4]: sin y = sqrt((1 - x) / 2), by Newton from the series of the arc sine.
+    // The guess is off by less than 6e-3, and every step squares that.
     const double s = __builtin_sqrt(0.5 * (1.0 - x));
     const double z = s * s;
     double y = s * (1.0 + z * (1.0 / 6.0 + z * (3.0 / 40.0)));

@@ -43,7 +43,8 @@ Vec2 cloth_slip(const Vec3& v, const Vec3& w, double R) {
 }
 
 MotionParams motion_params(const BallParams& balls, double gravity) {
-    return {balls.R, balls.mu_s * gravity, balls.mu_r * gravity, 5.0 * balls.mu_sp * gravity / (2.0 * balls.R)};
+    return {balls.R, balls.mu_s * gravity, balls.mu_r * gravity,
+            5.0 * balls.mu_sp * gravity / (2.0 * balls.R)};
 }
 
 MotionParams motion_params(const Plan& plan) {
@@ -56,7 +57,8 @@ MotionParams motion_params(const Plan& plan) {
 
 namespace effects {
 
-// Friction of a slipping ball: a = -mu_s g u/|u|, dw_xy/dt = -(5 mu_s g / 2R) (u x z)/|u|, until t = 2|u|/(7 mu_s g).
+// Friction of a slipping ball: a = -mu_s g u/|u|, dw_xy/dt = -(5 mu_s g / 2R) (u x z)/|u|, until t = 2|u|/(7
+// mu_s g).
 [[gnu::noinline]] void sliding_friction(Segment& s, const Vec2& u, double slip, const MotionParams& p) {
     if (p.slide == 0.0) return;
     const Vec2 direction = u / slip;
@@ -123,7 +125,8 @@ Segment pocketed_segment(double t, const Pocket& pocket) {
 }
 
 Vec3 position_at(const Segment& s, double tau) {
-    return {s.r.x() + tau * (s.v.x() + 0.5 * tau * s.a.x()), s.r.y() + tau * (s.v.y() + 0.5 * tau * s.a.y()), s.r.z()};
+    return {s.r.x() + tau * (s.v.x() + 0.5 * tau * s.a.x()), s.r.y() + tau * (s.v.y() + 0.5 * tau * s.a.y()),
+            s.r.z()};
 }
 
 Vec3 velocity_at(const Segment& s, double tau) {
@@ -157,10 +160,13 @@ Segment after_transition(const Segment& s, const MotionParams& p) {
             w.y() = v.x() / p.R;
             break;
         }
-        case MotionState::kSpinning: w.z() = 0.0; break;
+        case MotionState::kSpinning:
+            w.z() = 0.0;
+            break;
         case MotionState::kRolling:
         case MotionState::kStationary:
-        case MotionState::kPocketed: break;
+        case MotionState::kPocketed:
+            break;
     }
     return start_segment(s.start + tau, r, v, w, p);
 }

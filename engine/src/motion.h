@@ -1,5 +1,5 @@
-// One ball between two events: closed-form motion and the next own transition. Source: physics, section 1 (Leckie and
-// Greenspan, "An event-based pool physics simulator", 2005).
+// One ball between two events: closed-form motion and the next own transition. Source: physics, section 1
+// (Leckie and Greenspan, "An event-based pool physics simulator", 2005).
 #pragma once
 
 #include "carom/engine/plan.h"
@@ -29,8 +29,8 @@ MotionParams motion_params(const BallParams& balls, double gravity);
 /// With what a plan leaves out.
 MotionParams motion_params(const Plan& plan);
 
-/// The segment that starts at time t with these velocities. The motion state follows from them: rolling when the slip is at
-/// most kRollingUlp ulp of |v| + R |w| (spin is then set to the rolling one), and so on.
+/// The segment that starts at time t with these velocities. The motion state follows from them: rolling when
+/// the slip is at most kRollingUlp ulp of |v| + R |w| (spin is then set to the rolling one), and so on.
 Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
 
 /// The segment of a ball that lies in a pocket.

@@ -31,7 +31,9 @@ void add_geometry(const Table& table, Plan& plan) {
         for (const Vec2& end : {cushion.from, cushion.to}) {
             bool known = rounded_by_jaw(end, table.jaws);
             for (const Nose& nose : plan.noses) known = known || (nose.radius == 0.0 && nose.center == end);
-            if (!known) plan.noses.push_back({end, 0.0, cushion.height, EventType::kBallCushion, static_cast<int>(i)});
+            if (!known)
+                plan.noses.push_back(
+                    {end, 0.0, cushion.height, EventType::kBallCushion, static_cast<int>(i)});
         }
     }
     for (std::size_t i = 0; i < table.jaws.size(); ++i) {
@@ -53,13 +55,17 @@ Plan make_plan(const Scene& scene, kernel::Isa isa) {
     plan.jaw = &cushion_model(scene.physics.jaw_model());
     decide_effects(scene, plan);
     plan.isa = isa;
-    if (scene.physics.substeps) plan.march = kernel::march_function(isa);
-    else plan.by_tolerance = kernel::tolerance_function(isa);
+    if (scene.physics.substeps)
+        plan.march = kernel::march_function(isa);
+    else
+        plan.by_tolerance = kernel::tolerance_function(isa);
     if (scene.cue) {
         const double vertical = strike(*scene.cue, scene.balls).dropped_vertical;
         if (vertical > 0.0)
-            plan.warnings.push_back(fmt::format("the elevated cue would give the ball a vertical speed of {:.3g} m/s; the model "
-                                                "is planar and drops it", vertical));
+            plan.warnings.push_back(
+                fmt::format("the elevated cue would give the ball a vertical speed of {:.3g} m/s; the model "
+                            "is planar and drops it",
+                            vertical));
     }
     return plan;
 }

@@ -95,13 +95,16 @@ std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
     const auto at = [&](double x, double y) { return Vec2(origin.x() + x, origin.y() + y); };
     if (rack.game == RackGame::kThreeCushion) {
         const double aside = 0.1825 * (l / 2.84);
-        return {{"white", at(middle - aside, l / 4.0)}, {"yellow", at(middle, l / 4.0)}, {"red", at(middle, 3.0 * l / 4.0)}};
+        return {{"white", at(middle - aside, l / 4.0)},
+                {"yellow", at(middle, l / 4.0)},
+                {"red", at(middle, 3.0 * l / 4.0)}};
     }
     if (rack.game != RackGame::kSnooker) return {};
     const double scale = l / 3.569;
     const double baulk = 0.737 * scale, d = 0.292 * scale;
-    return {{"yellow", at(middle + d, baulk)}, {"green", at(middle - d, baulk)}, {"brown", at(middle, baulk)},
-            {"blue", at(middle, l / 2.0)},     {"pink", at(middle, 3.0 * l / 4.0)}, {"black", at(middle, l - 0.324 * scale)}};
+    return {{"yellow", at(middle + d, baulk)},   {"green", at(middle - d, baulk)},
+            {"brown", at(middle, baulk)},        {"blue", at(middle, l / 2.0)},
+            {"pink", at(middle, 3.0 * l / 4.0)}, {"black", at(middle, l - 0.324 * scale)}};
 }
 
 /// Places without jitter, row by row, left to right.

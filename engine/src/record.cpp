@@ -16,42 +16,66 @@ namespace carom {
 
 const char* name(MotionState state) {
     switch (state) {
-        case MotionState::kStationary: return "stationary";
-        case MotionState::kSpinning: return "spinning";
-        case MotionState::kSliding: return "sliding";
-        case MotionState::kRolling: return "rolling";
-        case MotionState::kPocketed: return "pocketed";
+        case MotionState::kStationary:
+            return "stationary";
+        case MotionState::kSpinning:
+            return "spinning";
+        case MotionState::kSliding:
+            return "sliding";
+        case MotionState::kRolling:
+            return "rolling";
+        case MotionState::kPocketed:
+            return "pocketed";
     }
     return "unknown";
 }
 
 const char* name(EventType type) {
     switch (type) {
-        case EventType::kCueStrike: return "cue_strike";
-        case EventType::kBallBall: return "ball_ball";
-        case EventType::kBallCluster: return "ball_cluster";
-        case EventType::kBallCushion: return "ball_cushion";
-        case EventType::kBallJaw: return "ball_jaw";
-        case EventType::kBallPocket: return "ball_pocket";
-        case EventType::kSlideRoll: return "slide_roll";
-        case EventType::kRollSpin: return "roll_spin";
-        case EventType::kRollStop: return "roll_stop";
-        case EventType::kSpinStop: return "spin_stop";
-        case EventType::kBallBallHold: return "ball_ball_hold";
-        case EventType::kBallBallRelease: return "ball_ball_release";
-        case EventType::kBallCushionHold: return "ball_cushion_hold";
-        case EventType::kBallCushionRelease: return "ball_cushion_release";
-        case EventType::kBallJawHold: return "ball_jaw_hold";
-        case EventType::kBallJawRelease: return "ball_jaw_release";
+        case EventType::kCueStrike:
+            return "cue_strike";
+        case EventType::kBallBall:
+            return "ball_ball";
+        case EventType::kBallCluster:
+            return "ball_cluster";
+        case EventType::kBallCushion:
+            return "ball_cushion";
+        case EventType::kBallJaw:
+            return "ball_jaw";
+        case EventType::kBallPocket:
+            return "ball_pocket";
+        case EventType::kSlideRoll:
+            return "slide_roll";
+        case EventType::kRollSpin:
+            return "roll_spin";
+        case EventType::kRollStop:
+            return "roll_stop";
+        case EventType::kSpinStop:
+            return "spin_stop";
+        case EventType::kBallBallHold:
+            return "ball_ball_hold";
+        case EventType::kBallBallRelease:
+            return "ball_ball_release";
+        case EventType::kBallCushionHold:
+            return "ball_cushion_hold";
+        case EventType::kBallCushionRelease:
+            return "ball_cushion_release";
+        case EventType::kBallJawHold:
+            return "ball_jaw_hold";
+        case EventType::kBallJawRelease:
+            return "ball_jaw_release";
     }
     return "unknown";
 }
 
 const char* name(StopReason reason) {
     switch (reason) {
-        case StopReason::kAtRest: return "at rest";
-        case StopReason::kTime: return "stop time";
-        case StopReason::kEvents: return "number of events";
+        case StopReason::kAtRest:
+            return "at rest";
+        case StopReason::kTime:
+            return "stop time";
+        case StopReason::kEvents:
+            return "number of events";
     }
     return "unknown";
 }
@@ -78,7 +102,8 @@ Eigen::Quaterniond rotation(const Vec3& turn) {
 Eigen::Quaterniond turned(const Vec3& w0, const Vec3& dw, double time) {
     const Vec3 swerve = w0.cross(dw);
     if (swerve == Vec3::Zero()) return rotation(w0 * time + 0.5 * time * time * dw);  // fixed axis
-    // Magnus expansion to fourth order: Omega = h w_mid - h^3/12 w_mid x dw, at most a fifth of a radian a step (1e-7 over a shot).
+    // Magnus expansion to fourth order: Omega = h w_mid - h^3/12 w_mid x dw, at most a fifth of a radian a
+    // step (1e-7 over a shot).
     constexpr double kLargestStep = 0.2;
     const double fastest = std::max(w0.norm(), (w0 + time * dw).norm());
     const int steps = 1 + static_cast<int>(fastest * time / kLargestStep);
@@ -151,7 +176,10 @@ Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
             for (std::size_t i = 0; i < track.segments.size(); ++i) {
                 starts.push_back(q);
                 if (i + 1 < track.segments.size())
-                    q = (segment_turn(track.segments[i], track.segments[i + 1].start - track.segments[i].start) * q).normalized();
+                    q = (segment_turn(track.segments[i],
+                                      track.segments[i + 1].start - track.segments[i].start) *
+                         q)
+                            .normalized();
             }
             orientations_->at_start.push_back(std::move(starts));
         }
@@ -160,7 +188,8 @@ Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
     t = std::clamp(t, 0.0, duration);
     const std::size_t i = segment_index(track.segments, t);
     const Segment& s = track.segments[i];
-    return segment_turn(s, std::min(t - s.start, s.duration)) * orientations_->at_start[static_cast<std::size_t>(ball)][i];
+    return segment_turn(s, std::min(t - s.start, s.duration)) *
+           orientations_->at_start[static_cast<std::size_t>(ball)][i];
 }
 
 std::string Record::hash() const {
@@ -168,8 +197,9 @@ std::string Record::hash() const {
     for (const BallTrack& track : tracks) {
         fnv.add(static_cast<std::uint64_t>(track.segments.size()));
         for (const Segment& s : track.segments) {
-            for (const double x : {s.start, s.r.x(), s.r.y(), s.r.z(), s.v.x(), s.v.y(), s.v.z(), s.w.x(), s.w.y(), s.w.z(),
-                                   s.a.x(), s.a.y(), s.dw.x(), s.dw.y(), s.spin_decay, s.duration})
+            for (const double x :
+                 {s.start, s.r.x(), s.r.y(), s.r.z(), s.v.x(), s.v.y(), s.v.z(), s.w.x(), s.w.y(), s.w.z(),
+                  s.a.x(), s.a.y(), s.dw.x(), s.dw.y(), s.spin_decay, s.duration})
                 fnv.add(x);
             fnv.add(static_cast<std::uint64_t>(s.state) + (s.held ? 256u : 0u));
         }
@@ -191,15 +221,20 @@ std::string Record::partner_id(const Event& event) const {
         case EventType::kBallBall:
         case EventType::kBallCluster:
         case EventType::kBallBallHold:
-        case EventType::kBallBallRelease: return tracks[index].id;
+        case EventType::kBallBallRelease:
+            return tracks[index].id;
         case EventType::kBallCushion:
         case EventType::kBallCushionHold:
-        case EventType::kBallCushionRelease: return table.cushions[index].id;
+        case EventType::kBallCushionRelease:
+            return table.cushions[index].id;
         case EventType::kBallJaw:
         case EventType::kBallJawHold:
-        case EventType::kBallJawRelease: return table.jaws[index].id;
-        case EventType::kBallPocket: return table.pockets[index].id;
-        default: return "";
+        case EventType::kBallJawRelease:
+            return table.jaws[index].id;
+        case EventType::kBallPocket:
+            return table.pockets[index].id;
+        default:
+            return "";
     }
 }
 

@@ -40,8 +40,10 @@ Json table_json(const Table& table) {
         pockets.push_back(
             {{"id", p.id}, {"center", numbers(p.center)}, {"radius", p.radius}, {"depth", p.depth}});
     }
-    return {{"preset", table.preset}, {"width", table.width}, {"length", table.length}, {"corner", numbers(table.corner)},
-            {"cushions", cushions},   {"jaws", jaws},         {"pockets", pockets}};
+    return {{"preset", table.preset}, {"width", table.width},
+            {"length", table.length}, {"corner", numbers(table.corner)},
+            {"cushions", cushions},   {"jaws", jaws},
+            {"pockets", pockets}};
 }
 
 Json balls_json(const BallParams& p) {
@@ -65,8 +67,10 @@ Json segment_json(const Segment& s) {
 
 Json event_json(const Record& record, const Event& event, const EventCost* cost) {
     Json out = {{"time", event.time}, {"type", name(event.type)}, {"a", event.a}, {"b", event.b}};
-    if (event.type == EventType::kBallCluster) out["balls"] = record.clusters[static_cast<std::size_t>(event.detail)];
-    else if (event.detail >= 0) out["nose"] = event.detail;
+    if (event.type == EventType::kBallCluster)
+        out["balls"] = record.clusters[static_cast<std::size_t>(event.detail)];
+    else if (event.detail >= 0)
+        out["nose"] = event.detail;
     if (cost != nullptr) {
         out["detect_ns"] = cost->detect_ns;
         out["resolve_ns"] = cost->resolve_ns;
@@ -140,7 +144,8 @@ void write_record(const Record& record, const std::string& path) {
     file.write("\"events\": [");
     Lines lines(file, " ");
     for (std::size_t i = 0; i < record.events.size(); ++i) {
-        lines.add(dump(event_json(record, record.events[i], record.costs.empty() ? nullptr : &record.costs[i])));
+        lines.add(
+            dump(event_json(record, record.events[i], record.costs.empty() ? nullptr : &record.costs[i])));
     }
     file.write("]}\n");
     file.commit();

@@ -250,7 +250,8 @@ Event read_event(const Node& node, Record& record) {
         std::vector<int> balls;
         const Node list = node.at("balls");
         for (std::size_t i = 0; i < list.size(); ++i)
-            balls.push_back(static_cast<int>(list.item(i).integer(0, static_cast<std::int64_t>(record.tracks.size()) - 1)));
+            balls.push_back(static_cast<int>(
+                list.item(i).integer(0, static_cast<std::int64_t>(record.tracks.size()) - 1)));
         event.detail = static_cast<int>(record.clusters.size());
         record.clusters.push_back(std::move(balls));
     } else if (node.has("nose")) {

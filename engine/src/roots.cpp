@@ -18,8 +18,8 @@ double curvature(const double (&b)[5], double s) {
     return 2.0 * b[2] + s * (6.0 * b[3] + s * (12.0 * b[4]));
 }
 
-// The sign change of g in [lo, hi]: Newton kept in the bracket, bisection where Newton leaves it or does not at least halve
-// its step. The caller refines the result with the distance itself.
+// The sign change of g in [lo, hi]: Newton kept in the bracket, bisection where Newton leaves it or does not
+// at least halve its step. The caller refines the result with the distance itself.
 template <class G, class D>
 double bracketed_root(G g, D dg, double lo, double hi, bool positive_at_lo) {
     double s = 0.5 * (lo + hi);
@@ -27,8 +27,10 @@ double bracketed_root(G g, D dg, double lo, double hi, bool positive_at_lo) {
     for (int i = 0; i < 200; ++i) {
         const double y = g(s);
         if (y == 0.0) return s;
-        if ((y > 0.0) == positive_at_lo) lo = s;
-        else hi = s;
+        if ((y > 0.0) == positive_at_lo)
+            lo = s;
+        else
+            hi = s;
         double next = s - y / dg(s);
         if (!(next > lo && next < hi) || std::abs(next - s) > 0.5 * last_step) next = lo + 0.5 * (hi - lo);
         last_step = std::abs(next - s);
@@ -103,7 +105,8 @@ double first_descent(const double (&c)[5], double T) {
         // Never falls, or all Bernstein coefficients positive: no root on [0, 1].
         if (b[1] >= 0.0 && b[2] >= 0.0 && b[3] >= 0.0) return kNever;
         const double b1 = b[0] + b[1] / 4.0, b2 = b[0] + b[1] / 2.0 + b[2] / 6.0;
-        const double b3 = b[0] + 0.75 * b[1] + 0.5 * b[2] + 0.25 * b[3], b4 = b[0] + b[1] + b[2] + b[3] + b[4];
+        const double b3 = b[0] + 0.75 * b[1] + 0.5 * b[2] + 0.25 * b[3],
+                     b4 = b[0] + b[1] + b[2] + b[3] + b[4];
         if (b1 > 0.0 && b2 > 0.0 && b3 > 0.0 && b4 > 0.0) return kNever;
     }
     double bends[2];
@@ -114,8 +117,9 @@ double first_descent(const double (&c)[5], double T) {
         const double right = i < bend_count ? bends[i] : 1.0;
         const double slope_right = slope(b, right);
         if ((slope_left > 0.0 && slope_right < 0.0) || (slope_left < 0.0 && slope_right > 0.0)) {
-            const double critical = bracketed_root([&b](double s) { return slope(b, s); },
-                                                   [&b](double s) { return curvature(b, s); }, left, right, slope_left > 0.0);
+            const double critical =
+                bracketed_root([&b](double s) { return slope(b, s); },
+                               [&b](double s) { return curvature(b, s); }, left, right, slope_left > 0.0);
             if (descent.piece(critical, slope_left > 0.0)) return descent.found() * T;
         }
         left = right;

@@ -98,7 +98,8 @@ void check_cushion_model(const Section& top, const Scene& scene) {
         if (model != CushionModel::kMathavan2010) return;
         if (mathavan_2010_ends({p.R, p.m, p.mu_s, p.e_c, p.f_c, height})) return;
         top.fail(top.has("physics") ? "physics" : "balls",
-                 fmt::format("with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the model mathavan_2010; "
+                 fmt::format("with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the "
+                             "model mathavan_2010; "
                              "lower one of them or use another cushion model",
                              p.f_c, p.mu_s, kind, id));
     };
@@ -108,7 +109,9 @@ void check_cushion_model(const Section& top, const Scene& scene) {
 
 /// Whether impacts with the table can give a ball vertical spin.
 bool cushions_twist(const Scene& scene) {
-    const auto twists = [&](CushionModel model) { return cushion_model(model).reads_friction && scene.balls.f_c > 0.0; };
+    const auto twists = [&](CushionModel model) {
+        return cushion_model(model).reads_friction && scene.balls.f_c > 0.0;
+    };
     return (!scene.table.cushions.empty() && twists(scene.physics.cushion)) ||
            (!scene.table.jaws.empty() && twists(scene.physics.jaw_model()));
 }

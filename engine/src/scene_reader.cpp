@@ -168,7 +168,8 @@ std::int64_t Section::integer(std::string_view key, std::int64_t fallback, std::
 std::optional<bool> Section::boolean(std::string_view key) const {
     const toml::node* node = table_.get(key);
     if (!node) return std::nullopt;
-    if (!node->is_boolean()) fail(key, fmt::format("{} must be true or false, not {}", full(key), type_name(*node)));
+    if (!node->is_boolean())
+        fail(key, fmt::format("{} must be true or false, not {}", full(key), type_name(*node)));
     return *node->value<bool>();
 }
 

@@ -14,12 +14,10 @@ namespace {
 /// Presets are built by name; the value says no more than that the name is there.
 constexpr Choice<bool> kBallPresets[] = {{"pool", true}, {"snooker", true}, {"carom", true}};
 
-constexpr Choice<RackGame> kRackGames[] = {{"eight_ball", RackGame::kEightBall},
-                                           {"nine_ball", RackGame::kNineBall},
-                                           {"snooker", RackGame::kSnooker},
-                                           {"three_cushion", RackGame::kThreeCushion},
-                                           {"triangle", RackGame::kTriangle},
-                                           {"line", RackGame::kLine}};
+constexpr Choice<RackGame> kRackGames[] = {
+    {"eight_ball", RackGame::kEightBall}, {"nine_ball", RackGame::kNineBall},
+    {"snooker", RackGame::kSnooker},      {"three_cushion", RackGame::kThreeCushion},
+    {"triangle", RackGame::kTriangle},    {"line", RackGame::kLine}};
 constexpr Choice<BallBallModel> kBallBallModels[] = {{"mathavan", BallBallModel::kMathavan},
                                                      {"inelastic", BallBallModel::kInelastic},
                                                      {"elastic", BallBallModel::kElastic}};
@@ -30,8 +28,9 @@ constexpr Choice<CushionModel> kCushionModels[] = {{"han_2005", CushionModel::kH
                                                    {"impulse", CushionModel::kImpulse}};
 constexpr Choice<ClothSlipSign> kClothSlipSigns[] = {{"consistent", ClothSlipSign::kConsistent},
                                                      {"as_published", ClothSlipSign::kAsPublished}};
-constexpr Choice<ClusterModel> kClusterModels[] = {
-    {"compliant", ClusterModel::kCompliant}, {"sequential", ClusterModel::kSequential}, {"rigid", ClusterModel::kRigid}};
+constexpr Choice<ClusterModel> kClusterModels[] = {{"compliant", ClusterModel::kCompliant},
+                                                   {"sequential", ClusterModel::kSequential},
+                                                   {"rigid", ClusterModel::kRigid}};
 constexpr Choice<bool> kCameras[] = {{"top", true}, {"rail", true}, {"player", true}, {"follow", true}};
 
 constexpr Interval kCoordinate = at_least(-kMaxCoordinate, kMaxCoordinate, "m");
@@ -75,8 +74,9 @@ void read_balls(const Section& top, Scene& scene) {
     scene.balls = make_ball_params(scene.ball_preset);
     const toml::table* table = top.table("balls");
     if (!table) return;
-    const Section s(*table, top.file(), "balls",
-                    {"preset", "radius", "mass", "mu_s", "mu_r", "mu_sp", "mu_b", "mu_b_fit", "e_b", "e_c", "f_c"});
+    const Section s(
+        *table, top.file(), "balls",
+        {"preset", "radius", "mass", "mu_s", "mu_r", "mu_sp", "mu_b", "mu_b_fit", "e_b", "e_c", "f_c"});
     s.choice("preset", true, kBallPresets);
     scene.ball_preset = s.text("preset", scene.ball_preset);
     BallParams p = make_ball_params(scene.ball_preset);
@@ -87,7 +87,8 @@ void read_balls(const Section& top, Scene& scene) {
     p.mu_sp = s.number("mu_sp", p.mu_sp, kFriction);
     p.mu_b = s.number("mu_b", p.mu_b, kFriction);
     if (const auto fit = s.numbers("mu_b_fit", 3, "[a, b, c] for a + b exp(-c u)", kFriction)) {
-        if (s.has("mu_b")) s.fail("mu_b_fit", "balls.mu_b and balls.mu_b_fit are two values for one friction; remove one");
+        if (s.has("mu_b"))
+            s.fail("mu_b_fit", "balls.mu_b and balls.mu_b_fit are two values for one friction; remove one");
         p.mu_b = (*fit)[0];
         p.mu_b_more = (*fit)[1];
         p.mu_b_fall = (*fit)[2];
@@ -95,10 +96,16 @@ void read_balls(const Section& top, Scene& scene) {
     p.e_b = s.number("e_b", p.e_b, kRestitution);
     p.e_c = s.number("e_c", p.e_c, kRestitution);
     p.f_c = s.number("f_c", p.f_c, kFriction);
-    for (const auto& [key, value] : {std::pair{"mu_s", p.mu_s}, std::pair{p.mu_b_more > 0.0 ? "mu_b_fit" : "mu_b", p.mu_b + p.mu_b_more}}) {
-        if (value > kernel::kLargestFriction && scene.physics.ball_ball == BallBallModel::kMathavan && !scene.physics.substeps)
-            s.fail(s.where(key), fmt::format("balls.{} = {}: the impact by tolerance takes frictions up to {}; lower it, or set "
-                                             "physics.substeps = 1000", key, value, kernel::kLargestFriction));
+    for (const auto& [key, value] :
+         {std::pair{"mu_s", p.mu_s},
+          std::pair{p.mu_b_more > 0.0 ? "mu_b_fit" : "mu_b", p.mu_b + p.mu_b_more}}) {
+        if (value > kernel::kLargestFriction && scene.physics.ball_ball == BallBallModel::kMathavan &&
+            !scene.physics.substeps)
+            s.fail(s.where(key),
+                   fmt::format(
+                       "balls.{} = {}: the impact by tolerance takes frictions up to {}; lower it, or set "
+                       "physics.substeps = 1000",
+                       key, value, kernel::kLargestFriction));
     }
     scene.balls = p;
 }
@@ -133,7 +140,8 @@ void read_rack(const Section& top, Scene& scene) {
     rack.rows = static_cast<int>(s.integer("rows", rack.rows, 1, kMaxRackRows));
     const bool spots = rack.game == RackGame::kSnooker || rack.game == RackGame::kThreeCushion;
     if (spots && !(scene.table.length > 0.0)) {
-        s.fail("game", "this layout puts balls on the spots of a table, and the cloth is endless; choose a table");
+        s.fail("game",
+               "this layout puts balls on the spots of a table, and the cloth is endless; choose a table");
     }
     for (const RackedBall& ball : make_rack(rack, scene.table, scene.balls.R)) {
         if (scene.ball.size() == kMaxBalls) {
@@ -197,8 +205,9 @@ void read_cue(const Section& top, Scene& scene) {
 void read_physics(const Section& top, Scene& scene) {
     const toml::table* table = top.table("physics");
     if (!table) return;
-    const Section s(*table, top.file(), "physics",
-                    {"gravity", "ball_ball", "cushion", "jaw", "cloth_slip", "clusters", "tolerance", "substeps"});
+    const Section s(
+        *table, top.file(), "physics",
+        {"gravity", "ball_ball", "cushion", "jaw", "cloth_slip", "clusters", "tolerance", "substeps"});
     Physics& p = scene.physics;
     p.gravity = s.number("gravity", p.gravity, at_least(0.0, kMaxGravity, "m/s^2"));
     p.ball_ball = s.choice("ball_ball", p.ball_ball, kBallBallModels);
@@ -206,10 +215,12 @@ void read_physics(const Section& top, Scene& scene) {
     if (s.has("jaw")) p.jaw = s.choice("jaw", p.cushion, kCushionModels);
     p.cloth_slip = s.choice("cloth_slip", p.cloth_slip, kClothSlipSigns);
     p.clusters = s.choice("clusters", p.clusters, kClusterModels);
-    p.tolerance = s.number("tolerance", p.tolerance, at_least(kernel::kTightestTolerance, kernel::kLoosestTolerance));
+    p.tolerance =
+        s.number("tolerance", p.tolerance, at_least(kernel::kTightestTolerance, kernel::kLoosestTolerance));
     if (s.has("substeps")) {
         if (s.has("tolerance"))
-            s.fail(s.where("substeps"), "physics.substeps and physics.tolerance exclude each other; remove one of the two");
+            s.fail(s.where("substeps"),
+                   "physics.substeps and physics.tolerance exclude each other; remove one of the two");
         p.substeps = static_cast<int>(s.integer("substeps", 1, 1, kMaxSubsteps));
     }
 }
@@ -218,8 +229,8 @@ void read_effects(const Section& top, Scene& scene) {
     const toml::table* table = top.table("effects");
     if (!table) return;
     const Section s(*table, top.file(), "effects",
-                    {"sliding", "rolling", "spin_decay", "throw", "cloth_in_impact", "cushions", "cushion_friction",
-                     "pockets", "squirt", "clusters"});
+                    {"sliding", "rolling", "spin_decay", "throw", "cloth_in_impact", "cushions",
+                     "cushion_friction", "pockets", "squirt", "clusters"});
     for (const char* keyword : kEffectKeywords) {
         if (const auto on = s.boolean(keyword)) scene.effects.push_back({keyword, *on, s.where(keyword)});
     }
@@ -256,8 +267,10 @@ void read_render(const Section& top, Scene& scene) {
     r.target = point("target");
     if (r.eye.has_value() != r.target.has_value())
         s.fail(r.eye ? "eye" : "target", "render.eye and render.target go together; give both or neither");
-    if (r.eye && s.has("camera")) s.fail("camera", "render.camera and render.eye exclude each other; remove one of the two");
-    if (r.eye && *r.eye == *r.target) s.fail("target", "render.target is where the eye is; move one of the two");
+    if (r.eye && s.has("camera"))
+        s.fail("camera", "render.camera and render.eye exclude each other; remove one of the two");
+    if (r.eye && *r.eye == *r.target)
+        s.fail("target", "render.target is where the eye is; move one of the two");
 }
 
 }  // namespace carom::detail

@@ -9,11 +9,8 @@
 namespace carom::detail {
 namespace {
 
-constexpr Choice<bool> kTablePresets[] = {{"seven_foot", true},
-                                          {"eight_foot", true},
-                                          {"nine_foot", true},
-                                          {"snooker", true},
-                                          {"carom", true}};
+constexpr Choice<bool> kTablePresets[] = {
+    {"seven_foot", true}, {"eight_foot", true}, {"nine_foot", true}, {"snooker", true}, {"carom", true}};
 
 constexpr Interval kCoordinate = at_least(-kMaxCoordinate, kMaxCoordinate, "m");
 

@@ -1,5 +1,6 @@
-// The state of one run, and the steps of its loop. Split over shot_detect.cpp (what comes next), shot_resolve.cpp (what an
-// event does) and shot_held.cpp (sustained contacts); the loop itself is simulate.cpp.
+// The state of one run, and the steps of its loop. Split over shot_detect.cpp (what comes next),
+// shot_resolve.cpp (what an event does) and shot_held.cpp (sustained contacts); the loop itself is
+// simulate.cpp.
 #pragma once
 
 #include <chrono>
@@ -90,7 +91,9 @@ class Shot {
     void sort_by_place(std::vector<HeldContact>& contacts) const;
     void restore_held();
 
-    const Segment& now_of(int ball) const { return record_.tracks[static_cast<std::size_t>(ball)].segments.back(); }
+    const Segment& now_of(int ball) const {
+        return record_.tracks[static_cast<std::size_t>(ball)].segments.back();
+    }
     Vec3 position_now(int ball) const { return position_at(now_of(ball), now_ - now_of(ball).start); }
     Vec3 velocity_now(int ball) const { return velocity_at(now_of(ball), now_ - now_of(ball).start); }
     Vec3 spin_now(int ball) const { return spin_at(now_of(ball), now_ - now_of(ball).start, plan_.balls.R); }

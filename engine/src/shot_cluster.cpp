@@ -34,12 +34,15 @@ Nearness nearness(const ClusterBall& p, const ClusterBall& q, double R) {
 
 }  // namespace
 
-// Breadth first from the pair: every ball that can be reached while the contact lasts (equation 5); then all their contacts.
+// Breadth first from the pair: every ball that can be reached while the contact lasts (equation 5); then all
+// their contacts.
 void Shot::collect_cluster(int a, int b, double v_n) {
     const double R = plan_.balls.R;
     const double time = plan_.clusters == ClusterModel::kCompliant ? contact_time(v_n) : 0.0;
     const auto reach = [&](const Nearness& near) { return time * (std::max(0.0, near.closing) + v_n); };
-    const auto member = [this](int ball) { return ClusterBall{ball, position_now(ball), velocity_now(ball), spin_now(ball)}; };
+    const auto member = [this](int ball) {
+        return ClusterBall{ball, position_now(ball), velocity_now(ball), spin_now(ball)};
+    };
     cluster_balls_.clear();
     cluster_contacts_.clear();
     cluster_balls_.push_back(member(a));
@@ -47,7 +50,8 @@ void Shot::collect_cluster(int a, int b, double v_n) {
     for (std::size_t k = 0; k < cluster_balls_.size(); ++k) {
         for (int q = 0; q < balls_; ++q) {
             if (now_of(q).state == MotionState::kPocketed) continue;
-            const bool known = std::any_of(cluster_balls_.begin(), cluster_balls_.end(), [q](const ClusterBall& m) { return m.ball == q; });
+            const bool known = std::any_of(cluster_balls_.begin(), cluster_balls_.end(),
+                                           [q](const ClusterBall& m) { return m.ball == q; });
             if (known) continue;
             const ClusterBall candidate = member(q);
             const Nearness near = nearness(cluster_balls_[k], candidate, R);
@@ -60,15 +64,18 @@ void Shot::collect_cluster(int a, int b, double v_n) {
     for (std::size_t i = 0; i < cluster_balls_.size(); ++i) {
         for (std::size_t j = i + 1; j < cluster_balls_.size(); ++j) {
             const Nearness near = nearness(cluster_balls_[i], cluster_balls_[j], R);
-            if (near.gap <= 2.0 * reach(near)) cluster_contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap});
+            if (near.gap <= 2.0 * reach(near))
+                cluster_contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap});
         }
     }
-    std::stable_sort(cluster_contacts_.begin(), cluster_contacts_.end(), [this](const ClusterContact& p, const ClusterContact& q) {
-        const auto place = [this](const ClusterContact& c) {
-            return Vec2(planar(cluster_balls_[static_cast<std::size_t>(c.i)].r) + planar(cluster_balls_[static_cast<std::size_t>(c.j)].r));
-        };
-        return left_of(place(p), place(q));
-    });
+    std::stable_sort(cluster_contacts_.begin(), cluster_contacts_.end(),
+                     [this](const ClusterContact& p, const ClusterContact& q) {
+                         const auto place = [this](const ClusterContact& c) {
+                             return Vec2(planar(cluster_balls_[static_cast<std::size_t>(c.i)].r) +
+                                         planar(cluster_balls_[static_cast<std::size_t>(c.j)].r));
+                         };
+                         return left_of(place(p), place(q));
+                     });
 }
 
 // True if the impact was a cluster's; false leaves it to the pair kernel.
@@ -83,9 +90,14 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
         steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
     } else {
         const bool frictionless = plan_.scene.physics.ball_ball == BallBallModel::kElastic;
-        const ClusterSettings settings{p.R, plan_.scene.physics.ball_ball == BallBallModel::kMathavan ? p.mu_s : 0.0,
-                                       frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b), frictionless ? 1.0 : p.e_b,
-                                       plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished, kClusterEpsilon, kClusterStep};
+        const ClusterSettings settings{
+            p.R,
+            plan_.scene.physics.ball_ball == BallBallModel::kMathavan ? p.mu_s : 0.0,
+            frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b),
+            frictionless ? 1.0 : p.e_b,
+            plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
+            kClusterEpsilon,
+            kClusterStep};
         steps = cluster_map_.compliant(cluster_balls_, cluster_contacts_, settings, v_n);
         if (steps < 0) fail("a cluster of balls did not part");
     }
@@ -97,7 +109,8 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     std::vector<int> members;
     for (const ClusterBall& ball : cluster_balls_) members.push_back(ball.ball);
     for (const int ball : members) free_ball(ball);
-    for (const ClusterBall& ball : cluster_balls_) begin(ball.ball, start_segment(now_, ball.r, ball.v, ball.w, motion_));
+    for (const ClusterBall& ball : cluster_balls_)
+        begin(ball.ball, start_segment(now_, ball.r, ball.v, ball.w, motion_));
     record_event(EventType::kBallCluster, c.a, c.b);
     record_.events.back().detail = static_cast<int>(record_.clusters.size());
     record_.clusters.push_back(std::move(members));

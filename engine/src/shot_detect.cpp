@@ -12,12 +12,16 @@ namespace {
 // Written order of events at one and the same time: pocket, own transition, ball-ball, cushion.
 int rank(EventType type) {
     switch (type) {
-        case EventType::kBallPocket: return 0;
+        case EventType::kBallPocket:
+            return 0;
         case EventType::kBallBall:
-        case EventType::kBallCluster: return 2;
+        case EventType::kBallCluster:
+            return 2;
         case EventType::kBallCushion:
-        case EventType::kBallJaw: return 3;
-        default: return 1;
+        case EventType::kBallJaw:
+            return 3;
+        default:
+            return 1;
     }
 }
 
@@ -57,16 +61,22 @@ Box around(const Vec2& center, double reach) {
 
 }  // namespace
 
-// Motion of a ball from the time `from` on. Contacts are sought from the start of the segments concerned, not from now: the
-// answer is then a function of the segments alone, whenever it is computed.
+// Motion of a ball from the time `from` on. Contacts are sought from the start of the segments concerned, not
+// from now: the answer is then a function of the segments alone, whenever it is computed.
 Path Shot::path(int ball, double from) const {
     const Segment& s = now_of(ball);
     const double tau = from - s.start;
     const Vec3 r = position_at(s, tau), v = velocity_at(s, tau);
     const bool moves = translates(s.state);
     // A free ball rolls straight ahead; a held one is pushed aside.
-    const bool straight = (s.state == MotionState::kRolling && !s.held) || s.v.x() * s.a.y() - s.v.y() * s.a.x() == 0.0;
-    return {Vec2(r.x(), r.y()), Vec2(v.x(), v.y()), s.a, std::max(0.0, s.duration - tau), straight, moves,
+    const bool straight =
+        (s.state == MotionState::kRolling && !s.held) || s.v.x() * s.a.y() - s.v.y() * s.a.x() == 0.0;
+    return {Vec2(r.x(), r.y()),
+            Vec2(v.x(), v.y()),
+            s.a,
+            std::max(0.0, s.duration - tau),
+            straight,
+            moves,
             plan_.balls.R * std::sqrt(s.w.x() * s.w.x() + s.w.y() * s.w.y() + s.w.z() * s.w.z())};
 }
 
@@ -87,14 +97,16 @@ Vec2 Shot::place(const Candidate& c) const {
             const Vec3 q = position_at(now_of(c.b), c.time - now_of(c.b).start);
             return 0.5 * (here + Vec2(q.x(), q.y()));
         }
-        case EventType::kBallPocket: return plan_.pockets[static_cast<std::size_t>(c.b)].center;
+        case EventType::kBallPocket:
+            return plan_.pockets[static_cast<std::size_t>(c.b)].center;
         case EventType::kBallCushion:
         case EventType::kBallJaw: {
             if (c.nose >= 0) return plan_.noses[static_cast<std::size_t>(c.nose)].center;
             const CushionLine& line = plan_.cushions[static_cast<std::size_t>(c.b)];
             return line.from + line.direction * line.direction.dot(here - line.from);
         }
-        default: return here;
+        default:
+            return here;
     }
 }
 
@@ -120,10 +132,12 @@ Candidate Shot::next() const {
     return first;
 }
 
-// Where the ball's surface can be from its segment's start until `duration` later; the share keeps rounding inside.
+// Where the ball's surface can be from its segment's start until `duration` later; the share keeps rounding
+// inside.
 Box Shot::swept(int ball, double duration) const {
     const Segment& s = now_of(ball);
-    const double R = plan_.balls.R, margin = R * (1.0 + kBoxShare) + kBoxShare * (std::abs(s.r.x()) + std::abs(s.r.y()));
+    const double R = plan_.balls.R,
+                 margin = R * (1.0 + kBoxShare) + kBoxShare * (std::abs(s.r.x()) + std::abs(s.r.y()));
     Box box{};
     extend(s.r.x(), s.v.x(), s.a.x(), duration, margin, box.low_x, box.high_x);
     extend(s.r.y(), s.v.y(), s.a.y(), duration, margin, box.low_y, box.high_y);
@@ -163,18 +177,22 @@ void Shot::detect_features(int ball) {
         for (std::size_t i = 0; i < plan_.cushions.size(); ++i) {
             const CushionLine& line = plan_.cushions[i];
             if (apart(whole, line_boxes_[i]) || held_to(ball, static_cast<int>(i), -1)) continue;
-            offer(time_to_line(p, line.from, line.direction, line.length, R), EventType::kBallCushion, static_cast<int>(i), -1);
+            offer(time_to_line(p, line.from, line.direction, line.length, R), EventType::kBallCushion,
+                  static_cast<int>(i), -1);
         }
         // What lies beyond the first straight cushion cannot come before it.
         const Box near = first.time < kNever ? swept(ball, first.time - from) : whole;
         for (std::size_t i = 0; i < plan_.noses.size(); ++i) {
             const Nose& nose = plan_.noses[i];
-            if (apart(near, around(nose.center, nose.radius)) || held_to(ball, -1, static_cast<int>(i))) continue;
-            offer(time_to_circle(p, nose.center, R + nose.radius), nose.type, nose.index, static_cast<int>(i));
+            if (apart(near, around(nose.center, nose.radius)) || held_to(ball, -1, static_cast<int>(i)))
+                continue;
+            offer(time_to_circle(p, nose.center, R + nose.radius), nose.type, nose.index,
+                  static_cast<int>(i));
         }
         for (std::size_t i = 0; i < plan_.pockets.size(); ++i) {
             if (apart(near, around(plan_.pockets[i].center, plan_.pockets[i].radius))) continue;
-            offer(time_to_pocket(p, plan_.pockets[i].center, plan_.pockets[i].radius), EventType::kBallPocket, static_cast<int>(i), -1);
+            offer(time_to_pocket(p, plan_.pockets[i].center, plan_.pockets[i].radius), EventType::kBallPocket,
+                  static_cast<int>(i), -1);
         }
     } else if (now_of(ball).state != MotionState::kPocketed) {
         // A ball that rests inside a pocket's circle falls.
@@ -193,11 +211,14 @@ void Shot::bound(int ball) {
     box_[i] = swept(ball, std::min(own_[i].time, feature_[i].time) - now_of(ball).start);
 }
 
-// After an event: the candidates of the balls that it touched anew, and those of balls whose next contact was with them.
+// After an event: the candidates of the balls that it touched anew, and those of balls whose next contact was
+// with them.
 void Shot::redetect() {
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-    const auto is_touched = [this](int ball) { return std::binary_search(touched_.begin(), touched_.end(), ball); };
+    const auto is_touched = [this](int ball) {
+        return std::binary_search(touched_.begin(), touched_.end(), ball);
+    };
     for (const int i : touched_) {
         const Segment& s = now_of(i);
         own_[static_cast<std::size_t>(i)] = {s.start + s.duration, EventType::kSlideRoll, i, -1, -1};

@@ -49,18 +49,21 @@ void Shot::free_ball(int ball) {
     }
 }
 
-// The group of a held ball, advanced to now and solved anew. With `transitions`, members whose interval ended with their own
-// transition make it first.
+// The group of a held ball, advanced to now and solved anew. With `transitions`, members whose interval ended
+// with their own transition make it first.
 void Shot::solve_group(int ball, bool transitions) {
     HeldGroup group;
     std::vector<int> members{ball};
     for (std::size_t k = 0; k < members.size(); ++k) {
         for (const HeldContact& c : held_) {
             const int other = c.i == members[k] ? c.j : (c.j == members[k] ? c.i : -1);
-            if (other >= 0 && std::find(members.begin(), members.end(), other) == members.end()) members.push_back(other);
+            if (other >= 0 && std::find(members.begin(), members.end(), other) == members.end())
+                members.push_back(other);
         }
     }
-    const auto is_member = [&](int b) { return std::find(members.begin(), members.end(), b) != members.end(); };
+    const auto is_member = [&](int b) {
+        return std::find(members.begin(), members.end(), b) != members.end();
+    };
     for (const int b : members) {
         HeldBall member;
         member.ball = b;
@@ -68,11 +71,15 @@ void Shot::solve_group(int ball, bool transitions) {
         member.v = velocity_now(b);
         member.w = spin_now(b);
         const Segment& s = now_of(b);
-        if (transitions && s.held && s.ends && s.start + s.duration <= now_) end_transition(member, s.state, plan_.balls.R);
+        if (transitions && s.held && s.ends && s.start + s.duration <= now_)
+            end_transition(member, s.state, plan_.balls.R);
         group.balls.push_back(member);
     }
-    const auto left_of = [](const Vec3& p, const Vec3& q) { return p.x() < q.x() || (p.x() == q.x() && p.y() < q.y()); };
-    std::sort(group.balls.begin(), group.balls.end(), [&](const HeldBall& p, const HeldBall& q) { return left_of(p.r, q.r); });
+    const auto left_of = [](const Vec3& p, const Vec3& q) {
+        return p.x() < q.x() || (p.x() == q.x() && p.y() < q.y());
+    };
+    std::sort(group.balls.begin(), group.balls.end(),
+              [&](const HeldBall& p, const HeldBall& q) { return left_of(p.r, q.r); });
     for (HeldContact& c : held_) {
         if (!is_member(c.i)) continue;
         refresh_normal(c);
@@ -110,7 +117,8 @@ void Shot::solve_group(int ball, bool transitions) {
     }
 }
 
-// A ball that runs off the end of its cushion lets go of it: when the clock can no longer tell the time to the end from 0.
+// A ball that runs off the end of its cushion lets go of it: when the clock can no longer tell the time to
+// the end from 0.
 bool Shot::release_past_ends(HeldGroup& group) {
     const std::size_t before = group.contacts.size();
     std::erase_if(group.contacts, [this](const HeldContact& c) {
@@ -119,7 +127,8 @@ bool Shot::release_past_ends(HeldGroup& group) {
         s.r = position_now(c.i);
         s.v = velocity_now(c.i);
         s.a = now_of(c.i).a;
-        if (now_ + time_to_line_end(plan_.cushions[static_cast<std::size_t>(c.cushion)], s) > now_) return false;
+        if (now_ + time_to_line_end(plan_.cushions[static_cast<std::size_t>(c.cushion)], s) > now_)
+            return false;
         record_event(c.release_type(), c.i, c.partner, c.nose);
         return true;
     });
@@ -166,15 +175,26 @@ void Shot::restore_held() {
         c.nose = e.detail;
         switch (e.type) {
             case EventType::kBallBallHold:
-            case EventType::kBallBallRelease: c.j = e.b; break;
+            case EventType::kBallBallRelease:
+                c.j = e.b;
+                break;
             case EventType::kBallCushionHold:
-            case EventType::kBallCushionRelease: c.cushion = e.detail >= 0 ? -1 : e.b; break;
+            case EventType::kBallCushionRelease:
+                c.cushion = e.detail >= 0 ? -1 : e.b;
+                break;
             case EventType::kBallJawHold:
-            case EventType::kBallJawRelease: c.jaw = true; break;
-            default: continue;
+            case EventType::kBallJawRelease:
+                c.jaw = true;
+                break;
+            default:
+                continue;
         }
-        if (e.type == c.hold_type()) held_.push_back(c);
-        else std::erase_if(held_, [&c](const HeldContact& h) { return h.i == c.i && h.j == c.j && h.cushion == c.cushion && h.nose == c.nose; });
+        if (e.type == c.hold_type())
+            held_.push_back(c);
+        else
+            std::erase_if(held_, [&c](const HeldContact& h) {
+                return h.i == c.i && h.j == c.j && h.cushion == c.cushion && h.nose == c.nose;
+            });
     }
     for (HeldContact& c : held_) refresh_normal(c);
 }

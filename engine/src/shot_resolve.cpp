@@ -59,18 +59,30 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     const BallParams& p = plan_.balls;
     const Physics& physics = plan_.scene.physics;
     const double mu_s = plan_.cloth_in_impact ? p.mu_s : 0.0;
-    const kernel::ImpactParams params{p.R, p.m, mu_s, mu_s, plan_.friction ? pair_friction(one, two) : 0.0, p.e_b,
-                                      physics.cloth_slip == ClothSlipSign::kAsPublished ? kernel::ClothSlip::kAsPublished
-                                                                                        : kernel::ClothSlip::kConsistent};
+    const kernel::ImpactParams params{p.R,
+                                      p.m,
+                                      mu_s,
+                                      mu_s,
+                                      plan_.friction ? pair_friction(one, two) : 0.0,
+                                      p.e_b,
+                                      physics.cloth_slip == ClothSlipSign::kAsPublished
+                                          ? kernel::ClothSlip::kAsPublished
+                                          : kernel::ClothSlip::kConsistent};
     kernel::ImpactResult result;
     const auto start = kProfile ? Clock::now() : Clock::time_point{};
     switch (physics.ball_ball) {
         case BallBallModel::kMathavan:
-            if (plan_.march != nullptr) plan_.march(b1, b2, params, *physics.substeps, result);
-            else plan_.by_tolerance(b1, b2, params, physics.tolerance, result);
+            if (plan_.march != nullptr)
+                plan_.march(b1, b2, params, *physics.substeps, result);
+            else
+                plan_.by_tolerance(b1, b2, params, physics.tolerance, result);
             break;
-        case BallBallModel::kInelastic: kernel::collide_inelastic(b1, b2, params, result); break;
-        case BallBallModel::kElastic: kernel::collide_elastic(b1, b2, params, result); break;
+        case BallBallModel::kInelastic:
+            kernel::collide_inelastic(b1, b2, params, result);
+            break;
+        case BallBallModel::kElastic:
+            kernel::collide_elastic(b1, b2, params, result);
+            break;
     }
     if constexpr (kProfile) {
         cost_.kernel_ns = nanoseconds(start, Clock::now());
@@ -81,10 +93,11 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     }
     const auto id = [this](int ball) { return record_.tracks[static_cast<std::size_t>(ball)].id; };
     if (result.status != kernel::ImpactStatus::kOk && result.status != kernel::ImpactStatus::kNotApproaching)
-        fail(fmt::format("the impact of {} and {} could not be computed: {}", id(one), id(two), kernel::describe(result.status)));
+        fail(fmt::format("the impact of {} and {} could not be computed: {}", id(one), id(two),
+                         kernel::describe(result.status)));
     free_ball(one);
     free_ball(two);
-    const auto vec = [](const double (&x)[3]) { return Vec3(x[0], x[1], x[2]); };
+    const auto vec = [](const double(&x)[3]) { return Vec3(x[0], x[1], x[2]); };
     begin(one, start_segment(now_, r1, vec(result.v1), vec(result.w1), motion_));
     begin(two, start_segment(now_, r2, vec(result.v2), vec(result.w2), motion_));
     if (result.status == kernel::ImpactStatus::kOk) record_event(EventType::kBallBall, c.a, c.b);
@@ -119,7 +132,9 @@ void Shot::resolve_nose(const Candidate& c) {
     contact.n = -normal;
     const Vec2 pull = now_of(c.a).a;
     const double v_n = -(normal.x() * v.x() + normal.y() * v.y());
-    if (hold_instead(contact, v_n, -(normal.x() * pull.x() + normal.y() * pull.y()) - curving, plan_.balls.e_c)) return;
+    if (hold_instead(contact, v_n, -(normal.x() * pull.x() + normal.y() * pull.y()) - curving,
+                     plan_.balls.e_c))
+        return;
 
     const BallParams& p = plan_.balls;
     const CushionModelInfo& model = contact.jaw ? *plan_.jaw : *plan_.cushion;
@@ -151,11 +166,19 @@ template <bool kProfile>
 void Shot::apply(const Candidate& c) {
     ++quiet_;
     switch (c.type) {
-        case EventType::kBallBall: resolve_ball_ball<kProfile>(c); break;
+        case EventType::kBallBall:
+            resolve_ball_ball<kProfile>(c);
+            break;
         case EventType::kBallCushion:
-        case EventType::kBallJaw: resolve_nose<kProfile>(c); break;
-        case EventType::kBallPocket: resolve_pocket(c); break;
-        default: resolve_transition(c); break;
+        case EventType::kBallJaw:
+            resolve_nose<kProfile>(c);
+            break;
+        case EventType::kBallPocket:
+            resolve_pocket(c);
+            break;
+        default:
+            resolve_transition(c);
+            break;
     }
     guard_cap();
 }
@@ -166,18 +189,20 @@ template void Shot::apply<true>(const Candidate&);
 void Shot::guard_cap() const {
     const std::size_t count = record_.events.size(), cap = static_cast<std::size_t>(kEventCap);
     const bool crowded = count > cap && now_ - record_.events[count - 1 - cap].time < kEventCapSpan;
-    if (crowded) fail(fmt::format("more than {} events within {:g} s of simulated time", kEventCap, kEventCapSpan));
+    if (crowded)
+        fail(fmt::format("more than {} events within {:g} s of simulated time", kEventCap, kEventCapSpan));
     if (quiet_ > kQuietCap) fail(fmt::format("{} rounds without an event", kQuietCap));
 }
 
 void Shot::fail(const std::string& why) const {
-    std::string text = fmt::format("simulation stopped at t = {:.17g} s after {} events: {}\n", now_, record_.events.size(), why);
+    std::string text = fmt::format("simulation stopped at t = {:.17g} s after {} events: {}\n", now_,
+                                   record_.events.size(), why);
     const std::size_t count = record_.events.size();
     text += "last events:\n";
     for (std::size_t i = count > 8 ? count - 8 : 0; i < count; ++i) {
         const Event& e = record_.events[i];
-        text += fmt::format("  {:.17g} {} {} {}\n", e.time, name(e.type), record_.tracks[static_cast<std::size_t>(e.a)].id,
-                            record_.partner_id(e));
+        text += fmt::format("  {:.17g} {} {} {}\n", e.time, name(e.type),
+                            record_.tracks[static_cast<std::size_t>(e.a)].id, record_.partner_id(e));
     }
     text += "balls that move (id state x y vx vy wx wy wz):\n";
     for (int i = 0; i < balls_; ++i) {
@@ -186,8 +211,8 @@ void Shot::fail(const std::string& why) const {
         const double tau = std::max(0.0, now_ - s.start);
         const Vec3 r = position_at(s, tau), v = velocity_at(s, tau), w = spin_at(s, tau, plan_.balls.R);
         text += fmt::format("  {} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n",
-                            record_.tracks[static_cast<std::size_t>(i)].id, name(s.state), r.x(), r.y(), v.x(), v.y(), w.x(),
-                            w.y(), w.z());
+                            record_.tracks[static_cast<std::size_t>(i)].id, name(s.state), r.x(), r.y(),
+                            v.x(), v.y(), w.x(), w.y(), w.z());
     }
     throw SimulationError(text);
 }

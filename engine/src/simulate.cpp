@@ -41,8 +41,8 @@ void Shot::first_candidates() {
     box_.resize(record_.tracks.size());
     for (const CushionLine& line : plan_.cushions) {
         const Vec2 to = line.from + line.length * line.direction;
-        line_boxes_.push_back({std::min(line.from.x(), to.x()), std::min(line.from.y(), to.y()), std::max(line.from.x(), to.x()),
-                               std::max(line.from.y(), to.y())});
+        line_boxes_.push_back({std::min(line.from.x(), to.x()), std::min(line.from.y(), to.y()),
+                               std::max(line.from.x(), to.x()), std::max(line.from.y(), to.y())});
     }
     for (int i = 0; i < balls_; ++i) touched_.push_back(i);
     redetect();
@@ -60,8 +60,10 @@ void Shot::take_up(const Record& record) {
 template <bool kProfile>
 Record Shot::run(const Record* so_far) {
     const auto set_up_start = kProfile ? Clock::now() : Clock::time_point{};
-    if (so_far != nullptr) take_up(*so_far);
-    else set_up(kProfile);
+    if (so_far != nullptr)
+        take_up(*so_far);
+    else
+        set_up(kProfile);
     if constexpr (kProfile) record_.costs.resize(record_.events.size());
     record_.start_time = options_.start_time;
     if constexpr (kProfile) record_.setup_detect_ns = nanoseconds(set_up_start, Clock::now());

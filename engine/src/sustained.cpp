@@ -24,12 +24,15 @@ enum class Mode : unsigned char { kSliding, kRolling, kResting };
 // A member with what the equations need. All forces are per mass.
 struct Body {
     Mode mode = Mode::kResting;
-    Vec2 direction = Vec2::Zero();  // sliding: of the slip; rolling: of the velocity, or of the push that starts it
-    Vec2 push = Vec2::Zero();       // sum of contact forces
-    Vec2 couple = Vec2::Zero();     // (T x z) / R of the contact torques
-    double lift = 0.0;              // vertical contact force
-    Vec2 a = Vec2::Zero();          // acceleration
-    double mobility() const { return mode == Mode::kSliding ? 1.0 : (mode == Mode::kRolling ? 5.0 / 7.0 : 0.0); }
+    Vec2 direction =
+        Vec2::Zero();  // sliding: of the slip; rolling: of the velocity, or of the push that starts it
+    Vec2 push = Vec2::Zero();    // sum of contact forces
+    Vec2 couple = Vec2::Zero();  // (T x z) / R of the contact torques
+    double lift = 0.0;           // vertical contact force
+    Vec2 a = Vec2::Zero();       // acceleration
+    double mobility() const {
+        return mode == Mode::kSliding ? 1.0 : (mode == Mode::kRolling ? 5.0 / 7.0 : 0.0);
+    }
 };
 
 // A contact as the solver sees it; i, j index the bodies.
@@ -37,7 +40,8 @@ struct Link {
     int i, j;
     Vec2 n;
     double friction_z;  // f_z / N, on ball i
-    double opening;     // what the gap's acceleration has besides n . (a_j - a_i): the turning of n, less a margin
+    double
+        opening;  // what the gap's acceleration has besides n . (a_j - a_i): the turning of n, less a margin
     double diagonal;
     double N;
 };
@@ -56,7 +60,8 @@ class Solver {
         settle();
         make_directions();
         solve_forces(0.0);
-        // The normal turns while the balls move across each other; a margin keeps the third order from penetrating.
+        // The normal turns while the balls move across each other; a margin keeps the third order from
+        // penetrating.
         if (turning()) solve_forces(kHoldRefresh);
         write_segments();
         // Directions that turn are taken at the middle of the interval: second order.
@@ -76,18 +81,20 @@ class Solver {
             ball.v = s.v;
             ball.w = s.w;  // a rolling ball's spin is exactly the rolling one
             Body body;
-            body.mode = s.state == MotionState::kSliding ? Mode::kSliding
-                        : s.state == MotionState::kRolling ? Mode::kRolling : Mode::kResting;
+            body.mode = s.state == MotionState::kSliding   ? Mode::kSliding
+                        : s.state == MotionState::kRolling ? Mode::kRolling
+                                                           : Mode::kResting;
             bodies_.push_back(body);
             const double speed = length(planar(ball.v));
             const double spin = length(Vec2(length(planar(ball.w)), ball.w.z()));
-            noise_ = std::max(noise_, 8.0 * kClosingUlp * std::numeric_limits<double>::epsilon() * (speed + motion_.R * spin));
+            noise_ = std::max(noise_, 8.0 * kClosingUlp * std::numeric_limits<double>::epsilon() *
+                                          (speed + motion_.R * spin));
         }
         settle();
     }
 
-    // A rolling ball whose velocity is the rounding of its group's has stopped: the direction of such a velocity means nothing, and
-    // rolling friction along it would drive the ball.
+    // A rolling ball whose velocity is the rounding of its group's has stopped: the direction of such a
+    // velocity means nothing, and rolling friction along it would drive the ball.
     void settle() {
         for (std::size_t k = 0; k < bodies_.size(); ++k) {
             HeldBall& ball = group_.balls[k];
@@ -117,8 +124,9 @@ class Solver {
         return dot(link.n, other - velocity(link.i));
     }
 
-    // Takes the relative normal velocity out of every contact, in the metric of the masses: what capture does plastically.
-    // Rates within the rounding of the projection are none: they would set a resting ball rolling.
+    // Takes the relative normal velocity out of every contact, in the metric of the masses: what capture does
+    // plastically. Rates within the rounding of the projection are none: they would set a resting ball
+    // rolling.
     void project_velocities() {
         for (int sweep = 0; sweep < kSweeps; ++sweep) {
             bool done = true;
@@ -135,7 +143,8 @@ class Solver {
             }
             if (done) break;
         }
-        // Normals that nearly agree (round a jaw onto the cushion) do not meet that way: in the end none may close, and one may open.
+        // Normals that nearly agree (round a jaw onto the cushion) do not meet that way: in the end none may
+        // close, and one may open.
         for (Link& link : links_) link.N = 0.0;
         for (int sweep = 0; sweep < kCaptureSweeps; ++sweep) {
             bool done = true;
@@ -170,14 +179,16 @@ class Solver {
     void make_directions() {
         for (std::size_t k = 0; k < bodies_.size(); ++k) {
             const HeldBall& ball = group_.balls[k];
-            const Vec2 along = bodies_[k].mode == Mode::kSliding ? cloth_slip(ball.v, ball.w, motion_.R) : planar(ball.v);
+            const Vec2 along =
+                bodies_[k].mode == Mode::kSliding ? cloth_slip(ball.v, ball.w, motion_.R) : planar(ball.v);
             const double size = length(along);
             if (size > 0.0) bodies_[k].direction = along / size;  // else: that of the push, if any
         }
         for (std::size_t c = 0; c < links_.size(); ++c) {
             Link& link = links_[c];
             if (link.j < 0) continue;
-            const HeldBall &bi = group_.balls[static_cast<std::size_t>(link.i)], &bj = group_.balls[static_cast<std::size_t>(link.j)];
+            const HeldBall &bi = group_.balls[static_cast<std::size_t>(link.i)],
+                           &bj = group_.balls[static_cast<std::size_t>(link.j)];
             const Vec2 t(link.n.y(), -link.n.x());
             const double s_x = dot(planar(bi.v) - planar(bj.v), t) - motion_.R * (bi.w.z() + bj.w.z());
             const double s_z = motion_.R * (dot(planar(bi.w), t) + dot(planar(bj.w), t));
@@ -195,7 +206,8 @@ class Solver {
             if (b.mode == Mode::kResting || !(s.duration < kNever)) continue;
             const bool sliding = b.mode == Mode::kSliding;
             const Vec2 x = sliding ? cloth_slip(ball.v, ball.w, motion_.R) : planar(ball.v);
-            const Vec2 dx = sliding ? Vec2(s.a.x() - motion_.R * s.dw.y(), s.a.y() + motion_.R * s.dw.x()) : s.a;
+            const Vec2 dx =
+                sliding ? Vec2(s.a.x() - motion_.R * s.dw.y(), s.a.y() + motion_.R * s.dw.x()) : s.a;
             if (std::abs(cross(x, dx)) <= kHoldStraight * length(x) * length(dx)) continue;
             const Vec2 middle = x + 0.5 * s.duration * dx;
             const double size = length(middle);
@@ -207,16 +219,19 @@ class Solver {
         return turned;
     }
 
-    // Relative motion across the normal, and the distance over which the normal turns (0: a straight cushion).
+    // Relative motion across the normal, and the distance over which the normal turns (0: a straight
+    // cushion).
     double across(std::size_t c, Vec2& velocity_across) const {
         const HeldContact& contact = group_.contacts[c];
         const Link& link = links_[c];
         const Vec2 t(link.n.y(), -link.n.x());
         const Vec2 other = link.j >= 0 ? velocity(link.j) : Vec2::Zero();
         const Vec2 other_a = link.j >= 0 ? bodies_[static_cast<std::size_t>(link.j)].a : Vec2::Zero();
-        velocity_across = Vec2(dot(other - velocity(link.i), t), dot(other_a - bodies_[static_cast<std::size_t>(link.i)].a, t));
+        velocity_across = Vec2(dot(other - velocity(link.i), t),
+                               dot(other_a - bodies_[static_cast<std::size_t>(link.i)].a, t));
         if (contact.cushion >= 0) return 0.0;
-        return contact.j >= 0 ? 2.0 * motion_.R : motion_.R + plan_.noses[static_cast<std::size_t>(contact.nose)].radius;
+        return contact.j >= 0 ? 2.0 * motion_.R
+                              : motion_.R + plan_.noses[static_cast<std::size_t>(contact.nose)].radius;
     }
 
     bool turning() const {
@@ -227,7 +242,8 @@ class Solver {
             const double speeds = length(velocity(link.i)) + (link.j >= 0 ? length(velocity(link.j)) : 0.0);
             const double pulls = length(bodies_[static_cast<std::size_t>(link.i)].a) +
                                  (link.j >= 0 ? length(bodies_[static_cast<std::size_t>(link.j)].a) : 0.0);
-            if (std::abs(t.x()) > kHoldStraight * speeds || std::abs(t.y()) > kHoldStraight * pulls) return true;
+            if (std::abs(t.x()) > kHoldStraight * speeds || std::abs(t.y()) > kHoldStraight * pulls)
+                return true;
         }
         return false;
     }
@@ -236,9 +252,15 @@ class Solver {
         const double g = plan_.gravity;
         for (Body& b : bodies_) {
             switch (b.mode) {
-                case Mode::kSliding: b.a = b.push - motion_.slide * std::max(0.0, 1.0 - b.lift / g) * b.direction; break;
-                case Mode::kRolling: b.a = (5.0 / 7.0) * (b.push + b.couple) - motion_.roll * b.direction; break;
-                case Mode::kResting: b.a = Vec2::Zero(); break;
+                case Mode::kSliding:
+                    b.a = b.push - motion_.slide * std::max(0.0, 1.0 - b.lift / g) * b.direction;
+                    break;
+                case Mode::kRolling:
+                    b.a = (5.0 / 7.0) * (b.push + b.couple) - motion_.roll * b.direction;
+                    break;
+                case Mode::kResting:
+                    b.a = Vec2::Zero();
+                    break;
             }
         }
     }
@@ -323,12 +345,14 @@ class Solver {
         for (std::size_t c = 0; c < links_.size(); ++c) {
             Vec2 t;
             const double distance = across(c, t);
-            // |r|'' has (v_t^2) / |r| from the turning normal; its own rate, 3 v_t a_t / |r|, must not close the gap.
-            links_[c].opening = distance > 0.0
-                                    ? t.x() * t.x() / distance - (interval > 0.0 ? 1.5 * interval * std::abs(t.x() * t.y()) / distance +
-                                                                                       interval * interval * t.y() * t.y() / distance
-                                                                                 : 0.0)
-                                    : 0.0;
+            // |r|'' has (v_t^2) / |r| from the turning normal; its own rate, 3 v_t a_t / |r|, must not close
+            // the gap.
+            links_[c].opening =
+                distance > 0.0 ? t.x() * t.x() / distance -
+                                     (interval > 0.0 ? 1.5 * interval * std::abs(t.x() * t.y()) / distance +
+                                                           interval * interval * t.y() * t.y() / distance
+                                                     : 0.0)
+                               : 0.0;
         }
         for (std::size_t tries = 0; tries < 2 * bodies_.size() + 1; ++tries) {
             solve_complementarity();
@@ -360,7 +384,8 @@ class Solver {
         const double load = std::max(0.0, 1.0 - b.lift / plan_.gravity);
         const double turn = 2.5 * motion_.slide * load / R;
         // T / I with (T x z) / R = couple: T = R z x couple.
-        return {-turn * b.direction.y() - 2.5 * b.couple.y() / R, turn * b.direction.x() + 2.5 * b.couple.x() / R};
+        return {-turn * b.direction.y() - 2.5 * b.couple.y() / R,
+                turn * b.direction.x() + 2.5 * b.couple.x() / R};
     }
 
     double line_end_time(const HeldContact& contact, const Segment& s) const {
@@ -382,7 +407,8 @@ class Solver {
             double time = kNever;
             if (b.mode == Mode::kSliding) {
                 s.state = MotionState::kSliding;
-                time = time_of(cloth_slip(ball.v, ball.w, motion_.R), Vec2(s.a.x() - motion_.R * s.dw.y(), s.a.y() + motion_.R * s.dw.x()), gone);
+                time = time_of(cloth_slip(ball.v, ball.w, motion_.R),
+                               Vec2(s.a.x() - motion_.R * s.dw.y(), s.a.y() + motion_.R * s.dw.x()), gone);
             } else if (b.mode == Mode::kRolling) {
                 s.state = MotionState::kRolling;
                 time = time_of(planar(ball.v), s.a, gone);
@@ -397,7 +423,8 @@ class Solver {
             const HeldContact& contact = group_.contacts[c];
             const Link& link = links_[c];
             if (contact.cushion >= 0)
-                interval = std::min(interval, line_end_time(contact, group_.balls[static_cast<std::size_t>(link.i)].segment));
+                interval = std::min(
+                    interval, line_end_time(contact, group_.balls[static_cast<std::size_t>(link.i)].segment));
             if (link.j >= 0) interval = std::min(interval, friction_flip(link));
         }
         for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -409,7 +436,8 @@ class Solver {
     // The vertical friction keeps its direction until the slip s_z changes sign.
     double friction_flip(const Link& link) const {
         if (link.friction_z == 0.0 || link.N == 0.0) return kNever;
-        const Segment &si = group_.balls[static_cast<std::size_t>(link.i)].segment, &sj = group_.balls[static_cast<std::size_t>(link.j)].segment;
+        const Segment &si = group_.balls[static_cast<std::size_t>(link.i)].segment,
+                      &sj = group_.balls[static_cast<std::size_t>(link.j)].segment;
         const Vec2 t(link.n.y(), -link.n.x());
         const double s_z = dot(planar(si.w) + planar(sj.w), t), rate = dot(si.dw + sj.dw, t);
         if (!(s_z * rate < 0.0)) return kNever;
@@ -421,7 +449,8 @@ class Solver {
             HeldContact& contact = group_.contacts[c];
             contact.force = links_[c].N;
             const Link& link = links_[c];
-            contact.released = link.N == 0.0 && (gap_acceleration(link) > 0.0 || link.diagonal == 0.0 || all_rest(link));
+            contact.released =
+                link.N == 0.0 && (gap_acceleration(link) > 0.0 || link.diagonal == 0.0 || all_rest(link));
         }
     }
 
@@ -458,10 +487,14 @@ double time_to_line_end(const CushionLine& line, const Segment& s) {
 }
 
 EventType HeldContact::hold_type() const {
-    return j >= 0 ? EventType::kBallBallHold : nose >= 0 && jaw ? EventType::kBallJawHold : EventType::kBallCushionHold;
+    return j >= 0             ? EventType::kBallBallHold
+           : nose >= 0 && jaw ? EventType::kBallJawHold
+                              : EventType::kBallCushionHold;
 }
 EventType HeldContact::release_type() const {
-    return j >= 0 ? EventType::kBallBallRelease : nose >= 0 && jaw ? EventType::kBallJawRelease : EventType::kBallCushionRelease;
+    return j >= 0             ? EventType::kBallBallRelease
+           : nose >= 0 && jaw ? EventType::kBallJawRelease
+                              : EventType::kBallCushionRelease;
 }
 
 bool holds(double v_n, double a_c, double restitution) {
@@ -489,9 +522,12 @@ void end_transition(HeldBall& member, MotionState state, double R) {
             member.v = Vec3::Zero();
             member.w.x() = member.w.y() = 0.0;
             break;
-        case MotionState::kSpinning: member.w.z() = 0.0; break;
+        case MotionState::kSpinning:
+            member.w.z() = 0.0;
+            break;
         case MotionState::kStationary:
-        case MotionState::kPocketed: break;
+        case MotionState::kPocketed:
+            break;
     }
 }
 

@@ -1,9 +1,10 @@
-// Sustained contacts: balls that stay in touch and push each other, or a cushion. Accelerations are constant over an interval,
-// so the engine's polynomials stay. Source: clusters.md section 7 of the design notes; docs/hard_cases.md H5, H7.
+// Sustained contacts: balls that stay in touch and push each other, or a cushion. Accelerations are constant
+// over an interval, so the engine's polynomials stay. Source: clusters.md section 7 of the design notes;
+// docs/hard_cases.md H5, H7.
 //
-// Forces per contact (normal force N >= 0, n from ball i to ball j or into the cushion): -N n on i, +N n on j, and the
-// vertical share of the friction between two balls, which loads the cloth and brakes the spins. The friction along the
-// cloth and a cushion's friction are left out.
+// Forces per contact (normal force N >= 0, n from ball i to ball j or into the cushion): -N n on i, +N n on
+// j, and the vertical share of the friction between two balls, which loads the cloth and brakes the spins.
+// The friction along the cloth and a cushion's friction are left out.
 #pragma once
 
 #include <vector>
@@ -14,25 +15,26 @@
 
 namespace carom {
 
-/// Whether a contact that closes at v_n [m/s] while pressed together with a_c [m/s^2] is held instead of bouncing.
+/// Whether a contact that closes at v_n [m/s] while pressed together with a_c [m/s^2] is held instead of
+/// bouncing.
 bool holds(double v_n, double a_c, double restitution);
 
 struct HeldContact {
-    int i = -1, j = -1;          ///< balls (engine indices); j = -1 for the table
+    int i = -1, j = -1;           ///< balls (engine indices); j = -1 for the table
     int cushion = -1, nose = -1;  ///< the straight cushion (Plan::cushions), or the round nose (Plan::noses)
     bool jaw = false;             ///< the nose is a jaw
     Vec2 n = Vec2::Zero();        ///< unit, from i to j or into the table's part; kept over one interval
-    double force = 0.0;          ///< N / m [m/s^2]
-    bool released = false;       ///< result: no longer pressed together
+    double force = 0.0;           ///< N / m [m/s^2]
+    bool released = false;        ///< result: no longer pressed together
     EventType hold_type() const;
     EventType release_type() const;
-    int partner = -1;             ///< what an event calls b
+    int partner = -1;  ///< what an event calls b
 };
 
 struct HeldBall {
     int ball = -1;
     Vec3 r, v, w;
-    Segment segment;                  ///< result
+    Segment segment;  ///< result
 };
 
 /// One connected group. Both lists are ordered by position, never by id.
@@ -41,11 +43,13 @@ struct HeldGroup {
     std::vector<HeldContact> contacts;
 };
 
-/// Solves for forces and accelerations at `now` and writes the segments of all members, which end together at the first
-/// transition, turn of a direction, or end of a cushion. Contacts that are no longer pressed together are marked released.
+/// Solves for forces and accelerations at `now` and writes the segments of all members, which end together at
+/// the first transition, turn of a direction, or end of a cushion. Contacts that are no longer pressed
+/// together are marked released.
 void solve_held(HeldGroup& group, const Plan& plan, const MotionParams& motion, double now);
 
-/// Time until the foot point of a ball that runs along a cushion passes the cushion's end; 0 if it is leaving it now.
+/// Time until the foot point of a ball that runs along a cushion passes the cushion's end; 0 if it is leaving
+/// it now.
 double time_to_line_end(const CushionLine& line, const Segment& segment);
 
 /// The state of a member at its own transition (slip gone, stopped, spin gone), in place.

@@ -70,8 +70,9 @@ PocketTable nine_foot() {
     return t;
 }
 
-/// Eight-foot table: playing surface 92 x 46 in, the eight-foot size of the WPA equipment specifications (recalled; tables
-/// of 88 x 44 in are sold as eight-foot too). Pockets as on the nine-foot table: the specification has one set for both.
+/// Eight-foot table: playing surface 92 x 46 in, the eight-foot size of the WPA equipment specifications
+/// (recalled; tables of 88 x 44 in are sold as eight-foot too). Pockets as on the nine-foot table: the
+/// specification has one set for both.
 PocketTable eight_foot() {
     PocketTable t = nine_foot();
     t.length = 92.0 * 0.0254;
@@ -79,10 +80,11 @@ PocketTable eight_foot() {
     return t;
 }
 
-/// Twelve-foot snooker table. Playing surface 3.569 x 1.778 m (11 ft 8 1/2 in x 5 ft 10 in, rules of the WPBSA, section 1).
-/// Nose height 7/5 of the ball's radius (Mathavan, Jackson, Parkin 2010). The pocket templates of the WPBSA are not published:
-/// mouths of 89 and 105 mm are the figures commonly quoted (recalled), and jaw radii, depths and pocket radii are chosen to
-/// go with them: large round jaws, and a ball falls where its centre passes the corner, or the rail line at the side.
+/// Twelve-foot snooker table. Playing surface 3.569 x 1.778 m (11 ft 8 1/2 in x 5 ft 10 in, rules of the
+/// WPBSA, section 1). Nose height 7/5 of the ball's radius (Mathavan, Jackson, Parkin 2010). The pocket
+/// templates of the WPBSA are not published: mouths of 89 and 105 mm are the figures commonly quoted
+/// (recalled), and jaw radii, depths and pocket radii are chosen to go with them: large round jaws, and a
+/// ball falls where its centre passes the corner, or the rail line at the side.
 PocketTable snooker_table() {
     PocketTable t{};
     t.length = 3.569;

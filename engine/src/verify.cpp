@@ -28,7 +28,9 @@ Vec2 planar(const Vec3& a) {
 }
 
 double energy_of(const BallState& s, double R) {
-    return s.state == MotionState::kPocketed ? 0.0 : 0.5 * s.velocity.squaredNorm() + 0.2 * R * R * s.spin.squaredNorm();
+    return s.state == MotionState::kPocketed
+               ? 0.0
+               : 0.5 * s.velocity.squaredNorm() + 0.2 * R * R * s.spin.squaredNorm();
 }
 
 class Checker {
@@ -41,14 +43,17 @@ class Checker {
         const double first_energy = std::max(last_energy, first_energy_after_cue());
         for (event_ = 0; event_ < record_.events.size() && !found_; ++event_) {
             const Event& e = record_.events[event_];
-            if (!(e.time >= last_time)) report("U2", fmt::format("time falls from {:.17g} to {:.17g} s", last_time, e.time));
+            if (!(e.time >= last_time))
+                report("U2", fmt::format("time falls from {:.17g} to {:.17g} s", last_time, e.time));
             last_time = e.time;
             check_crowd();
             // Several events at one instant: the state after the last of them is the one that must hold.
-            const bool last_of_instant = event_ + 1 == record_.events.size() || record_.events[event_ + 1].time > e.time;
+            const bool last_of_instant =
+                event_ + 1 == record_.events.size() || record_.events[event_ + 1].time > e.time;
             if (!last_of_instant) continue;
             Moment now;
-            for (std::size_t i = 0; i < record_.tracks.size(); ++i) now.balls.push_back(record_.state_at(static_cast<int>(i), e.time));
+            for (std::size_t i = 0; i < record_.tracks.size(); ++i)
+                now.balls.push_back(record_.state_at(static_cast<int>(i), e.time));
             check_penetration(now);
             check_rolling(now);
             double energy = 0.0;
@@ -82,9 +87,12 @@ class Checker {
     void check_finite() {
         for (const BallTrack& track : record_.tracks) {
             for (const Segment& s : track.segments) {
-                const bool ok = std::isfinite(s.start) && finite(s.r) && finite(s.v) && finite(s.w) && s.a.allFinite() &&
-                                s.dw.allFinite() && std::isfinite(s.spin_decay) && !std::isnan(s.duration) && s.duration >= 0.0;
-                if (!ok) report("U1", fmt::format("ball {} at {:.17g} s holds a number that is not finite", track.id, s.start));
+                const bool ok = std::isfinite(s.start) && finite(s.r) && finite(s.v) && finite(s.w) &&
+                                s.a.allFinite() && s.dw.allFinite() && std::isfinite(s.spin_decay) &&
+                                !std::isnan(s.duration) && s.duration >= 0.0;
+                if (!ok)
+                    report("U1", fmt::format("ball {} at {:.17g} s holds a number that is not finite",
+                                             track.id, s.start));
             }
         }
     }
@@ -103,7 +111,8 @@ class Checker {
                 if (now.balls[j].state == MotionState::kPocketed) continue;
                 const double gap = length(planar(now.balls[j].position) - r) - 2.0 * R_;
                 if (gap < -kTouchTolerance)
-                    report("U3", fmt::format("balls {} and {} overlap by {:.3g} m", record_.tracks[i].id, record_.tracks[j].id, -gap));
+                    report("U3", fmt::format("balls {} and {} overlap by {:.3g} m", record_.tracks[i].id,
+                                             record_.tracks[j].id, -gap));
             }
             // A ball may cross a cushion's line only where the cushion is not.
             for (const CushionLine& line : plan_.cushions) {
@@ -111,12 +120,14 @@ class Checker {
                 const double foot = line.direction.dot(offset);
                 const double gap = std::abs(cross(line.direction, offset)) - R_;
                 if (foot >= 0.0 && foot <= line.length && gap < -kTouchTolerance)
-                    report("U3", fmt::format("ball {} is {:.3g} m deep in a cushion", record_.tracks[i].id, -gap));
+                    report("U3",
+                           fmt::format("ball {} is {:.3g} m deep in a cushion", record_.tracks[i].id, -gap));
             }
             for (const Nose& nose : plan_.noses) {
                 const double gap = length(r - nose.center) - nose.radius - R_;
                 if (gap < -kTouchTolerance)
-                    report("U3", fmt::format("ball {} is {:.3g} m deep in a jaw or cushion end", record_.tracks[i].id, -gap));
+                    report("U3", fmt::format("ball {} is {:.3g} m deep in a jaw or cushion end",
+                                             record_.tracks[i].id, -gap));
             }
         }
     }
@@ -135,24 +146,35 @@ class Checker {
         for (event_ = 0; event_ < record_.events.size() && !found_; ++event_) {
             const Event& e = record_.events[event_];
             if (e.type != EventType::kBallBall) continue;
-            // Only where each ball has exactly one segment that starts here: two impacts at one instant cannot be told apart.
+            // Only where each ball has exactly one segment that starts here: two impacts at one instant
+            // cannot be told apart.
             const Segment *before1, *after1, *before2, *after2;
             if (!around(e.a, e.time, before1, after1) || !around(e.b, e.time, before2, after2)) continue;
-            const Vec3 v1 = velocity_at(*before1, e.time - before1->start), v2 = velocity_at(*before2, e.time - before2->start);
-            const Vec3 w1 = spin_at(*before1, e.time - before1->start, R_), w2 = spin_at(*before2, e.time - before2->start, R_);
+            const Vec3 v1 = velocity_at(*before1, e.time - before1->start),
+                       v2 = velocity_at(*before2, e.time - before2->start);
+            const Vec3 w1 = spin_at(*before1, e.time - before1->start, R_),
+                       w2 = spin_at(*before2, e.time - before2->start, R_);
             const Vec3 n3 = (after2->r - after1->r).normalized();
             const double scale = v1.norm() + v2.norm() + R_ * (w1.norm() + w2.norm());
             const Vec3 change = after1->v + after2->v - v1 - v2;
             const Vec3 dw1 = after1->w - w1, dw2 = after2->w - w2;
-            // The cloth gives at most mu_s of the vertical friction, which is at most mu_b of the normal impulse, all the way.
-            const double J_n = std::max(std::abs((after1->v - v1).dot(n3)), std::abs((after2->v - v2).dot(n3)));
-            const bool cloth = plan_.balls.mu_s > 0.0 && plan_.scene.physics.ball_ball == BallBallModel::kMathavan;
-            const double limit = cloth ? plan_.balls.mu_s * (plan_.balls.mu_b + plan_.balls.mu_b_more) * J_n : 0.0;
+            // The cloth gives at most mu_s of the vertical friction, which is at most mu_b of the normal
+            // impulse, all the way.
+            const double J_n =
+                std::max(std::abs((after1->v - v1).dot(n3)), std::abs((after2->v - v2).dot(n3)));
+            const bool cloth =
+                plan_.balls.mu_s > 0.0 && plan_.scene.physics.ball_ball == BallBallModel::kMathavan;
+            const double limit =
+                cloth ? plan_.balls.mu_s * (plan_.balls.mu_b + plan_.balls.mu_b_more) * J_n : 0.0;
             if (change.norm() > limit + 64.0 * kUlp * scale)
-                report("U5", fmt::format("the impact changes the pair's momentum by {:.3g} m/s", change.norm()));
+                report("U5",
+                       fmt::format("the impact changes the pair's momentum by {:.3g} m/s", change.norm()));
             const double rounding = 1e-12 * scale / R_;
-            if (!cloth && (std::abs(dw1.dot(n3)) > rounding || std::abs(dw2.dot(n3)) > rounding || (dw1 - dw2).norm() > rounding))
-                report("U6", "the impact turns a ball about the line of centres, or the two spins change differently");
+            if (!cloth && (std::abs(dw1.dot(n3)) > rounding || std::abs(dw2.dot(n3)) > rounding ||
+                           (dw1 - dw2).norm() > rounding))
+                report(
+                    "U6",
+                    "the impact turns a ball about the line of centres, or the two spins change differently");
         }
     }
 
@@ -173,7 +195,8 @@ class Checker {
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
             const Segment& s = record_.tracks[i].segments.back();
             const bool at_rest = s.state == MotionState::kStationary || s.state == MotionState::kPocketed;
-            if (!at_rest && std::isfinite(s.duration)) report("U9", fmt::format("ball {} has not come to rest", record_.tracks[i].id));
+            if (!at_rest && std::isfinite(s.duration))
+                report("U9", fmt::format("ball {} has not come to rest", record_.tracks[i].id));
         }
     }
 
@@ -188,7 +211,8 @@ class Checker {
 
 double energy_at(const Record& record, double t) {
     double energy = 0.0;
-    for (std::size_t i = 0; i < record.tracks.size(); ++i) energy += energy_of(record.state_at(static_cast<int>(i), t), record.balls.R);
+    for (std::size_t i = 0; i < record.tracks.size(); ++i)
+        energy += energy_of(record.state_at(static_cast<int>(i), t), record.balls.R);
     return energy;
 }
 

@@ -49,7 +49,8 @@ bool parse_isa(const char* text, Isa& isa) noexcept {
     return false;
 }
 
-// By feature, because clang 14 does not know the names of the levels; what they leave out comes with these on every CPU.
+// By feature, because clang 14 does not know the names of the levels; what they leave out comes with these on
+// every CPU.
 static bool has_v3() {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
            __builtin_cpu_supports("bmi2");
@@ -57,11 +58,14 @@ static bool has_v3() {
 
 bool available(Isa isa) noexcept {
     switch (isa) {
-        case Isa::kScalar: return true;
-        case Isa::kV3: return has_v3();
+        case Isa::kScalar:
+            return true;
+        case Isa::kV3:
+            return has_v3();
         case Isa::kV4:
             return has_v3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-                   __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+                   __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                   __builtin_cpu_supports("avx512vl");
     }
     return false;
 }

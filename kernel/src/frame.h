@@ -1,5 +1,6 @@
 // The contact frame that all kernels share: validation, projection, back-projection.
-// Included by files built for one instruction set: no std templates here, everything inline in an anonymous namespace.
+// Included by files built for one instruction set: no std templates here, everything inline in an anonymous
+// namespace.
 #pragma once
 
 #include "carom/kernel/impact.h"
@@ -19,7 +20,8 @@ struct Frame {
 
 // Heights that differ by more than this share of the distance are no planar impact.
 constexpr double kHeightTolerance = 1e-9;
-// An approach speed below this share of the largest velocity underflows in the work integral: no event (hard case H30).
+// An approach speed below this share of the largest velocity underflows in the work integral: no event (hard
+// case H30).
 constexpr double kSlowestApproach = 1e-150;
 
 inline bool finite(double x) {
@@ -42,9 +44,10 @@ inline double absolute(double x) {
     return x < 0.0 ? -x : x;
 }
 
-// A cloth slip up to here is rounding of a rolling ball's v and R w: it has no direction, and the step takes no cloth
-// friction, as at a slip of exactly zero. With the consistent sign only: there rolling balls meet u = 0 as a rule, and two
-// correct marches would otherwise differ by a whole step's friction. The published code has no such floor.
+// A cloth slip up to here is rounding of a rolling ball's v and R w: it has no direction, and the step takes
+// no cloth friction, as at a slip of exactly zero. With the consistent sign only: there rolling balls meet u
+// = 0 as a rule, and two correct marches would otherwise differ by a whole step's friction. The published
+// code has no such floor.
 inline double cloth_slip_floor(const FrameState& s, double R, int sign) {
     if (sign > 0) return 0.0;
     const double v = absolute(s.v1x) + absolute(s.v1y) + absolute(s.v2x) + absolute(s.v2y);
@@ -67,12 +70,14 @@ inline void copy_input(const Ball& b1, const Ball& b2, ImpactStatus status, Impa
 
 inline bool in_range(const ImpactParams& p) {
     return finite(p.R) && p.R > 0.0 && finite(p.m) && p.m > 0.0 && finite(p.mu_s1) && p.mu_s1 >= 0.0 &&
-           finite(p.mu_s2) && p.mu_s2 >= 0.0 && finite(p.mu_b) && p.mu_b >= 0.0 && p.e_b >= 0.0 && p.e_b <= 1.0;
+           finite(p.mu_s2) && p.mu_s2 >= 0.0 && finite(p.mu_b) && p.mu_b >= 0.0 && p.e_b >= 0.0 &&
+           p.e_b <= 1.0;
 }
 
-// Checks the input and projects it. Anything but kOk means that there is nothing to compute; `out` then holds the input.
-inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactParams& p, Frame& f, FrameState& s,
-                                ImpactResult& out) {
+// Checks the input and projects it. Anything but kOk means that there is nothing to compute; `out` then holds
+// the input.
+inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactParams& p, Frame& f,
+                                FrameState& s, ImpactResult& out) {
     ImpactStatus status = ImpactStatus::kOk;
     if (!in_range(p)) status = ImpactStatus::kBadParameter;
     if (status == ImpactStatus::kOk && !(finite(b1) && finite(b2))) status = ImpactStatus::kBadState;
@@ -105,7 +110,8 @@ inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactPara
                          p.R * (absolute(s.w1x) + absolute(s.w1y) + absolute(s.w1z) + absolute(s.w2x) +
                                 absolute(s.w2y) + absolute(s.w2z));
     // Sums that overflow are as little a state as a NaN.
-    if (!finite(scale) || !finite(scale * scale)) status = ImpactStatus::kBadState;
+    if (!finite(scale) || !finite(scale * scale))
+        status = ImpactStatus::kBadState;
     else if (!(approach > 0.0) || approach < kSlowestApproach || approach < kSlowestApproach * scale)
         status = ImpactStatus::kNotApproaching;
     if (status != ImpactStatus::kOk) copy_input(b1, b2, status, out);

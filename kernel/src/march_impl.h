@@ -1,8 +1,9 @@
-// The published march in double, equation by equation: the plain reference that every faster form is compared with.
+// The published march in double, equation by equation: the plain reference that every faster form is compared
+// with.
 //
-// Legend (2014 paper): P normal impulse, dP its step, dP1 and dP2 the horizontal and vertical friction impulse between
-// the balls, dPix, dPiy, dPjx, dPjy the cloth's on ball i (1) and j (2), C = 5/(2 m R), W work of the normal impulse.
-// Built once per instruction set; CAROM_MARCH_NAME is the name of the function.
+// Legend (2014 paper): P normal impulse, dP its step, dP1 and dP2 the horizontal and vertical friction
+// impulse between the balls, dPix, dPiy, dPjx, dPjy the cloth's on ball i (1) and j (2), C = 5/(2 m R), W
+// work of the normal impulse. Built once per instruction set; CAROM_MARCH_NAME is the name of the function.
 #pragma once
 
 #include "carom/kernel/march.h"
@@ -12,8 +13,8 @@
 namespace carom::kernel {
 namespace {
 
-// Slip below this (m/s) gives no friction, as in the published code. It is an absolute speed and so breaks the
-// homogeneity of the model at extremely low speed (hard case H26); parity is the point of this file.
+// Slip below this (m/s) gives no friction, as in the published code. It is an absolute speed and so breaks
+// the homogeneity of the model at extremely low speed (hard case H26); parity is the point of this file.
 constexpr double kPublishedSlipCutoff = 1e-16;
 
 template <int kSign>  // +1: u = (v_x + R w_y, v_y - R w_x), as published; -1: consistent
@@ -92,8 +93,10 @@ void CAROM_MARCH_NAME(const Ball& ball1, const Ball& ball2, const ImpactParams& 
     if (enter_frame(ball1, ball2, params, frame, state, result) != ImpactStatus::kOk) return;
     const long steps = params.cloth_slip == ClothSlip::kAsPublished ? march_loop<+1>(state, params, n)
                                                                     : march_loop<-1>(state, params, n);
-    if (steps < 0) copy_input(ball1, ball2, ImpactStatus::kStepLimit, result);
-    else leave_frame(ball1, ball2, frame, state, steps, result);
+    if (steps < 0)
+        copy_input(ball1, ball2, ImpactStatus::kStepLimit, result);
+    else
+        leave_frame(ball1, ball2, frame, state, steps, result);
 }
 
 }  // namespace carom::kernel

@@ -1,4 +1,5 @@
-// The cluster maps against the test values of the design notes (clusters, section 9): racks, three-ball hits, cradles.
+// The cluster maps against the test values of the design notes (clusters, section 9): racks, three-ball hits,
+// cradles.
 #include "cluster.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,8 @@ struct Result {
     long steps;
 };
 
-ClusterSettings settings(double mu_b, double mu_s, double e, double epsilon = kClusterEpsilon, double step = kClusterStep) {
+ClusterSettings settings(double mu_b, double mu_s, double e, double epsilon = kClusterEpsilon,
+                         double step = kClusterStep) {
     return {kR, mu_s, mu_b, e, false, epsilon, step};
 }
 
@@ -39,7 +41,9 @@ std::vector<ClusterContact> contacts_of(const std::vector<ClusterBall>& balls) {
         for (std::size_t j = i + 1; j < balls.size(); ++j) {
             const Vec3 apart = balls[j].r - balls[i].r;
             const double distance = apart.norm(), gap = distance - 2.0 * kR;
-            if (gap < 1e-3) contacts.push_back({static_cast<int>(i), static_cast<int>(j), Vec2(apart.x(), apart.y()) / distance, gap < 1e-14 ? 0.0 : gap});
+            if (gap < 1e-3)
+                contacts.push_back({static_cast<int>(i), static_cast<int>(j),
+                                    Vec2(apart.x(), apart.y()) / distance, gap < 1e-14 ? 0.0 : gap});
         }
     }
     return contacts;
@@ -62,7 +66,8 @@ std::vector<ClusterBall> rack(double V) {
     std::vector<ClusterBall> balls{ball(0, 0.0, -2.0 * kR, 0.0, V)};
     int id = 1;
     for (int row = 0; row < 5; ++row)
-        for (int k = 0; k <= row; ++k) balls.push_back(ball(id++, (2 * k - row) * kR, row * std::sqrt(3.0) * kR));
+        for (int k = 0; k <= row; ++k)
+            balls.push_back(ball(id++, (2 * k - row) * kR, row * std::sqrt(3.0) * kR));
     return balls;
 }
 
@@ -86,15 +91,17 @@ const RackRow kRack[] = {
 
 TEST(Cluster, TouchingRack) {  // H1
     const ClusterSettings columns[] = {settings(0.0, 0.0, 1.0, kClusterEpsilon, 1.0 / 500.0),
-                                       settings(0.0, 0.0, 0.95, kClusterEpsilon, 1.0 / 500.0), settings(0.05, 0.2, 0.95),
-                                       settings(0.05, 0.2, 0.95, 1e-4)};
+                                       settings(0.0, 0.0, 0.95, kClusterEpsilon, 1.0 / 500.0),
+                                       settings(0.05, 0.2, 0.95), settings(0.05, 0.2, 0.95, 1e-4)};
     const double tolerance[] = {1e-6, 1e-6, 3e-3, 3e-4}, energy_left[] = {1.0, .8022334, .76032, .76032};
     for (int column = 0; column < 4; ++column) {
         const Result result = run(rack(1.0), columns[column], 1.0);
         const int k = std::min(column, 2);
         for (const RackRow& row : kRack) {
-            EXPECT_NEAR(result.balls[row.index].v.x(), row.x[k], tolerance[column]) << "column " << column << " ball " << row.index;
-            EXPECT_NEAR(result.balls[row.index].v.y(), row.y[k], tolerance[column]) << "column " << column << " ball " << row.index;
+            EXPECT_NEAR(result.balls[row.index].v.x(), row.x[k], tolerance[column])
+                << "column " << column << " ball " << row.index;
+            EXPECT_NEAR(result.balls[row.index].v.y(), row.y[k], tolerance[column])
+                << "column " << column << " ball " << row.index;
         }
         EXPECT_NEAR(result.energy_ratio, energy_left[column], column < 2 ? 1e-6 : 2e-3);
         // Left and right.
@@ -103,7 +110,8 @@ TEST(Cluster, TouchingRack) {  // H1
         EXPECT_LT((sum - Vec3(0, 1, 0)).norm(), column < 2 ? 1e-13 : 1e-2);
         for (int row = 0, first = 1; row < 5; first += ++row) {
             for (int i = 0; i <= row; ++i) {
-                const ClusterBall &left = result.balls[static_cast<std::size_t>(first + i)], &right = result.balls[static_cast<std::size_t>(first + row - i)];
+                const ClusterBall &left = result.balls[static_cast<std::size_t>(first + i)],
+                                  &right = result.balls[static_cast<std::size_t>(first + row - i)];
                 EXPECT_NEAR(left.v.x(), -right.v.x(), 1e-12);
                 EXPECT_NEAR(left.v.y(), right.v.y(), 1e-12);
             }
@@ -113,14 +121,18 @@ TEST(Cluster, TouchingRack) {  // H1
 }
 
 TEST(Cluster, ScalesWithTheSpeed) {
-    const Result one = run(rack(1.0), settings(0.05, 0.2, 0.95), 1.0), eight = run(rack(8.0), settings(0.05, 0.2, 0.95), 8.0);
-    for (std::size_t b = 0; b < one.balls.size(); ++b) EXPECT_EQ(eight.balls[b].v, 8.0 * one.balls[b].v) << "no material constant in a touching rack";
+    const Result one = run(rack(1.0), settings(0.05, 0.2, 0.95), 1.0),
+                 eight = run(rack(8.0), settings(0.05, 0.2, 0.95), 8.0);
+    for (std::size_t b = 0; b < one.balls.size(); ++b)
+        EXPECT_EQ(eight.balls[b].v, 8.0 * one.balls[b].v) << "no material constant in a touching rack";
 }
 
 TEST(Cluster, ThreeBalls) {  // H2
-    const double e[] = {1.0, 0.95, 0.9, 0.5}, cue[] = {-.2, -.17, -.14, .1}, object[] = {.692820, .675500, .658179, .519615};
+    const double e[] = {1.0, 0.95, 0.9, 0.5}, cue[] = {-.2, -.17, -.14, .1},
+                 object[] = {.692820, .675500, .658179, .519615};
     for (int k = 0; k < 4; ++k) {
-        const std::vector<ClusterBall> balls{ball(0, 0.0, -std::sqrt(3.0) * kR, 0.0, 1.0), ball(1, -kR, 0.0), ball(2, kR, 0.0)};
+        const std::vector<ClusterBall> balls{ball(0, 0.0, -std::sqrt(3.0) * kR, 0.0, 1.0), ball(1, -kR, 0.0),
+                                             ball(2, kR, 0.0)};
         const Result result = run(balls, settings(0.0, 0.0, e[k]), std::cos(M_PI / 6));
         EXPECT_NEAR(result.balls[0].v.y(), cue[k], 1e-6) << e[k];
         EXPECT_EQ(result.balls[0].v.x(), 0.0) << e[k];
@@ -135,12 +147,14 @@ TEST(Cluster, ThreeBalls) {  // H2
         EXPECT_NEAR(rigid[2].v.norm(), 0.2 * std::sqrt(3.0) * (1.0 + e[k]), 1e-12) << e[k];
         EXPECT_NEAR(rigid[1].v.x(), -rigid[2].v.x(), 1e-12) << e[k];
     }
-    const std::vector<ClusterBall> balls{ball(0, 0.0, -std::sqrt(3.0) * kR, 0.0, 1.0), ball(1, -kR, 0.0), ball(2, kR, 0.0)};
+    const std::vector<ClusterBall> balls{ball(0, 0.0, -std::sqrt(3.0) * kR, 0.0, 1.0), ball(1, -kR, 0.0),
+                                         ball(2, kR, 0.0)};
     const Result with_friction = run(balls, settings(0.05, 0.2, 0.95, 1e-3), std::cos(M_PI / 6));
     EXPECT_NEAR(with_friction.balls[0].v.y(), -.16723, 1e-4);
     EXPECT_NEAR(with_friction.balls[2].v.x(), .32120, 1e-4);
     EXPECT_NEAR(with_friction.balls[2].v.y(), .58362, 1e-4);
-    EXPECT_NEAR(kR * with_friction.balls[2].w.z(), -.0341, 1e-4);  // clockwise, as the pair kernel has it; the notes print the magnitude
+    EXPECT_NEAR(kR * with_friction.balls[2].w.z(), -.0341,
+                1e-4);  // clockwise, as the pair kernel has it; the notes print the magnitude
     EXPECT_NEAR(with_friction.energy_ratio, .91646, 2e-4);
 }
 
@@ -155,7 +169,9 @@ TEST(Cluster, Cradles) {  // H3
     const std::vector<std::vector<std::vector<double>>> expected{
         {{0, 1}, {.025, .975}, {.05, .95}},
         {{-.070952, .076403, .994549}, {-.044454, .095670, .948784}, {-.016976, .113009, .903967}},
-        {{-.071085, -.029626, .109739, .990973}, {-.044632, -.005973, .124616, .925989}, {-.017258, .017166, .136630, .863462}},
+        {{-.071085, -.029626, .109739, .990973},
+         {-.044632, -.005973, .124616, .925989},
+         {-.017258, .017166, .136630, .863462}},
         {{-.071085, -.030274, -.014464, .127045, .988777},
          {-.044632, -.007140, .008093, .138243, .905436},
          {-.017258, .013109, .031653, .145891, .826604}},
@@ -168,7 +184,10 @@ TEST(Cluster, Cradles) {  // H3
             const Result result = run(line(n), settings(0.0, 0.0, e[k]), 1.0);
             double sum = 0.0;
             for (int b = 0; b < n; ++b) {
-                EXPECT_NEAR(result.balls[static_cast<std::size_t>(b)].v.y(), expected[static_cast<std::size_t>(n - 2)][static_cast<std::size_t>(k)][static_cast<std::size_t>(b)], 1e-6)
+                EXPECT_NEAR(result.balls[static_cast<std::size_t>(b)].v.y(),
+                            expected[static_cast<std::size_t>(n - 2)][static_cast<std::size_t>(k)]
+                                    [static_cast<std::size_t>(b)],
+                            1e-6)
                     << "n = " << n << " e = " << e[k] << " ball " << b;
                 sum += result.balls[static_cast<std::size_t>(b)].v.y();
             }
@@ -180,15 +199,21 @@ TEST(Cluster, Cradles) {  // H3
 TEST(Cluster, GapInALine) {
     const double d_max = 0.8286 * contact_length(1.0);
     const double gaps[] = {0.1, 0.4, 1.0, 1.4};
-    const double expected[][3] = {{-.019131, .068308, .950823}, {.015161, .033821, .951018}, {.024870, .024499, .950631}, {.025000, .024375, .950625}};
+    const double expected[][3] = {{-.019131, .068308, .950823},
+                                  {.015161, .033821, .951018},
+                                  {.024870, .024499, .950631},
+                                  {.025000, .024375, .950625}};
     for (int k = 0; k < 4; ++k) {
         const Result result = run(line(3, gaps[k] * d_max), settings(0.0, 0.0, 0.95), 1.0);
-        for (int b = 0; b < 3; ++b) EXPECT_NEAR(result.balls[static_cast<std::size_t>(b)].v.y(), expected[k][b], 2e-5) << "gap " << gaps[k] << " ball " << b;
+        for (int b = 0; b < 3; ++b)
+            EXPECT_NEAR(result.balls[static_cast<std::size_t>(b)].v.y(), expected[k][b], 2e-5)
+                << "gap " << gaps[k] << " ball " << b;
     }
 }
 
 TEST(Cluster, SqueezedBallStays) {  // H6
-    const std::vector<ClusterBall> balls{ball(0, -2.0 * kR, 0.0, 1.0, 0.0), ball(1, 0.0, 0.0), ball(2, 2.0 * kR, 0.0, -1.0, 0.0)};
+    const std::vector<ClusterBall> balls{ball(0, -2.0 * kR, 0.0, 1.0, 0.0), ball(1, 0.0, 0.0),
+                                         ball(2, 2.0 * kR, 0.0, -1.0, 0.0)};
     const Result result = run(balls, settings(0.0, 0.0, 0.95), 1.0);
     EXPECT_EQ(result.balls[1].v, Vec3::Zero());
     EXPECT_NEAR(result.balls[0].v.x(), -0.95, 1e-6);
@@ -204,7 +229,8 @@ TEST(Cluster, TwoBallsAreThePairKernel) {
         kernel::ImpactResult want;
         kernel::march_function(kernel::best_isa())(impact.ball1, impact.ball2, impact.params, 100000, want);
         const auto from = [](const kernel::Ball& b, int id) {
-            return ClusterBall{id, Vec3(b.r[0], b.r[1], b.r[2]), Vec3(b.v[0], b.v[1], 0.0), Vec3(b.w[0], b.w[1], b.w[2])};
+            return ClusterBall{id, Vec3(b.r[0], b.r[1], b.r[2]), Vec3(b.v[0], b.v[1], 0.0),
+                               Vec3(b.w[0], b.w[1], b.w[2])};
         };
         std::vector<ClusterBall> balls{from(impact.ball1, 0), from(impact.ball2, 1)};
         if (impact.params.mu_s1 != impact.params.mu_s2) {
@@ -215,8 +241,11 @@ TEST(Cluster, TwoBallsAreThePairKernel) {
         const Vec3 n = (balls[1].r - balls[0].r).normalized();
         const double V = (balls[0].v - balls[1].v).dot(n);
         ClusterMap map;
-        map.compliant(balls, contacts_of(balls), settings(impact.params.mu_b, impact.params.mu_s1, impact.params.e_b, 1e-3), V);
-        const double difference = std::max((balls[0].v - Vec3(want.v1[0], want.v1[1], 0.0)).norm(), (balls[1].v - Vec3(want.v2[0], want.v2[1], 0.0)).norm()) / V;
+        map.compliant(balls, contacts_of(balls),
+                      settings(impact.params.mu_b, impact.params.mu_s1, impact.params.e_b, 1e-3), V);
+        const double difference = std::max((balls[0].v - Vec3(want.v1[0], want.v1[1], 0.0)).norm(),
+                                           (balls[1].v - Vec3(want.v2[0], want.v2[1], 0.0)).norm()) /
+                                  V;
         differences.push_back(difference);
     }
     std::sort(differences.begin(), differences.end());
@@ -242,12 +271,15 @@ TEST(Cluster, FifthRoot) {
     SplitMix64 rng(5);
     for (int k = 0; k < 20000; ++k) {
         const double x = std::pow(10.0, rng.uniform(-300.0, 300.0));
-        EXPECT_NEAR(fifth_root(x) / static_cast<double>(std::pow(static_cast<long double>(x), 0.2L)), 1.0, 1e-15) << x;
+        EXPECT_NEAR(fifth_root(x) / static_cast<double>(std::pow(static_cast<long double>(x), 0.2L)), 1.0,
+                    1e-15)
+            << x;
     }
     EXPECT_EQ(fifth_root(32.0), 2.0);
     EXPECT_EQ(fifth_root(1.0), 1.0);
     const double least = std::numeric_limits<double>::denorm_min();
-    EXPECT_NEAR(fifth_root(least) / static_cast<double>(std::pow(static_cast<long double>(least), 0.2L)), 1.0, 1e-15);
+    EXPECT_NEAR(fifth_root(least) / static_cast<double>(std::pow(static_cast<long double>(least), 0.2L)), 1.0,
+                1e-15);
 }
 
 }  // namespace

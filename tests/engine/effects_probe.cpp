@@ -86,7 +86,8 @@ const Case kCases[] = {
          s.balls.f_c = 0.2;
          s.balls.e_c = 0.95;
      }},
-    {"pockets", "carom::time_to_pocket carom::Shot::resolve_pocket", "six pockets at the rails that no centre enters",
+    {"pockets", "carom::time_to_pocket carom::Shot::resolve_pocket",
+     "six pockets at the rails that no centre enters",
      [](Scene& s) {
          for (int k = 0; k < 6; ++k)
              s.table.pockets.push_back({"p", Vec2(k % 2 ? 0.5 : 0.0, 0.35 * (k / 2)), 0.025, 0.08});

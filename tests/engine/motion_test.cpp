@@ -51,11 +51,13 @@ TEST(Motion, AngularMomentumAboutTheClothIsKeptWhileSliding) {  // T3
     const auto invariant = [&](double t) {
         const BallState s = record.state_at(0, t);
         // v - (2/5) R (z x w_xy)
-        return Vec2(s.velocity.x() + 0.4 * scene.balls.R * s.spin.y(), s.velocity.y() - 0.4 * scene.balls.R * s.spin.x());
+        return Vec2(s.velocity.x() + 0.4 * scene.balls.R * s.spin.y(),
+                    s.velocity.y() - 0.4 * scene.balls.R * s.spin.x());
     };
     const Event* roll = first(record, EventType::kSlideRoll);
     ASSERT_NE(roll, nullptr);
-    for (const double share : {0.1, 0.5, 0.999}) EXPECT_LT((invariant(share * roll->time) - invariant(0.0)).norm(), 1e-14);
+    for (const double share : {0.1, 0.5, 0.999})
+        EXPECT_LT((invariant(share * roll->time) - invariant(0.0)).norm(), 1e-14);
 }
 
 TEST(Motion, RollsToRest) {  // T4
@@ -125,7 +127,8 @@ TEST(Motion, ReferenceVectors) {
     }
 }
 
-// Orientation: a small-step integration of dq/dt = w q / 2 against orientation_at, with English so that the axis turns.
+// Orientation: a small-step integration of dq/dt = w q / 2 against orientation_at, with English so that the
+// axis turns.
 TEST(Motion, OrientationFollowsTheSpin) {
     Scene scene = empty_scene();
     add_ball(scene, "a", 0, 0, 1.5, 0.4, Vec3(-60.0, 20.0, 35.0));

@@ -1,5 +1,5 @@
-// Seeded scenes to rest without a violation, and the regressions they brought (support/random_scenes.h). The aim of 10 000
-// scenes is not met: see kOpen.
+// Seeded scenes to rest without a violation, and the regressions they brought (support/random_scenes.h). The
+// aim of 10 000 scenes is not met: see kOpen.
 #include <gtest/gtest.h>
 
 #include "support/random_scenes.h"
@@ -11,7 +11,8 @@ using namespace test;
 
 constexpr int kParts = 5, kScenes = 375;
 
-// Not mended yet (docs/hard_cases.md, "Open"): a held group whose members stop or bounce again and again at one instant.
+// Not mended yet (docs/hard_cases.md, "Open"): a held group whose members stop or bounce again and again at
+// one instant.
 constexpr int kOpen[] = {157, 221};
 
 class RandomScenes : public testing::TestWithParam<int> {};

@@ -151,7 +151,9 @@ TEST(Math, ArcCosine) {
         double x = 2.0 * next_random(state) - 1.0;
         if (i % 3 == 0) x = 1.0 - 1e-9 * next_random(state);
         const long double want = std::acos(static_cast<long double>(x));
-        EXPECT_NEAR(carom::arc_cos(x), static_cast<double>(want), 4.5e-16 * std::fmax(1.0, static_cast<double>(want))) << x;
+        EXPECT_NEAR(carom::arc_cos(x), static_cast<double>(want),
+                    4.5e-16 * std::fmax(1.0, static_cast<double>(want)))
+            << x;
         if (i % 3 == 0) {
             EXPECT_NEAR(carom::arc_cos(x) / static_cast<double>(want), 1.0, 6e-16) << x;
         }
@@ -162,7 +164,8 @@ TEST(Math, Exponential) {
     EXPECT_EQ(carom::exponential(0.0), 1.0);
     EXPECT_EQ(carom::exponential(-800.0), 0.0);
     EXPECT_EQ(carom::exponential(-std::numeric_limits<double>::infinity()), 0.0);
-    EXPECT_EQ(carom::exponential(std::numeric_limits<double>::infinity()), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(carom::exponential(std::numeric_limits<double>::infinity()),
+              std::numeric_limits<double>::infinity());
     EXPECT_EQ(carom::exponential(709.79), std::numeric_limits<double>::infinity());
     EXPECT_TRUE(std::isnan(carom::exponential(std::numeric_limits<double>::quiet_NaN())));
     EXPECT_GT(carom::exponential(-745.0), 0.0);

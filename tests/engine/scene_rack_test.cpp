@@ -197,7 +197,9 @@ Vec2 of(const carom::Scene& scene, const std::string& id) {
 // WPBSA rules, section 1: the spots; the reds behind the pink without touching it.
 TEST(SnookerRack, StandsOnItsSpots) {
     const carom::Scene s = carom::parse_scene(
-        "[table]\npreset = \"snooker\"\n[balls]\npreset = \"snooker\"\n[rack]\ngame = \"snooker\"\ngap = 1e-3\n", "s.toml");
+        "[table]\npreset = \"snooker\"\n[balls]\npreset = \"snooker\"\n[rack]\ngame = \"snooker\"\ngap = "
+        "1e-3\n",
+        "s.toml");
     ASSERT_EQ(s.ball.size(), 21u);
     const double R = 0.02625;
     EXPECT_LE((of(s, "pink") - Vec2(0.889, 0.75 * 3.569)).norm(), 1e-12);
@@ -209,7 +211,8 @@ TEST(SnookerRack, StandsOnItsSpots) {
     EXPECT_LE((of(s, "1") - of(s, "pink") - Vec2(0.0, 2.0 * R + 1e-3)).norm(), 1e-12);
     for (std::size_t i = 0; i < s.ball.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
-            EXPECT_GE((s.ball[i].position - s.ball[j].position).norm(), 2.0 * R + 1e-3 - 1e-12) << s.ball[i].id << " " << s.ball[j].id;
+            EXPECT_GE((s.ball[i].position - s.ball[j].position).norm(), 2.0 * R + 1e-3 - 1e-12)
+                << s.ball[i].id << " " << s.ball[j].id;
 }
 
 TEST(TriangleRack, HasItsRows) {
@@ -220,13 +223,16 @@ TEST(TriangleRack, HasItsRows) {
         EXPECT_EQ(s.ball[0].id, "1");
         const double R = 0.028575;
         const Vec2 last = s.ball.back().position.head<2>(), apex = s.ball[0].position.head<2>();
-        EXPECT_LE((last - apex - (rows - 1) * R * Vec2(1.0, std::sqrt(3.0))).norm(), 1e-12) << "right corner of the last row";
+        EXPECT_LE((last - apex - (rows - 1) * R * Vec2(1.0, std::sqrt(3.0))).norm(), 1e-12)
+            << "right corner of the last row";
     }
 }
 
 TEST(ThreeCushionRack, IsTheOpeningPosition) {
     const carom::Scene s = carom::parse_scene(
-        "[table]\npreset = \"carom\"\n[balls]\npreset = \"carom\"\n[rack]\ngame = \"three_cushion\"\njitter = 0.01\n", "s.toml");
+        "[table]\npreset = \"carom\"\n[balls]\npreset = \"carom\"\n[rack]\ngame = \"three_cushion\"\njitter "
+        "= 0.01\n",
+        "s.toml");
     ASSERT_EQ(s.ball.size(), 3u);
     EXPECT_LE((of(s, "red") - Vec2(0.71, 2.13)).norm(), 1e-12);
     EXPECT_LE((of(s, "yellow") - Vec2(0.71, 0.71)).norm(), 1e-12);

@@ -105,7 +105,8 @@ std::vector<std::string> met_by(const Record& r, int ball) {
         const bool table = e.type == EventType::kBallCushion || e.type == EventType::kBallJaw;
         const bool pair = e.type == EventType::kBallBall || e.type == EventType::kBallCluster;
         if (table && e.a == ball) met.push_back(r.partner_id(e));
-        if (pair && (e.a == ball || e.b == ball)) met.push_back(r.tracks[static_cast<std::size_t>(e.a == ball ? e.b : e.a)].id);
+        if (pair && (e.a == ball || e.b == ball))
+            met.push_back(r.tracks[static_cast<std::size_t>(e.a == ball ? e.b : e.a)].id);
     }
     return met;
 }
@@ -113,7 +114,8 @@ std::vector<std::string> met_by(const Record& r, int ball) {
 TEST(SceneShots, CaromOpeningScores) {
     const std::vector<std::string> met = met_by(run("carom_opening"), 0);
     ASSERT_GE(met.size(), 5u);
-    EXPECT_EQ(std::vector<std::string>(met.begin(), met.begin() + 5), (std::vector<std::string>{"red", "c3", "c2", "c1", "yellow"}));
+    EXPECT_EQ(std::vector<std::string>(met.begin(), met.begin() + 5),
+              (std::vector<std::string>{"red", "c3", "c2", "c1", "yellow"}));
 }
 
 TEST(SceneShots, MasseGoesAroundYellow) {
@@ -139,7 +141,8 @@ TEST(SceneShots, SnookerBreakComesBackToBaulk) {
     ASSERT_EQ(r.tracks.size(), 22u);
     const std::vector<std::string> met = met_by(r, cue);
     ASSERT_EQ(met.size(), 5u);
-    EXPECT_EQ(std::vector<std::string>(met.begin() + 1, met.end()), (std::vector<std::string>{"c9", "c12", "c3", "c18"}));
+    EXPECT_EQ(std::vector<std::string>(met.begin() + 1, met.end()),
+              (std::vector<std::string>{"c9", "c12", "c3", "c18"}));
     EXPECT_LT(place(r, cue, r.duration).y(), 1.0);
     for (const carom::BallTrack& track : r.tracks) EXPECT_EQ(track.pocket, -1) << track.id;
 }

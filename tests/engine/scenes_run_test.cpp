@@ -57,9 +57,10 @@ TEST(Scenes, SeededBreaks) {
     for (int i = 0; i < 100; ++i) {
         const double gaps[] = {0.0, 1e-12, 1e-6, 1e-4};
         const double gap = gaps[i % 4], speed = rng.uniform(5.0, 12.0), x = 0.635 + rng.uniform(-0.01, 0.01);
-        const std::string text = "[rack]\ngame = \"eight_ball\"\ngap = " + std::to_string(gap) + "\nseed = " + std::to_string(i) +
-                                 "\n[[ball]]\nid = \"cue\"\nposition = [" + std::to_string(x) + ", 0.5]\nvelocity = [0, " +
-                                 std::to_string(speed) + "]\n";
+        const std::string text = "[rack]\ngame = \"eight_ball\"\ngap = " + std::to_string(gap) +
+                                 "\nseed = " + std::to_string(i) + "\n[[ball]]\nid = \"cue\"\nposition = [" +
+                                 std::to_string(x) + ", 0.5]\nvelocity = [0, " + std::to_string(speed) +
+                                 "]\n";
         SCOPED_TRACE(text);
         const Record record = run_verified(parse_scene(text, "break.toml"));
         most = std::max(most, record.events.size());

@@ -12,13 +12,18 @@ Table table_from(const nlohmann::json& t) {
     Table table;
     table.width = t.at("w").get<double>();
     table.length = t.at("l").get<double>();
-    const auto vec2 = [](const nlohmann::json& j) { return Vec2(j.at(0).get<double>(), j.at(1).get<double>()); };
+    const auto vec2 = [](const nlohmann::json& j) {
+        return Vec2(j.at(0).get<double>(), j.at(1).get<double>());
+    };
     for (const auto& c : t.at("linear_cushions"))
-        table.cushions.push_back({c.at("id").get<std::string>(), vec2(c.at("p1")), vec2(c.at("p2")), c.at("height").get<double>()});
+        table.cushions.push_back({c.at("id").get<std::string>(), vec2(c.at("p1")), vec2(c.at("p2")),
+                                  c.at("height").get<double>()});
     for (const auto& c : t.at("circular_cushions"))
-        table.jaws.push_back({c.at("id").get<std::string>(), vec2(c.at("center")), c.at("radius").get<double>(), c.at("height").get<double>()});
+        table.jaws.push_back({c.at("id").get<std::string>(), vec2(c.at("center")),
+                              c.at("radius").get<double>(), c.at("height").get<double>()});
     for (const auto& c : t.at("pockets"))
-        table.pockets.push_back({c.at("id").get<std::string>(), vec2(c.at("center")), c.at("radius").get<double>(), c.at("depth").get<double>()});
+        table.pockets.push_back({c.at("id").get<std::string>(), vec2(c.at("center")),
+                                 c.at("radius").get<double>(), c.at("depth").get<double>()});
     return table;
 }
 
@@ -28,10 +33,14 @@ std::string describe(const Record& record, const Event& e) {
 }
 
 std::string describe(const nlohmann::json& e) {
-    static const std::map<std::string, std::string> names{{"stick_ball", "cue_strike"},          {"ball_ball", "ball_ball"},
-                                                          {"ball_linear_cushion", "ball_cushion"}, {"ball_circular_cushion", "ball_jaw"},
-                                                          {"ball_pocket", "ball_pocket"},         {"sliding_rolling", "slide_roll"},
-                                                          {"rolling_spinning", "roll_spin"},      {"rolling_stationary", "roll_stop"},
+    static const std::map<std::string, std::string> names{{"stick_ball", "cue_strike"},
+                                                          {"ball_ball", "ball_ball"},
+                                                          {"ball_linear_cushion", "ball_cushion"},
+                                                          {"ball_circular_cushion", "ball_jaw"},
+                                                          {"ball_pocket", "ball_pocket"},
+                                                          {"sliding_rolling", "slide_roll"},
+                                                          {"rolling_spinning", "roll_spin"},
+                                                          {"rolling_stationary", "roll_stop"},
                                                           {"spinning_stationary", "spin_stop"}};
     const std::string type = names.at(e.at("type").get<std::string>());
     std::vector<std::string> agents = e.at("agents").get<std::vector<std::string>>();
@@ -85,7 +94,8 @@ TEST(Shots, EventListsAndFinalPositions) {
         ASSERT_EQ(record.events.size(), expected.size()) << label;
         for (std::size_t i = 0; i < expected.size(); ++i) {
             const std::string got = describe(record, record.events[i]);
-            EXPECT_TRUE(got == describe(expected[i]) || got == swapped(expected[i])) << label << " event " << i << ": " << got << " for " << describe(expected[i]);
+            EXPECT_TRUE(got == describe(expected[i]) || got == swapped(expected[i]))
+                << label << " event " << i << ": " << got << " for " << describe(expected[i]);
         }
         const double tolerance = std::max(2e-4, 1e-3 * c.at("sensitivity").at("amplification").get<double>());
         for (std::size_t i = 0; i < ids.size(); ++i) {

@@ -1,4 +1,5 @@
-// Sustained contacts: H4, H5, H7 to H9 of docs/hard_cases.md with the numbers of the design notes (clusters, sections 7 and 9).
+// Sustained contacts: H4, H5, H7 to H9 of docs/hard_cases.md with the numbers of the design notes (clusters,
+// sections 7 and 9).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,11 +18,15 @@ struct Push {
 
 // H7: a ball with 100 rad/s of topspin at rest behind n touching balls, mu_r = 0.
 TEST(Sustained, TopspinPushesALine) {
-    const Push table[] = {{1, 0.0, 0.81750000, 0.499345, 0.408214, 0.101920},  {2, 0.0, 0.51631579, 0.527086, 0.272143, 0.071721},
-                          {3, 0.0, 0.37730769, 0.540957, 0.204107, 0.055207},  {1, 0.05, 0.78845178, 0.491855, 0.387804, 0.095371},
-                          {2, 0.05, 0.47465621, 0.517015, 0.245404, 0.063439}, {3, 0.05, 0.32964911, 0.529533, 0.174560, 0.046218}};
+    const Push table[] = {{1, 0.0, 0.81750000, 0.499345, 0.408214, 0.101920},
+                          {2, 0.0, 0.51631579, 0.527086, 0.272143, 0.071721},
+                          {3, 0.0, 0.37730769, 0.540957, 0.204107, 0.055207},
+                          {1, 0.05, 0.78845178, 0.491855, 0.387804, 0.095371},
+                          {2, 0.05, 0.47465621, 0.517015, 0.245404, 0.063439},
+                          {3, 0.05, 0.32964911, 0.529533, 0.174560, 0.046218}};
     for (const Push& row : table) {
-        const std::string label = "n = " + std::to_string(row.pushed) + ", mu_b = " + std::to_string(row.mu_b);
+        const std::string label =
+            "n = " + std::to_string(row.pushed) + ", mu_b = " + std::to_string(row.mu_b);
         Scene scene = empty_scene();
         scene.balls.mu_r = 0.0;
         scene.balls.mu_b = row.mu_b;
@@ -39,7 +44,9 @@ TEST(Sustained, TopspinPushesALine) {
         EXPECT_LE(record.events.size(), 20u) << label;
         // Afterwards all roll alike, still in touch.
         for (int i = 1; i <= row.pushed; ++i)
-            EXPECT_NEAR(record.state_at(i, 0.9).position.y() - record.state_at(i - 1, 0.9).position.y(), 2.0 * R, 1e-11) << label;
+            EXPECT_NEAR(record.state_at(i, 0.9).position.y() - record.state_at(i - 1, 0.9).position.y(),
+                        2.0 * R, 1e-11)
+                << label;
     }
 }
 
@@ -53,11 +60,13 @@ TEST(Sustained, SpinIntoACushion) {
     const Event* roll = first(record, EventType::kSlideRoll);
     ASSERT_NE(roll, nullptr);
     EXPECT_NEAR(roll->time, R * 50.0 / (2.5 * 0.2 * 9.81), 1e-9);
-    for (const double t : {0.0, 0.1, 0.2, 0.29, 1.0}) EXPECT_NEAR(record.state_at(0, t).position.x(), 1.0 - R, 1e-12);
+    for (const double t : {0.0, 0.1, 0.2, 0.29, 1.0})
+        EXPECT_NEAR(record.state_at(0, t).position.x(), 1.0 - R, 1e-12);
     EXPECT_LE(record.events.size(), 6u);
 }
 
-// H5, oblique: 1 m/s along the cushion and 50 rad/s into it. Reference values of the notes: 0.328069 s, v_y = 5/7.
+// H5, oblique: 1 m/s along the cushion and 50 rad/s into it. Reference values of the notes: 0.328069 s, v_y =
+// 5/7.
 TEST(Sustained, ObliqueSpinIntoACushion) {
     Scene scene = empty_scene();
     scene.table = box(1.0, 20.0, 0.036576);
@@ -85,7 +94,8 @@ TEST(Sustained, BallAtTheCushionRebounds) {
         EXPECT_EQ(record.events[0].type, EventType::kBallCushion) << offset;
         EXPECT_LE(record.events[0].time, 2e-9) << offset;
         EXPECT_NEAR(record.state_at(0, record.events[0].time).velocity.x(), -0.85, 1e-9) << offset;
-        for (double t = 0.0; t < record.duration; t += 0.05) EXPECT_LE(record.state_at(0, t).position.x(), 1.0 - R + 1e-12);
+        for (double t = 0.0; t < record.duration; t += 0.05)
+            EXPECT_LE(record.state_at(0, t).position.x(), 1.0 - R + 1e-12);
     }
 }
 
@@ -95,12 +105,14 @@ TEST(Sustained, RollingSideBySide) {
         Scene scene = empty_scene();
         const double R = scene.balls.R;
         add_ball(scene, "a", 0.0, 0.0, 0.0, 1.0, rolling_spin(0.0, 1.0, R));
-        add_ball(scene, "b", behind ? 0.0 : 2.0 * R, behind ? 2.0 * R : 0.0, 0.0, 1.0, rolling_spin(0.0, 1.0, R));
+        add_ball(scene, "b", behind ? 0.0 : 2.0 * R, behind ? 2.0 * R : 0.0, 0.0, 1.0,
+                 rolling_spin(0.0, 1.0, R));
         const Record record = run_verified(scene);
         EXPECT_EQ(record.events.size(), 2u) << "the two stops";
         const double stop = 1.0 / (0.01 * 9.81);
         for (const double t : {0.3, 5.0, stop})
-            EXPECT_NEAR((record.state_at(0, t).position - record.state_at(1, t).position).norm(), 2.0 * R, behind ? 2e-15 : 0.0);
+            EXPECT_NEAR((record.state_at(0, t).position - record.state_at(1, t).position).norm(), 2.0 * R,
+                        behind ? 2e-15 : 0.0);
         EXPECT_NEAR(record.duration, stop, 1e-13);
     }
 }

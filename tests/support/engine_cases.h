@@ -55,7 +55,8 @@ inline Scene empty_scene() {
     return scene;
 }
 
-inline void add_ball(Scene& scene, const std::string& id, const Vec3& r, const Vec3& v = Vec3::Zero(), const Vec3& w = Vec3::Zero()) {
+inline void add_ball(Scene& scene, const std::string& id, const Vec3& r, const Vec3& v = Vec3::Zero(),
+                     const Vec3& w = Vec3::Zero()) {
     BallStart ball;
     ball.id = id;
     ball.position = r;
@@ -65,8 +66,8 @@ inline void add_ball(Scene& scene, const std::string& id, const Vec3& r, const V
 }
 
 /// On the cloth at (x, y).
-inline void add_ball(Scene& scene, const std::string& id, double x, double y, double vx = 0.0, double vy = 0.0,
-                     const Vec3& w = Vec3::Zero()) {
+inline void add_ball(Scene& scene, const std::string& id, double x, double y, double vx = 0.0,
+                     double vy = 0.0, const Vec3& w = Vec3::Zero()) {
     add_ball(scene, id, Vec3(x, y, scene.balls.R), Vec3(vx, vy, 0.0), w);
 }
 
@@ -103,7 +104,8 @@ inline Record run_verified(const Scene& scene) {
     const Plan plan = plan_of(scene);
     Record record = simulate(plan);
     const auto violation = verify(record, plan);
-    EXPECT_FALSE(violation) << violation->law << " at event " << violation->event << ": " << violation->message;
+    EXPECT_FALSE(violation) << violation->law << " at event " << violation->event << ": "
+                            << violation->message;
     return record;
 }
 

@@ -1,8 +1,8 @@
 // Seeded random impacts between equal balls: what tests, the benchmark and the accuracy report draw from.
 //
-// The generator is written down here (splitmix64), so that a seed means the same impacts with every standard library.
-// Mix of classes: generic sliding, ball 2 at rest, ball 1 rolling, both rolling, glancing, strong spin (to 200 rad/s);
-// mu_b 0.01..0.12, mu_s 0.1..0.4 per ball, e_b 0.8..1, approach speed about 0.05..8 m/s.
+// The generator is written down here (splitmix64), so that a seed means the same impacts with every standard
+// library. Mix of classes: generic sliding, ball 2 at rest, ball 1 rolling, both rolling, glancing, strong
+// spin (to 200 rad/s); mu_b 0.01..0.12, mu_s 0.1..0.4 per ball, e_b 0.8..1, approach speed about 0.05..8 m/s.
 #pragma once
 
 #include <cmath>
@@ -54,8 +54,10 @@ inline Impact random_impact(SplitMix64& rng) {
     b2.r[0] = b1.r[0] + 2.0 * p.R * nx;
     b2.r[1] = b1.r[1] + 2.0 * p.R * ny;
     const double speed = 0.05 * std::pow(160.0, rng.uniform());
-    // Cut angle: the direction of ball 1 against the line of centres; glancing hits leave 1e-3..0.1 of the speed.
-    const double cut = kind == 4 ? std::acos(std::pow(10.0, rng.uniform(-3.0, -1.0))) : rng.uniform(-1.4, 1.4);
+    // Cut angle: the direction of ball 1 against the line of centres; glancing hits leave 1e-3..0.1 of the
+    // speed.
+    const double cut =
+        kind == 4 ? std::acos(std::pow(10.0, rng.uniform(-3.0, -1.0))) : rng.uniform(-1.4, 1.4);
     const double c = std::cos(cut), s = std::sin(cut);
     b1.v[0] = speed * (c * nx - s * ny);
     b1.v[1] = speed * (c * ny + s * nx);
@@ -68,14 +70,31 @@ inline Impact random_impact(SplitMix64& rng) {
         b.w[2] = rng.uniform(-30.0, 30.0);
     };
     switch (kind) {
-        case 0: spin(b1, 60.0); break;                        // sliding into a resting ball
-        case 1: roll(b1); break;                              // rolling into a resting ball
-        case 2: roll(b1); b2.v[0] = rng.uniform(-0.5, 0.5) * speed; b2.v[1] = rng.uniform(-0.5, 0.5) * speed;
-            roll(b2); break;                                  // both rolling
-        case 3: spin(b1, 200.0); spin(b2, 200.0); break;      // strong spin
-        case 4: spin(b1, 60.0); break;                        // glancing
-        default: spin(b1, 60.0); spin(b2, 60.0); b2.v[0] = rng.uniform(-0.5, 0.5) * speed;
-            b2.v[1] = rng.uniform(-0.5, 0.5) * speed; break;  // both sliding
+        case 0:
+            spin(b1, 60.0);
+            break;  // sliding into a resting ball
+        case 1:
+            roll(b1);
+            break;  // rolling into a resting ball
+        case 2:
+            roll(b1);
+            b2.v[0] = rng.uniform(-0.5, 0.5) * speed;
+            b2.v[1] = rng.uniform(-0.5, 0.5) * speed;
+            roll(b2);
+            break;  // both rolling
+        case 3:
+            spin(b1, 200.0);
+            spin(b2, 200.0);
+            break;  // strong spin
+        case 4:
+            spin(b1, 60.0);
+            break;  // glancing
+        default:
+            spin(b1, 60.0);
+            spin(b2, 60.0);
+            b2.v[0] = rng.uniform(-0.5, 0.5) * speed;
+            b2.v[1] = rng.uniform(-0.5, 0.5) * speed;
+            break;  // both sliding
     }
     const double approach = (b1.v[0] - b2.v[0]) * nx + (b1.v[1] - b2.v[1]) * ny;
     if (approach < 0.0) {  // make them approach

@@ -74,7 +74,8 @@ TEST(CliImpact, ReproducesPooltool) {
                                  {"--substeps", "100", "--cloth-slip", "as_published"}, ""),
               1e-9);
     // The signs of the cloth slip are two models: the default is not the published one.
-    EXPECT_GT(largest_difference("ball_ball.json", "frictional_mathavan_N1000", {"--substeps", "1000"}, ""), 1e-6);
+    EXPECT_GT(largest_difference("ball_ball.json", "frictional_mathavan_N1000", {"--substeps", "1000"}, ""),
+              1e-6);
 }
 
 TEST(CliImpact, AnErrorDoesNotStopTheRunAndExits1) {

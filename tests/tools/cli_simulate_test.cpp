@@ -48,10 +48,11 @@ TEST_F(CliSimulate, VerifyNamesTheBrokenLawAndTheEvent) {
     EXPECT_EQ(good.out, run({"--hash"}).out);
     EXPECT_EQ(good.err, "");
     // The published march with few steps gains energy where an impact loses none.
-    const std::string scene = folder_.write("gain.toml",
-                                            "[balls]\ne_b = 1.0\n[physics]\nsubsteps = 100\n"
-                                            "[[ball]]\nid = \"a\"\nposition = [0.3, 0.5]\nvelocity = [0, 3.0]\n"
-                                            "[[ball]]\nid = \"b\"\nposition = [0.3, 0.55716]\n");
+    const std::string scene =
+        folder_.write("gain.toml",
+                      "[balls]\ne_b = 1.0\n[physics]\nsubsteps = 100\n"
+                      "[[ball]]\nid = \"a\"\nposition = [0.3, 0.5]\nvelocity = [0, 3.0]\n"
+                      "[[ball]]\nid = \"b\"\nposition = [0.3, 0.55716]\n");
     const ProcessResult bad = carom({"simulate", scene, "--hash", "--verify"});
     EXPECT_EQ(bad.status, 1);
     EXPECT_EQ(bad.out.size(), 17u) << "the result is printed all the same";

@@ -155,8 +155,8 @@ TEST(CliCheck, PrintsThePlan) {
     ASSERT_EQ(result.status, 0) << result.err;
     for (const char* part :
          {": valid\n", "nine_foot", "3: cue 1 ball 2\n", "mathavan", "han_2005", "clusters compliant",
-          "by tolerance 1e-06: closed forms, else collocation; cloth slip consistent", "isa       scalar (available: scalar",
-          "\ncushions  ", "\njaws      ", "\npockets   "}) {
+          "by tolerance 1e-06: closed forms, else collocation; cloth slip consistent",
+          "isa       scalar (available: scalar", "\ncushions  ", "\njaws      ", "\npockets   "}) {
         EXPECT_TRUE(contains(result.out, part)) << part << "\n" << result.out;
     }
     for (const char* effect : {"sliding", "rolling", "spin_decay", "throw", "cloth_in_impact", "cushions",

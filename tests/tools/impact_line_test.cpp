@@ -74,7 +74,8 @@ TEST(ImpactLine, ByToleranceUnlessSubstepsAreAskedFor) {
     kernel::Ball ball1{{0.0, 0.0, 0.028575}, {1.0, 0.25, 0.0}, {0.0, 3.0, 4.0}};
     kernel::Ball ball2{{0.05715, 0.0, 0.028575}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
     kernel::ImpactResult expected{};
-    kernel::tolerance_function(kernel::Isa::kScalar)(ball1, ball2, {0.028575, 0.17, 0.2, 0.2, 0.05, 0.95}, 1e-6, expected);
+    kernel::tolerance_function(kernel::Isa::kScalar)(ball1, ball2, {0.028575, 0.17, 0.2, 0.2, 0.05, 0.95},
+                                                     1e-6, expected);
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(out["v1"][i].get<double>(), expected.v1[i]);
         EXPECT_EQ(out["w2"][i].get<double>(), expected.w2[i]);
@@ -152,7 +153,8 @@ TEST(ImpactLine, SaysWhatIsWrong) {
     EXPECT_EQ(error_of(changed(line, "/r2", line["r1"])), kernel::describe(kernel::ImpactStatus::kBadState));
     const Json cushion = cushion_line();
     EXPECT_EQ(error_of(changed(cushion, "/model", "rubber")),
-              "\"model\": this is no cushion model of this version; there are: han_2005, mathavan_2010, stronge, impulse, smooth");
+              "\"model\": this is no cushion model of this version; there are: han_2005, mathavan_2010, "
+              "stronge, impulse, smooth");
     EXPECT_EQ(error_of(changed(cushion, "/normal", {2, 0})),
               "\"normal\": expected a vector of length 1, this one has 2");
     EXPECT_EQ(error_of(changed(cushion, "/normal", {0, 0, 1})), "\"normal\": expected a list of 2 numbers");

@@ -39,7 +39,7 @@ struct Nose {
 };
 
 struct Plan {
-    Scene scene;  ///< ids, table and settings as read
+    Scene scene;         ///< ids, table and settings as read
     BallParams balls{};  ///< as the scene, with the friction of skipped effects 0
     double gravity = 9.81;
     std::vector<CushionLine> cushions;
@@ -48,7 +48,8 @@ struct Plan {
     const CushionModelInfo* cushion = nullptr;  ///< of straight noses and their ends
     const CushionModelInfo* jaw = nullptr;      ///< of round jaws
     std::vector<EffectDecision> effects;
-    // What the effects leave in the loop; cushions, noses and pockets above are empty where nothing can reach them.
+    // What the effects leave in the loop; cushions, noses and pockets above are empty where nothing can reach
+    // them.
     bool pairs = true;            ///< two balls can meet
     bool sliding = true;          ///< friction of slipping balls
     bool rolling = true;          ///< resistance of rolling balls
@@ -57,9 +58,10 @@ struct Plan {
     bool cloth_in_impact = true;  ///< the cloth acts during a ball-ball impact
     bool squirt = true;           ///< a struck ball leaves the line of aim
     kernel::Isa isa = kernel::Isa::kScalar;
-    kernel::MarchFunction march = nullptr;           ///< set where the scene asks for substeps
+    kernel::MarchFunction march = nullptr;             ///< set where the scene asks for substeps
     kernel::ToleranceFunction by_tolerance = nullptr;  ///< set otherwise
-    ClusterModel clusters = ClusterModel::kSequential;  ///< kSequential where fewer than three balls leave nothing to decide
+    ClusterModel clusters =
+        ClusterModel::kSequential;      ///< kSequential where fewer than three balls leave nothing to decide
     std::vector<std::string> warnings;  ///< one sentence each, for stderr
 };
 

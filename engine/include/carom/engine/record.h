@@ -1,4 +1,5 @@
-// Record: what happened. Per ball a list of closed-form motion segments, plus the ordered events. Immutable once made.
+// Record: what happened. Per ball a list of closed-form motion segments, plus the ordered events. Immutable
+// once made.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,22 +18,36 @@ const char* name(MotionState state);
 
 /// One ball between two events that touch it. Times inside are relative to `start`.
 struct Segment {
-    double start = 0.0;  ///< s since the start of the shot
-    Vec3 r, v, w;        ///< centre, velocity, angular velocity at the start
-    Vec2 a;              ///< acceleration [m/s^2], constant
-    Vec2 dw;             ///< d(w_x, w_y)/dt [rad/s^2], constant
+    double start = 0.0;       ///< s since the start of the shot
+    Vec3 r, v, w;             ///< centre, velocity, angular velocity at the start
+    Vec2 a;                   ///< acceleration [m/s^2], constant
+    Vec2 dw;                  ///< d(w_x, w_y)/dt [rad/s^2], constant
     double spin_decay = 0.0;  ///< |dw_z/dt| [rad/s^2], >= 0; w_z never passes 0
     double duration = 0.0;    ///< until the ball's own next transition [s]; infinite if none
     MotionState state = MotionState::kStationary;
     bool held = false;  ///< in a sustained contact: `a` holds the contact forces too
-    bool ends = true;   ///< its own transition comes at the end of the duration (a held ball may only turn its forces)
+    bool ends =
+        true;  ///< its own transition comes at the end of the duration (a held ball may only turn its forces)
 };
 
 enum class EventType : std::uint8_t {
-    kCueStrike, kBallBall, kBallCluster, kBallCushion, kBallJaw, kBallPocket,
-    kSlideRoll, kRollSpin, kRollStop, kSpinStop,
+    kCueStrike,
+    kBallBall,
+    kBallCluster,
+    kBallCushion,
+    kBallJaw,
+    kBallPocket,
+    kSlideRoll,
+    kRollSpin,
+    kRollStop,
+    kSpinStop,
     // Sustained contacts: from a hold to its release the two stay in touch and push each other.
-    kBallBallHold, kBallBallRelease, kBallCushionHold, kBallCushionRelease, kBallJawHold, kBallJawRelease,
+    kBallBallHold,
+    kBallBallRelease,
+    kBallCushionHold,
+    kBallCushionRelease,
+    kBallJawHold,
+    kBallJawRelease,
 };
 inline constexpr int kEventTypes = 16;
 const char* name(EventType type);
@@ -40,9 +55,10 @@ const char* name(EventType type);
 struct Event {
     double time = 0.0;  ///< s since the start of the shot
     EventType type = EventType::kCueStrike;
-    int a = -1;  ///< ball (index)
-    int b = -1;  ///< the other ball, or the index of the cushion, jaw or pocket; -1 if none
-    int detail = -1;  ///< kBallCluster: index into Record::clusters; cushions and jaws: of the round nose in Plan::noses, or -1
+    int a = -1;       ///< ball (index)
+    int b = -1;       ///< the other ball, or the index of the cushion, jaw or pocket; -1 if none
+    int detail = -1;  ///< kBallCluster: index into Record::clusters; cushions and jaws: of the round nose in
+                      ///< Plan::noses, or -1
 };
 
 /// What one event cost; filled only by a profiled run.
@@ -66,7 +82,8 @@ struct BallState {
 
 struct BallTrack {
     std::string id;
-    std::vector<Segment> segments;  ///< ordered by start; a later one with the same start replaces the earlier
+    std::vector<Segment>
+        segments;  ///< ordered by start; a later one with the same start replaces the earlier
     int pocket = -1;
 };
 
@@ -80,20 +97,21 @@ class Record {
     RenderSettings render;
     std::vector<BallTrack> tracks;
     std::vector<Event> events;
-    std::vector<std::vector<int>> clusters;  ///< balls of every ball_cluster event, by position; a and b are the pair that met
+    std::vector<std::vector<int>>
+        clusters;  ///< balls of every ball_cluster event, by position; a and b are the pair that met
     std::vector<EventCost> costs;  ///< empty, or one per event
     double setup_detect_ns = 0.0;  ///< profiled: first detection of all pairs
     double duration = 0.0;         ///< s
-    double start_time = 0.0;       ///< s: what SimulateOptions::start_time said; all times here are relative to it
+    double start_time = 0.0;  ///< s: what SimulateOptions::start_time said; all times here are relative to it
     StopReason stopped = StopReason::kAtRest;
 
-    /// State of a ball at time t: the last segment that starts at or before t, in closed form. t before 0 gives the start,
-    /// t past the duration the state at the duration.
+    /// State of a ball at time t: the last segment that starts at or before t, in closed form. t before 0
+    /// gives the start, t past the duration the state at the duration.
     BallState state_at(int ball, double t) const;
 
-    /// Orientation (body to table) at time t, starting from the identity, by the integral of the angular velocity; exact
-    /// where the axis is fixed, else by fourth-order Magnus steps of at most 0.2 rad
-    /// (1e-7 rad over a shot).
+    /// Orientation (body to table) at time t, starting from the identity, by the integral of the angular
+    /// velocity; exact where the axis is fixed, else by fourth-order Magnus steps of at most 0.2 rad (1e-7
+    /// rad over a shot).
     Eigen::Quaterniond orientation_at(int ball, double t) const;
 
     /// 64-bit FNV-1a over all bits of segments and events, as 16 hex digits.

@@ -35,33 +35,35 @@ struct BallParams {
     double e_b;    ///< ball-ball restitution
     double e_c;    ///< cushion restitution
     double f_c;    ///< cushion friction
-    /// Ball-ball friction that falls with the slip u [m/s]: mu_b + mu_b_more exp(-mu_b_fall u). 0: mu_b at every speed.
+    /// Ball-ball friction that falls with the slip u [m/s]: mu_b + mu_b_more exp(-mu_b_fall u). 0: mu_b at
+    /// every speed.
     double mu_b_more = 0.0;
     double mu_b_fall = 0.0;  ///< [s/m]
     bool ball_friction() const { return mu_b != 0.0 || mu_b_more != 0.0; }
 };
 
-/// Friction between two balls whose surfaces slip by `slip` [m/s] at the contact. Source of the form: D. Alciatore, Technical
-/// Proof A.14: a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact takes it once, at the slip before it.
+/// Friction between two balls whose surfaces slip by `slip` [m/s] at the contact. Source of the form: D.
+/// Alciatore, Technical Proof A.14: a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact takes it
+/// once, at the slip before it.
 double ball_friction(const BallParams& balls, double slip);
 
 /// A ball at the start.
 struct BallStart {
     std::string id;
-    Vec3 position;                ///< centre [m], z = R
+    Vec3 position;                 ///< centre [m], z = R
     Vec3 velocity = Vec3::Zero();  ///< [m/s], z = 0
     Vec3 spin = Vec3::Zero();      ///< [rad/s]
-    SourceLocation where;         ///< where the file puts it ([rack] for a racked ball)
+    SourceLocation where;          ///< where the file puts it ([rack] for a racked ball)
 };
 
 struct Cue {
     std::string ball = "cue";
-    double speed = 0.0;          ///< of the cue [m/s]
-    double aim_deg = 90.0;       ///< 0 = +x, 90 = +y
+    double speed = 0.0;     ///< of the cue [m/s]
+    double aim_deg = 90.0;  ///< 0 = +x, 90 = +y
     double elevation_deg = 0.0;
     double side = 0.0, height = 0.0;  ///< offset in ball radii: left +, up +
-    double mass = 0.567;         ///< [kg]
-    double end_mass = 0.00567;   ///< [kg], for squirt
+    double mass = 0.567;              ///< [kg]
+    double end_mass = 0.00567;        ///< [kg], for squirt
     SourceLocation where;
 };
 
@@ -90,18 +92,19 @@ struct EffectOverride {
 };
 
 /// The keywords of [effects], in the order of Plan::effects.
-inline constexpr const char* kEffectKeywords[] = {"sliding",  "rolling",          "spin_decay", "throw",  "cloth_in_impact",
-                                                  "cushions", "cushion_friction", "pockets",    "squirt", "clusters"};
+inline constexpr const char* kEffectKeywords[] = {
+    "sliding",  "rolling",          "spin_decay", "throw",  "cloth_in_impact",
+    "cushions", "cushion_friction", "pockets",    "squirt", "clusters"};
 
 struct Stop {
-    std::optional<double> time;         ///< [s]
+    std::optional<double> time;  ///< [s]
     std::optional<std::int64_t> events;
 };
 
 struct RenderSettings {
     double fps = 60.0;
     int width = 1280, height = 720;
-    std::string camera = "top";     ///< top, rail, player or follow; not used where eye and target are set
+    std::string camera = "top";       ///< top, rail, player or follow; not used where eye and target are set
     std::optional<Vec3> eye, target;  ///< [m]; both or neither
 };
 

@@ -11,14 +11,16 @@
 namespace carom {
 
 struct SimulateOptions {
-    bool profile = false;          ///< time every event (Record::costs); off costs nothing
-    std::optional<double> until;   ///< stop time [s], in addition to the scene's own
-    double start_time = 0.0;       ///< s, of the shot in the caller's clock: kept in Record::start_time, enters no computation
+    bool profile = false;         ///< time every event (Record::costs); off costs nothing
+    std::optional<double> until;  ///< stop time [s], in addition to the scene's own
+    double start_time =
+        0.0;  ///< s, of the shot in the caller's clock: kept in Record::start_time, enters no computation
     /// Called now and then with (events so far, simulated time); for a progress line.
     std::function<void(std::size_t, double)> progress;
 };
 
-/// A run that cannot go on: too many events in one simulated microsecond, or a kernel that failed. what() holds a dump of the state.
+/// A run that cannot go on: too many events in one simulated microsecond, or a kernel that failed. what()
+/// holds a dump of the state.
 class SimulationError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -27,8 +29,8 @@ class SimulationError : public std::runtime_error {
 /// Runs a plan to rest, to its stop time or to its number of events. @throws SimulationError
 Record simulate(const Plan& plan, const SimulateOptions& options = {});
 
-/// Goes on with a run of the same plan that stopped at its number of events or its stop time (which the plan no longer has, or
-/// has later). The result has the bits of a run that never stopped. @throws SimulationError
+/// Goes on with a run of the same plan that stopped at its number of events or its stop time (which the plan
+/// no longer has, or has later). The result has the bits of a run that never stopped. @throws SimulationError
 Record resume(const Plan& plan, const Record& so_far, const SimulateOptions& options = {});
 
 }  // namespace carom

@@ -22,28 +22,33 @@ inline constexpr double kRollingUlp = 8.0;
 /// [s] and [-] More events than this within one such span is an error with a dump, never a silent stop.
 inline constexpr double kEventCapSpan = 1e-6;
 inline constexpr int kEventCap = 10000;
-/// [-] Rounds of the loop in a row that changed directions of sustained contacts but brought no event: as bad.
+/// [-] Rounds of the loop in a row that changed directions of sustained contacts but brought no event: as
+/// bad.
 inline constexpr int kQuietCap = 1000000;
 
-/// [-] Margin on how far a ball can go when the plan decides what it can reach; far above the rounding of the bound.
+/// [-] Margin on how far a ball can go when the plan decides what it can reach; far above the rounding of the
+/// bound.
 inline constexpr double kReachMargin = 1e-9;
 
 /// [m] Depth at which a pocketed ball comes to rest below the cloth; drawing only. pooltool 0.6.0's value.
 inline constexpr double kPocketDepth = 0.08;
 
-/// Below which approach a bounce is no bounce: one that would end before the contact itself has, 2 e v / a < t_c(v), with the
-/// Hertz contact time t_c = 2.6 (m / k)^0.4 v^-0.2 of two phenolic balls (E = 5.84 GPa, nu = 0.34: k/m = 3.094e9 m^-0.5 s^-2).
-/// Such a contact is held instead. About 1.5e-3 m/s at a = 2 m/s^2.
+/// Below which approach a bounce is no bounce: one that would end before the contact itself has, 2 e v / a <
+/// t_c(v), with the Hertz contact time t_c = 2.6 (m / k)^0.4 v^-0.2 of two phenolic balls (E = 5.84 GPa, nu =
+/// 0.34: k/m = 3.094e9 m^-0.5 s^-2). Such a contact is held instead. About 1.5e-3 m/s at a = 2 m/s^2.
 inline constexpr double kContactTimeFactor = 2.6;
 inline constexpr double kContactStiffness = 3.094e9;  ///< [m^-0.5 s^-2] k/m
-inline constexpr double kLeastRestitution = 0.1;      ///< stands for a smaller e in that rule, where no bounce is left at all
+inline constexpr double kLeastRestitution =
+    0.1;  ///< stands for a smaller e in that rule, where no bounce is left at all
 
-/// [V] and [L/V] Regularisation of the friction in the compliant cluster map, and its step: errs by about 2e-3 V in stick
-/// (docs/hard_cases.md), 4e-7 V of it from the step. [L/V] The map goes on while a listed pair would touch within this time.
+/// [V] and [L/V] Regularisation of the friction in the compliant cluster map, and its step: errs by about
+/// 2e-3 V in stick (docs/hard_cases.md), 4e-7 V of it from the step. [L/V] The map goes on while a listed
+/// pair would touch within this time.
 inline constexpr double kClusterEpsilon = 2e-3;
 inline constexpr double kClusterStep = 1.0 / 80.0;
 inline constexpr double kClusterLookAhead = 2.0;
-/// [L/V] A cluster that has not parted after this many contact times is reported; the slowest of 16 balls takes a few dozen.
+/// [L/V] A cluster that has not parted after this many contact times is reported; the slowest of 16 balls
+/// takes a few dozen.
 inline constexpr double kClusterTimeLimit = 2000.0;
 /// [-] Largest exponent of the unloading law; restitutions below 0.05 are taken as 0.05 inside a cluster.
 inline constexpr int kLargestLawExponent = 1024;
@@ -52,31 +57,36 @@ inline constexpr double kTouchUlp = 64.0 * 2.220446049250313e-16;
 /// [-] Sweeps of the rigid projection; a rack of 15 takes about 500.
 inline constexpr long kRigidSweeps = 100000;
 
-/// [s] Longest and shortest interval over which a sustained contact keeps the directions of its forces where they turn.
+/// [s] Longest and shortest interval over which a sustained contact keeps the directions of its forces where
+/// they turn.
 inline constexpr double kHoldRefresh = 2e-3;
 inline constexpr double kHoldShortest = 1e-5;
-/// [s] A held ball that its own rolling friction would stop within this time rests: it would stop again and again.
+/// [s] A held ball that its own rolling friction would stop within this time rests: it would stop again and
+/// again.
 inline constexpr double kHoldRest = 1e-12;
-/// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the straight line.
+/// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the
+/// straight line.
 inline constexpr double kHoldStraight = 1e-9;
 
-/// [of the approach speed] Error per step of the cushion model mathavan_2010, and the slip at the nose or the cloth that counts
-/// as none. The direction of a slip near the tolerance is noise of the integration; a hundred times above it is not.
+/// [of the approach speed] Error per step of the cushion model mathavan_2010, and the slip at the nose or the
+/// cloth that counts as none. The direction of a slip near the tolerance is noise of the integration; a
+/// hundred times above it is not.
 inline constexpr double kCushionTolerance = 1e-10;
 inline constexpr double kCushionStick = 1e-8;
-/// A nose that has let go slips by less than this for a while, and its direction follows the drive at once (stiff): it is taken
-/// as driven. What that leaves out is of second order, about the square root of this times its square.
+/// A nose that has let go slips by less than this for a while, and its direction follows the drive at once
+/// (stiff): it is taken as driven. What that leaves out is of second order, about the square root of this
+/// times its square.
 inline constexpr double kCushionCreep = 1e-4;
 inline constexpr int kCushionSteps = 20000;  ///< [-] bound on its steps; a real impact takes 10 to 1000
-/// [-] Grid on which the cushion model stronge brackets the end of stick: a thirtieth of the restitution, far finer than the
-/// swing of its tangential spring.
+/// [-] Grid on which the cushion model stronge brackets the end of stick: a thirtieth of the restitution, far
+/// finer than the swing of its tangential spring.
 inline constexpr int kStrongeGrid = 32;
 
 /// [share] Boxes that leave out far parts of the table are widened by this much: rounding stays inside.
 inline constexpr double kBoxShare = 1e-9;
 
-/// [share of the jaw radius] A cushion end this close to a jaw's circle is rounded off by it and needs no tip of its own. The
-/// jaw is a full circle, so nothing can slip between the two.
+/// [share of the jaw radius] A cushion end this close to a jaw's circle is rounded off by it and needs no tip
+/// of its own. The jaw is a full circle, so nothing can slip between the two.
 inline constexpr double kJawJoinShare = 1e-9;
 /// [ball radii] Cue offsets beyond this from the centre are refused: with chalk, a tip slips off at about
 /// half a radius (static friction of about 0.6 between tip and ball gives sin(atan 0.6) = 0.51), and a miscue
@@ -100,7 +110,7 @@ inline constexpr double kMaxFps = 1e5;       ///< [1/s]
 inline constexpr int kMaxSubsteps = 10000000;  ///< of the march; its result stops improving long before
 inline constexpr int kMaxImageSize = 16384;    ///< [px] per side, what the OpenGL back ends can hold
 inline constexpr int kMaxBalls = 4096;         ///< balls of a scene, written and racked
-inline constexpr int kMaxRackRows = 90;          ///< of a triangle: 4095 balls
+inline constexpr int kMaxRackRows = 90;        ///< of a triangle: 4095 balls
 inline constexpr int kMaxTableParts = 4096;    ///< cushions, jaws and pockets of a table, each
 inline constexpr std::size_t kMaxFileSize = 4u << 20;  ///< [bytes] of a scene file
 inline constexpr std::size_t kMaxIdLength = 64;        ///< [bytes] of a ball's id

@@ -26,7 +26,8 @@ struct Violation {
 ///   U7 a rolling ball does not slip                U8 no more than kEventCap events in kEventCapSpan
 ///   U9 a run to rest has no ball left that moves
 ///   E  nothing that the plan left out was needed
-/// U4 is left out for the published cloth slip, and for the march below 100 substeps, which gain energy by construction.
+/// U4 is left out for the published cloth slip, and for the march below 100 substeps, which gain energy by
+/// construction.
 std::optional<Violation> verify(const Record& record, const Plan& plan);
 
 }  // namespace carom
