@@ -1,4 +1,4 @@
-// Throw, spin transfer and curved paths in whole shots (docs/physics.md: T10, T11, T15, the throw table 7b,
+// Throw, spin transfer and curved paths in whole shots (docs/physics.md: T10, T11, the throw table 7b,
 // masse).
 #include <gtest/gtest.h>
 
