@@ -96,14 +96,16 @@ class Shot {
     }
     Vec3 position_now(int ball) const { return position_at(now_of(ball), now_ - now_of(ball).start); }
     Vec3 velocity_now(int ball) const { return velocity_at(now_of(ball), now_ - now_of(ball).start); }
-    Vec3 spin_now(int ball) const { return spin_at(now_of(ball), now_ - now_of(ball).start, plan_.balls.R); }
+    Vec3 spin_now(int ball) const { return spin_at(now_of(ball), now_ - now_of(ball).start, radius(ball)); }
+    double radius(int ball) const { return plan_.sizes[static_cast<std::size_t>(ball)].R; }
+    const MotionParams& motion_of(int ball) const { return motion_[static_cast<std::size_t>(ball)]; }
     static double nanoseconds(Clock::time_point from, Clock::time_point to) {
         return std::chrono::duration<double, std::nano>(to - from).count();
     }
 
     const Plan& plan_;
     const SimulateOptions& options_;
-    MotionParams motion_;
+    std::vector<MotionParams> motion_;  // per ball
     Record record_;
     double now_ = 0.0;
     int balls_ = 0;

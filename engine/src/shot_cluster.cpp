@@ -89,10 +89,10 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     if (plan_.clusters == ClusterModel::kRigid) {
         steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
     } else {
-        const bool frictionless = plan_.scene.physics.ball_ball == BallBallModel::kElastic;
+        const bool frictionless = !plan_.ball_ball->reads_friction;
         const ClusterSettings settings{
             p.R,
-            plan_.scene.physics.ball_ball == BallBallModel::kMathavan ? p.mu_s : 0.0,
+            plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
             frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b),
             frictionless ? 1.0 : p.e_b,
             plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
@@ -110,7 +110,7 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     for (const ClusterBall& ball : cluster_balls_) members.push_back(ball.ball);
     for (const int ball : members) free_ball(ball);
     for (const ClusterBall& ball : cluster_balls_)
-        begin(ball.ball, start_segment(now_, ball.r, ball.v, ball.w, motion_));
+        begin(ball.ball, start_segment(now_, ball.r, ball.v, ball.w, motion_of(ball.ball)));
     record_event(EventType::kBallCluster, c.a, c.b);
     record_.events.back().detail = static_cast<int>(record_.clusters.size());
     record_.clusters.push_back(std::move(members));

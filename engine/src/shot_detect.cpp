@@ -77,7 +77,7 @@ Path Shot::path(int ball, double from) const {
             std::max(0.0, s.duration - tau),
             straight,
             moves,
-            plan_.balls.R * std::sqrt(s.w.x() * s.w.x() + s.w.y() * s.w.y() + s.w.z() * s.w.z())};
+            radius(ball) * std::sqrt(s.w.x() * s.w.x() + s.w.y() * s.w.y() + s.w.z() * s.w.z())};
 }
 
 // Closing speed of a contact at its time: at one instant the deepest closing goes first.
@@ -136,7 +136,7 @@ Candidate Shot::next() const {
 // inside.
 Box Shot::swept(int ball, double duration) const {
     const Segment& s = now_of(ball);
-    const double R = plan_.balls.R,
+    const double R = radius(ball),
                  margin = R * (1.0 + kBoxShare) + kBoxShare * (std::abs(s.r.x()) + std::abs(s.r.y()));
     Box box{};
     extend(s.r.x(), s.v.x(), s.a.x(), duration, margin, box.low_x, box.high_x);
@@ -148,7 +148,7 @@ Candidate Shot::pair(int a, int b) const {
     // Beyond what either does next there is nothing to know: both will be looked at again then.
     if (apart(box_[static_cast<std::size_t>(a)], box_[static_cast<std::size_t>(b)])) return {};
     const double from = std::max(now_of(a).start, now_of(b).start);
-    const double t = time_to_ball(path(a, from), path(b, from), 2.0 * plan_.balls.R);
+    const double t = time_to_ball(path(a, from), path(b, from), contact_distance(radius(a), radius(b)));
     return {from + t, EventType::kBallBall, std::min(a, b), std::max(a, b), -1};
 }
 
@@ -167,7 +167,7 @@ void Shot::detect_features(int ball) {
     if (translates(now_of(ball).state)) {
         const double from = now_of(ball).start;
         const Path p = path(ball, from);
-        const double R = plan_.balls.R;
+        const double R = radius(ball);
         const auto offer = [&](double t, EventType type, int index, int nose) {
             if (t == kNever) return;
             const Candidate c{from + t, type, ball, index, nose};

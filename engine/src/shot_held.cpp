@@ -22,6 +22,9 @@ bool Shot::held_to(int ball, int cushion, int nose) const {
 // Captures the contact if a bounce would be over before the contact itself is.
 bool Shot::hold_instead(const HeldContact& contact, double v_n, double a_c, double restitution) {
     if (!holds(v_n, a_c, restitution)) return false;
+    if (contact.j >= 0 && !plan_.alike)
+        fail("two balls meet so slowly that they stay in contact, and there are balls of different size: that "
+             "contact is not modelled; make the balls alike");
     held_.push_back(contact);
     record_event(contact.hold_type(), contact.i, contact.partner, contact.nose);
     solve_group(contact.i, false);
@@ -43,7 +46,7 @@ void Shot::free_ball(int ball) {
         if (c.j >= 0) partners.push_back(c.i == ball ? c.j : c.i);
     }
     // From here the ball's own segment counts as free; the caller replaces it.
-    begin(ball, start_segment(now_, position_now(ball), velocity_now(ball), spin_now(ball), motion_));
+    begin(ball, start_segment(now_, position_now(ball), velocity_now(ball), spin_now(ball), motion_of(ball)));
     for (const int partner : partners) {
         if (is_held(partner)) solve_group(partner, false);
     }
@@ -72,7 +75,7 @@ void Shot::solve_group(int ball, bool transitions) {
         member.w = spin_now(b);
         const Segment& s = now_of(b);
         if (transitions && s.held && s.ends && s.start + s.duration <= now_)
-            end_transition(member, s.state, plan_.balls.R);
+            end_transition(member, s.state, radius(b));
         group.balls.push_back(member);
     }
     const auto left_of = [](const Vec3& p, const Vec3& q) {
@@ -91,12 +94,12 @@ void Shot::solve_group(int ball, bool transitions) {
         for (const HeldBall& member : group.balls) {
             const Segment& s = now_of(member.ball);
             if (!(s.held && s.ends && s.start + s.duration <= now_)) continue;
-            const Segment after = start_segment(now_, member.r, member.v, member.w, motion_);
+            const Segment after = start_segment(now_, member.r, member.v, member.w, motion_of(member.ball));
             record_event(transition_type(s, after), member.ball, -1);
         }
     }
     bool any_released = release_past_ends(group);
-    solve_held(group, plan_, motion_, now_);
+    solve_held(group, plan_, motion_of(ball), now_);
     for (const HeldContact& c : group.contacts) {
         if (c.released) {
             record_event(c.release_type(), c.i, c.partner, c.nose);
@@ -112,7 +115,7 @@ void Shot::solve_group(int ball, bool transitions) {
             const bool still = std::any_of(held_.begin(), held_.end(), [&](const HeldContact& c) {
                 return c.i == member.ball || c.j == member.ball;
             });
-            if (!still) begin(member.ball, start_segment(now_, member.r, member.v, member.w, motion_));
+            if (!still) begin(member.ball, start_segment(now_, member.r, member.v, member.w, motion_of(member.ball)));
         }
     }
 }
@@ -139,7 +142,7 @@ bool Shot::release_past_ends(HeldGroup& group) {
 void Shot::sort_by_place(std::vector<HeldContact>& contacts) const {
     const auto place_of = [this](const HeldContact& c) {
         const Vec3 r = position_now(c.i);
-        return Vec2(r.x() + plan_.balls.R * c.n.x(), r.y() + plan_.balls.R * c.n.y());
+        return Vec2(r.x() + radius(c.i) * c.n.x(), r.y() + radius(c.i) * c.n.y());
     };
     std::sort(contacts.begin(), contacts.end(), [&](const HeldContact& p, const HeldContact& q) {
         const Vec2 a = place_of(p), b = place_of(q);
