@@ -61,7 +61,8 @@ void collide_unequal(const BallSize& size1, const BallSize& size2, const Ball& b
     const Vec2 apart(ball2.r[0] - ball1.r[0], ball2.r[1] - ball1.r[1]);
     const double distance = length(apart);
     if (!(distance > 0.0) || (size1.R != size2.R && params.mu_b != 0.0)) {
-        result.status = distance > 0.0 ? kernel::ImpactStatus::kBadParameter : kernel::ImpactStatus::kBadState;
+        result.status =
+            distance > 0.0 ? kernel::ImpactStatus::kBadParameter : kernel::ImpactStatus::kBadState;
         return;
     }
     const Vec2 y = apart / distance, x(y.y(), -y.x());

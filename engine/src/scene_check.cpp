@@ -85,10 +85,10 @@ void check_noses(const Section& top, const Scene& scene) {
         for (const BallStart& ball : scene.ball) {
             const double R = scene.size_of(ball).R;
             if (height < 2.0 * R) continue;
-            const std::string message =
-                fmt::format("the nose of {} {} is {} m high, not below the top of a ball ({} m); "
-                            "use larger balls or a lower cushion",
-                            kind, id, height, 2.0 * R);
+            const std::string message = fmt::format(
+                "the nose of {} {} is {} m high, not below the top of a ball ({} m); "
+                "use larger balls or a lower cushion",
+                kind, id, height, 2.0 * R);
             if (ball.own) top.fail(ball.where, message);
             top.fail(top.has("table") ? "table" : "balls", message);
         }
@@ -112,16 +112,19 @@ void check_sizes(const Section& top, const Scene& scene) {
                                         quoted(ball.id), why));
         };
         if (rough && size.R != first.R)
-            refuse("friction between balls of different radius acts on a tilted line of centres, for which "
-                   "there is no formula here; set balls.mu_b = 0 or physics.ball_ball = \"elastic\"");
+            refuse(
+                "friction between balls of different radius acts on a tilted line of centres, for which "
+                "there is no formula here; set balls.mu_b = 0 or physics.ball_ball = \"elastic\"");
         if (rough && !model.rough_masses)
-            refuse(fmt::format("the model {} takes balls of one mass; use physics.ball_ball = \"inelastic\" or "
-                               "set balls.mu_b = 0",
-                               model.name));
+            refuse(
+                fmt::format("the model {} takes balls of one mass; use physics.ball_ball = \"inelastic\" or "
+                            "set balls.mu_b = 0",
+                            model.name));
         if (scene.ball.size() > 2 && scene.physics.clusters != ClusterModel::kSequential)
-            refuse(fmt::format("clusters = \"{}\" takes balls that are alike; set physics.clusters = "
-                               "\"sequential\"",
-                               name(scene.physics.clusters)));
+            refuse(
+                fmt::format("clusters = \"{}\" takes balls that are alike; set physics.clusters = "
+                            "\"sequential\"",
+                            name(scene.physics.clusters)));
     }
 }
 
@@ -133,11 +136,12 @@ void check_cushion_model(const Section& top, const Scene& scene) {
         for (const BallStart& ball : scene.ball) {
             const BallSize size = scene.size_of(ball);
             if (mathavan_2010_ends({size.R, size.m, p.mu_s, p.e_c, p.f_c, height})) continue;
-            top.fail(top.has("physics") ? "physics" : "balls",
-                     fmt::format("with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the "
-                                 "model mathavan_2010; "
-                                 "lower one of them or use another cushion model",
-                                 p.f_c, p.mu_s, kind, id));
+            top.fail(
+                top.has("physics") ? "physics" : "balls",
+                fmt::format("with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the "
+                            "model mathavan_2010; "
+                            "lower one of them or use another cushion model",
+                            p.f_c, p.mu_s, kind, id));
         }
     };
     for (const Cushion& c : scene.table.cushions) check(scene.physics.cushion, "cushion", c.id, c.height);

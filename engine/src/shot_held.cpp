@@ -23,8 +23,9 @@ bool Shot::held_to(int ball, int cushion, int nose) const {
 bool Shot::hold_instead(const HeldContact& contact, double v_n, double a_c, double restitution) {
     if (!holds(v_n, a_c, restitution)) return false;
     if (contact.j >= 0 && !plan_.alike)
-        fail("two balls meet so slowly that they stay in contact, and there are balls of different size: that "
-             "contact is not modelled; make the balls alike");
+        fail(
+            "two balls meet so slowly that they stay in contact, and there are balls of different size: that "
+            "contact is not modelled; make the balls alike");
     held_.push_back(contact);
     record_event(contact.hold_type(), contact.i, contact.partner, contact.nose);
     solve_group(contact.i, false);
@@ -115,7 +116,8 @@ void Shot::solve_group(int ball, bool transitions) {
             const bool still = std::any_of(held_.begin(), held_.end(), [&](const HeldContact& c) {
                 return c.i == member.ball || c.j == member.ball;
             });
-            if (!still) begin(member.ball, start_segment(now_, member.r, member.v, member.w, motion_of(member.ball)));
+            if (!still)
+                begin(member.ball, start_segment(now_, member.r, member.v, member.w, motion_of(member.ball)));
         }
     }
 }

@@ -49,7 +49,8 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     const double v_n = contact.n.x() * (v1.x() - v2.x()) + contact.n.y() * (v1.y() - v2.y());
     const Vec2 pull = now_of(one).a - now_of(two).a;
     const double v_t = cross(contact.n, Vec2(v1.x() - v2.x(), v1.y() - v2.y()));
-    const double a_c = contact.n.x() * pull.x() + contact.n.y() * pull.y() - v_t * v_t / contact_distance(radius(one), radius(two));
+    const double a_c = contact.n.x() * pull.x() + contact.n.y() * pull.y() -
+                       v_t * v_t / contact_distance(radius(one), radius(two));
     if (hold_instead(contact, v_n, a_c, plan_.balls.e_b)) return;
     if (plan_.clusters != ClusterModel::kSequential && resolve_cluster<kProfile>(c, v_n)) return;
 
@@ -81,7 +82,7 @@ void Shot::resolve_ball_ball(const Candidate& c) {
         cost_.kernel_ns = nanoseconds(start, Clock::now());
         cost_.steps = result.steps;
         const bool mathavan = equal && model.model == BallBallModel::kMathavan;
-        cost_.method = !mathavan                        ? model.name
+        cost_.method = !mathavan                       ? model.name
                        : plan_.impact.march != nullptr ? "march"
                                                        : kernel::name(result.method);
     }

@@ -8,8 +8,7 @@
 
 namespace carom {
 
-Shot::Shot(const Plan& plan, const SimulateOptions& options)
-    : plan_(plan), options_(options) {
+Shot::Shot(const Plan& plan, const SimulateOptions& options) : plan_(plan), options_(options) {
     for (std::size_t i = 0; i < plan.sizes.size(); ++i)
         motion_.push_back(motion_params(plan, static_cast<int>(i)));
 }
@@ -32,7 +31,8 @@ void Shot::set_up(bool profile) {
     if (scene.cue) {
         for (int i = 0; i < balls_; ++i) {
             if (scene.ball[static_cast<std::size_t>(i)].id != scene.cue->ball) continue;
-            const StruckBall struck = strike(*scene.cue, plan_.sizes[static_cast<std::size_t>(i)], plan_.squirt);
+            const StruckBall struck =
+                strike(*scene.cue, plan_.sizes[static_cast<std::size_t>(i)], plan_.squirt);
             begin(i, start_segment(0.0, now_of(i).r, struck.v, struck.w, motion_of(i)));
             record_.events.push_back({0.0, EventType::kCueStrike, i, -1, -1});
             if (profile) record_.costs.push_back({0.0, 0.0, 0.0, 0, "point"});

@@ -174,8 +174,7 @@ class Checker {
             // impulse, all the way.
             const double J_n =
                 std::max(m1 * std::abs((after1->v - v1).dot(n3)), m2 * std::abs((after2->v - v2).dot(n3)));
-            const bool cloth =
-                plan_.balls.mu_s > 0.0 && plan_.ball_ball->reads_cloth;
+            const bool cloth = plan_.balls.mu_s > 0.0 && plan_.ball_ball->reads_cloth;
             const double limit =
                 cloth ? plan_.balls.mu_s * (plan_.balls.mu_b + plan_.balls.mu_b_more) * J_n : 0.0;
             if (change.norm() > limit + 64.0 * kUlp * scale)

@@ -94,7 +94,8 @@ class Skipped {
         for (std::size_t j = 0; j < record_.tracks.size(); ++j) {
             if (static_cast<int>(j) == ball) continue;
             const Path other = path_of(record_.tracks[j].segments.front(), kNever);
-            if (path.moves && time_to_ball(path, other, contact_distance(R_, record_.size(static_cast<int>(j)).R)) < kNever)
+            if (path.moves &&
+                time_to_ball(path, other, contact_distance(R_, record_.size(static_cast<int>(j)).R)) < kNever)
                 need("ball-ball impacts", "meets ball " + record_.tracks[j].id);
         }
     }

@@ -37,8 +37,8 @@ struct Nose {
 };
 
 struct Plan {
-    Scene scene;         ///< ids, table and settings as read
-    BallParams balls{};  ///< as the scene, with the friction of skipped effects 0
+    Scene scene;                  ///< ids, table and settings as read
+    BallParams balls{};           ///< as the scene, with the friction of skipped effects 0
     std::vector<BallSize> sizes;  ///< of every ball of the scene
     bool alike = true;            ///< all of one size
     double gravity = 9.81;
