@@ -60,7 +60,7 @@ void measure_stages(const Record& record, FrameSize size, int frames, Backend ba
     options.size = size;
     const Stage stage(record, options);
     Renderer renderer(backend);
-    Image image;
+    KeptImage image;
     std::vector<std::uint8_t> bytes;
     std::vector<double> draw, read, encode, write;
     for (int i = 0; i <= frames; ++i) {
@@ -71,7 +71,7 @@ void measure_stages(const Record& record, FrameSize size, int frames, Backend ba
         renderer.read(image);
         const double t2 = cpu_ms();
         if (i == 0) row.setup_ms = wall_ms(start);
-        encode_png(image, 1, bytes);
+        encode_png(image.image(), 1, bytes);
         const double t3 = cpu_ms();
         const Clock::time_point before = Clock::now();
         write_file(file, bytes);

@@ -138,7 +138,7 @@ class FrameLoop {
     }
 
     void read(std::size_t i, bool previous) {
-        std::unique_ptr<Image> image = writer_.acquire();
+        std::unique_ptr<KeptImage> image = writer_.acquire();
         Clock::time_point mark = Clock::now();
         previous ? renderer_.read_previous(*image) : renderer_.read(*image);
         frames_[i].readback_ms = ms_since(mark);
