@@ -41,6 +41,7 @@ void prepare_process() {
         if (::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY) < 0) ::_exit(kFailed);
     }
     std::signal(SIGPIPE, SIG_IGN);  // a closed pipe shows as a failed write
+    std::signal(SIGXFSZ, SIG_IGN);  // and so does a file that has reached its limit
     // No SA_RESTART: a read that waits for input must return. A shell starts background jobs with SIGINT
     // ignored: so it stays.
     struct sigaction action {};

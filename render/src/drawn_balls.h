@@ -1,5 +1,5 @@
-// What a picture shows over the table: enough to tell which pixels of two pictures can differ, so that a frame
-// costs what moved in it.
+// What a picture shows over the table: enough to tell which pixels of two pictures can differ, so that a
+// frame costs what moved in it.
 #pragma once
 
 #include <cstdint>
@@ -64,8 +64,8 @@ std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth
 /// Boxes outside of which the two pictures are the same; the whole image where no more is known.
 std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPicture& after, FrameSize size);
 
-/// Adds to the boxes those of all balls that they meet, until none is left that is in part inside: what must be
-/// drawn to fill the boxes anew. Returns which balls that are.
+/// Adds to the boxes those of all balls that they meet, until none is left that is in part inside: what must
+/// be drawn to fill the boxes anew. Returns which balls that are.
 std::vector<bool> balls_inside(const std::vector<DrawnBall>& balls, std::vector<PixelBox>& boxes);
 
 }  // namespace carom::render

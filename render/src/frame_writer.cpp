@@ -84,6 +84,7 @@ void FrameWriter::work() {
             failure = std::current_exception();
         }
         lock.lock();
+        last_encode_ms_ = task.timing->encode_ms;
         idle_.push_back(std::move(task.image));
         --in_flight_;
         if (failure && !failure_) failure_ = failure;
@@ -107,6 +108,7 @@ std::unique_ptr<KeptImage> FrameWriter::acquire() {
 void FrameWriter::submit(std::unique_ptr<KeptImage> image, FrameTiming& timing) {
     if (threads_.empty()) {
         write(image->image(), timing, bytes_);
+        last_encode_ms_ = timing.encode_ms;
         idle_.push_back(std::move(image));
         return;
     }
@@ -116,6 +118,11 @@ void FrameWriter::submit(std::unique_ptr<KeptImage> image, FrameTiming& timing) 
         ++in_flight_;
     }
     task_ready_.notify_one();
+}
+
+double FrameWriter::last_encode_ms() {
+    const std::lock_guard lock(mutex_);
+    return last_encode_ms_;
 }
 
 void FrameWriter::finish() {

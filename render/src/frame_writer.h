@@ -31,6 +31,9 @@ class FrameWriter {
     /// Encodes and writes it as frame timing.frame; fills in the times, which must outlive the writer.
     void submit(std::unique_ptr<KeptImage> image, FrameTiming& timing);
 
+    /// What encoding took for the last frame that is done; 0 before [ms].
+    double last_encode_ms();
+
     /// Waits until everything is written. @throws what a thread failed with
     void finish();
 
@@ -51,6 +54,7 @@ class FrameWriter {
     std::vector<std::unique_ptr<KeptImage>> idle_;
     std::size_t images_ = 0, in_flight_ = 0;  // made so far; submitted and not yet done
     bool stopping_ = false;
+    double last_encode_ms_ = 0.0;
     std::exception_ptr failure_;
     std::vector<std::thread> threads_;
 };

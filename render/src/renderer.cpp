@@ -189,8 +189,9 @@ struct Renderer::Impl {
         api.PixelStorei(GL_PACK_ALIGNMENT, 4);
         api.PixelStorei(GL_PACK_ROW_LENGTH, size.width);
         for (const PixelBox& box : boxes) {
-            const std::size_t first = static_cast<std::size_t>(box.y0) * static_cast<std::size_t>(size.width) +
-                                      static_cast<std::size_t>(box.x0);
+            const std::size_t first =
+                static_cast<std::size_t>(box.y0) * static_cast<std::size_t>(size.width) +
+                static_cast<std::size_t>(box.x0);
             api.ReadPixels(box.x0, box.y0, box.x1 - box.x0, box.y1 - box.y0, GL_RGBA, GL_UNSIGNED_BYTE,
                            rgba + 4 * first);
         }

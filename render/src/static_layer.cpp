@@ -21,7 +21,8 @@ double r2(int i, double step) {
 
 }  // namespace
 
-// Only there while the table is drawn, or between two drawings for a camera that moves: two images of 16-bit floats and a depth buffer.
+// Only there while the table is drawn, or between two drawings for a camera that moves: two images of 16-bit
+// floats and a depth buffer.
 struct StaticLayer::Scratch {
     const gl::Api& api;
     GLuint pass, depth, sum, pass_framebuffer, sum_framebuffer;

@@ -16,8 +16,8 @@ class StaticLayer {
     StaticLayer(const StaticLayer&) = delete;
     StaticLayer& operator=(const StaticLayer&) = delete;
 
-    /// Draws the table: `samples` jittered passes, averaged in linear light. again_soon: keep the memory that only
-    /// drawing needs.
+    /// Draws the table: `samples` jittered passes, averaged in linear light. again_soon: keep the memory that
+    /// only drawing needs.
     void draw(const TableMesh& table, const View& view, int samples, bool again_soon);
 
     GLuint color() const { return color_; }  ///< RGBA8; alpha: how much of the pixel is cloth

@@ -19,8 +19,8 @@ class Renderer {
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// Starts to draw the list. If neither table nor camera changed, only what did is drawn; the pixels are those of a
-    /// whole picture.
+    /// Starts to draw the list. If neither table nor camera changed, only what did is drawn; the pixels are
+    /// those of a whole picture.
     void draw(const DrawList& list);
 
     /// Waits until the last draw() is done: for those who measure it.
@@ -32,8 +32,8 @@ class Renderer {
     /// The same, but only those that differ from what the image shows.
     void read(KeptImage& image);
 
-    /// Those of the draw() before, while the last one goes on in the driver's threads. Needs two draws of one size
-    /// before.
+    /// Those of the draw() before, while the last one goes on in the driver's threads. Needs two draws of one
+    /// size before.
     void read_previous(KeptImage& image);
 
     /// "4.5 (Core Profile) Mesa 22.3.6, llvmpipe ..."
