@@ -7,6 +7,9 @@ carom_packages=(
     libosmesa6-dev libosmesa6 libgl-dev libpng-dev
     libgtest-dev libbenchmark-dev
 )
+# What continuous integration needs in addition: a second compiler with its sanitizers, the static checks, valgrind.
+carom_check_packages=(clang clang-format clang-tidy valgrind)
+
 carom_say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
 carom_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
@@ -37,14 +40,15 @@ carom_can_install() {
     sudo -n true 2>/dev/null
 }
 
-carom_ensure_packages() {
+# carom_ensure NAME ...: installs those of the packages that are missing.
+carom_ensure() {
     local missing
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
         carom_say "this is no Debian or Ubuntu; install what these packages hold, then follow CONTRIBUTING.md:"
-        carom_say "${carom_packages[*]}"
+        carom_say "$*"
         exit 2
     fi
-    missing=$(carom_missing "${carom_packages[@]}")
+    missing=$(carom_missing "$@")
     [ -n "$missing" ] || return 0
     if ! carom_can_install; then
         carom_say "packages are missing, and installing them needs root or sudo. As root:"
@@ -60,4 +64,14 @@ carom_ensure_packages() {
     # Mesa dropped OSMesa with 25.1; the releases named above have it.
     [ -n "$(apt-cache show libosmesa6-dev 2>/dev/null)" ] || carom_say "this release has no libosmesa6-dev"
     exit 2
+}
+
+# What building and testing need.
+carom_ensure_packages() { carom_ensure "${carom_packages[@]}"; }
+
+# What tools/fuzz, tools/sanitize and tools/lint need in addition.
+carom_ensure_check_packages() {
+    carom_ensure "${carom_check_packages[@]}"
+    # The sanitizers' library is of clang's version: libclang-rt-14-dev in Debian 12.
+    carom_ensure "libclang-rt-$(clang -dumpversion | cut -d. -f1)-dev"
 }
