@@ -20,6 +20,8 @@ if(carom_sanitizers)
   target_compile_options(carom_flags INTERFACE
     -fsanitize=${carom_sanitizers} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(carom_flags INTERFACE -fsanitize=${carom_sanitizers})
+  # For tests of what a sanitizer changes: memory, mostly.
+  target_compile_definitions(carom_flags INTERFACE CAROM_SANITIZED)
 endif()
 
 # Compiles SOURCE for one x86-64 level. Such files include no Eigen and no std templates with code: a weak symbol

@@ -254,7 +254,7 @@ int guarded(int argc, char** argv) {
         flush_output();
         return status;
     } catch (const Interrupted&) {
-        return kInterrupted;
+        return interrupted_status();
     } catch (const OutputClosed&) {
         return kFailed;
     } catch (const UsageError& error) {

@@ -1,5 +1,5 @@
-// Any text as a scene file: read it, plan it, run its first events. Refusing is right; a crash, a hang, a NaN or
-// an exception of another kind is a finding.
+// Any text as a scene file: read it, plan it, run its first events. Refusing is right; a crash, a hang, a NaN
+// or an exception of another kind is a finding.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
