@@ -201,7 +201,7 @@ void add_bench_render(CLI::App& app, Action& action) {
     sub->add_option("SCENE", args->scene, "Scene file (TOML)")->capture_default_str();
     sub->add_option("--frames", args->frames, "Frames at each size, spread over the shot")
         ->type_name("N")
-        ->check(CLI::Range(2, 100000))
+        ->check(CLI::Range(3, 100000))
         ->capture_default_str();
     add_gl(*sub, args->gl);
     sub->add_flag("--json", args->json, "Print JSON (default: off)");
