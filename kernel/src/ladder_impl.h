@@ -18,6 +18,7 @@
 #include "ladder/two_stage.h"
 #include "ladder/unconditional_roots.h"
 #ifdef __AVX2__
+#include "ladder/decoupled.h"
 #include "ladder/explicit_fma.h"
 #include "ladder/packed_march.h"
 #include "ladder/paper_flags.h"
@@ -54,6 +55,7 @@ CAROM_RUNG(packed, PackedExact)
 CAROM_RUNG(extrapolated_seed, ExtrapolatedSeed)
 CAROM_RUNG(pipelined, Pipelined)
 CAROM_RUNG(carried_roots, CarriedRoots)
+CAROM_RUNG(decoupled_roots, Decoupled)
 void simd_around(const Ball& b1, const Ball& b2, const ImpactParams& p, int n, ImpactResult& out) noexcept {
     simd_outside(b1, b2, p, n, out);
 }
