@@ -87,7 +87,8 @@ class ExactLanes {
         const Mask8 turns = slips & !(absolute8(c_z) < all8(kPublishedSlipCutoff));
         const Vector8 dP1 = select8(slips, c.row[kFriction] * c_x / slip, zero);
         const Vector8 dP2 = select8(turns, c.row[kFriction] * c_z / slip, zero);
-        const Mask8 second = zero < dP2;
+        // As dP2 > 0, and known before any root.
+        const Mask8 second = c_z < zero;
         const Vector8 spin_y = R * select8(second, s.w2y, s.w1y), spin_x = R * select8(second, s.w2x, s.w1x);
         const Vector8 v_x = select8(second, s.v2x, s.v1x), v_y = select8(second, s.v2y, s.v1y);
         const Vector8 u_x = kSign > 0 ? v_x + spin_y : v_x - spin_y,

@@ -181,7 +181,8 @@ inline bool all_below8(Vector8 x, double bound) {
 // ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7))
 inline double sum8(Vector8 x) {
 #if defined(__AVX512F__)
-    const __m256d four = _mm512_castpd512_pd256(x.a) + _mm512_extractf64x4_pd(x.a, 1);
+    const __m256d four =
+        __builtin_shufflevector(x.a, x.a, 0, 1, 2, 3) + __builtin_shufflevector(x.a, x.a, 4, 5, 6, 7);
     const __m128d two = _mm256_castpd256_pd128(four) + _mm256_extractf128_pd(four, 1);
 #elif defined(__AVX__)
     const __m256d four = x.a + x.b;
