@@ -51,18 +51,25 @@ CAROM_INLINE void transpose(V4& a, V4& b, V4& c, V4& d) {
     d = __builtin_shufflevector(ab_hi, cd_hi, 2, 3, 6, 7);
 }
 
-// The velocities of a contact's second ball count against those of the first, its spins with them.
-CAROM_INLINE V4 second(V4 row) {
-    return row * V4{-1.0, -1.0, 1.0, 1.0};
+// (a0 - b0, a1 + b1, a2 - b2, a3 + b3): in a contact the velocities of the second ball count against those of the
+// first, and its spins with them. Rows have velocities in the even places and spins in the odd ones.
+CAROM_INLINE V4 subtract_add(V4 a, V4 b) {
+#if defined(__AVX__)
+    return (V4)_mm256_addsub_pd((__m256d)a, (__m256d)b);
+#else
+    return V4{a[0] - b[0], a[1] + b[1], a[2] - b[2], a[3] + b[3]};
+#endif
 }
 
 constexpr int kRow = 8;
+constexpr int kPlace[kPerBall] = {0, 2, 1, 3, 5};  // of v_x, v_y, R w_x, R w_y, R w_z in a row
+constexpr int kLift = 4, kTurn = 5, kStiffness = 7;
 
 struct Work {
     int balls, contacts;
     int rows, lanes;  // sizes of the arrays per ball and per contact
-    // Per ball a row (v_x, v_y, R w_x, R w_y | R w_z, -, -, -): the state, its stages and their slopes. In a slope
-    // the sixth number is the sum of the vertical forces, the seventh minus the sum of friction over slip.
+    // Per ball a row (v_x, R w_x, v_y, R w_y | -, R w_z, -, -): the state, its stages and their slopes. In a slope
+    // the fifth number is the sum of the vertical forces, the eighth minus the sum of friction over slip.
     double *y, *y_stage, *dy[kStages];
     // Per contact.
     double *d, *d_stage, *rate[kStages], *nx, *ny, *memory;
@@ -94,7 +101,7 @@ CAROM_INLINE Work lay_out(const ContactPhase& phase) {
     w.balls = phase.balls;
     w.contacts = phase.contacts;
     w.rows = phase.balls + 1;
-    w.lanes = padded(phase.contacts + 1);
+    w.lanes = (phase.contacts + kRow) / kRow * kRow;
     double* next = phase.numbers;
     w.y = take(next, kRow * padded(w.rows));
     w.y_stage = take(next, kRow * padded(w.rows));
@@ -116,7 +123,7 @@ CAROM_INLINE Work lay_out(const ContactPhase& phase) {
     for (int block = 0; block < w.lanes / 4; ++block) w.overlaps[block] = 0;
     w.count = 0;
     for (int b = 0; b < w.balls; ++b) {
-        for (int k = 0; k < kPerBall; ++k) w.y[kRow * b + k] = phase.motion[kPerBall * b + k];
+        for (int k = 0; k < kPerBall; ++k) w.y[kRow * b + kPlace[k]] = phase.motion[kPerBall * b + k];
     }
     for (int c = 0; c < w.lanes; ++c) {
         const bool real = c < w.contacts;
@@ -133,14 +140,10 @@ CAROM_INLINE Work lay_out(const ContactPhase& phase) {
 // d' = (v_i - v_j) . n of all contacts.
 CAROM_INLINE void rates(const Work& w, const double* y, double* rate) {
     for (int c = 0; c < w.lanes; c += 4) {
-        V2 dv[4];
-        for (int lane = 0; lane < 4; ++lane)
-            dv[lane] = load2(y + w.i[c + lane]) - load2(y + w.j[c + lane]);
-        const V4 low = __builtin_shufflevector(dv[0], dv[2], 0, 1, 2, 3),
-                 high = __builtin_shufflevector(dv[1], dv[3], 0, 1, 2, 3);
-        const V4 dvx = __builtin_shufflevector(low, high, 0, 4, 2, 6),
-                 dvy = __builtin_shufflevector(low, high, 1, 5, 3, 7);
-        store4(rate + c, dvx * load4(w.nx + c) + dvy * load4(w.ny + c));
+        V4 dv[4];
+        for (int lane = 0; lane < 4; ++lane) dv[lane] = load4(y + w.i[c + lane]) - load4(y + w.j[c + lane]);
+        transpose(dv[0], dv[1], dv[2], dv[3]);
+        store4(rate + c, dv[0] * load4(w.nx + c) + dv[2] * load4(w.ny + c));
     }
 }
 
@@ -189,29 +192,30 @@ CAROM_INLINE void add_forces(const Work& w, const Law& law, const double* y, con
     const int *c = w.active + first, *i = w.active_i + first, *j = w.active_j + first;
     const V4 nx = load4(w.active_nx + first), ny = load4(w.active_ny + first);
     V4 motion[4];
-    for (int lane = 0; lane < 4; ++lane) motion[lane] = load4(y + i[lane]) + second(load4(y + j[lane]));
+    for (int lane = 0; lane < 4; ++lane) motion[lane] = subtract_add(load4(y + i[lane]), load4(y + j[lane]));
     transpose(motion[0], motion[1], motion[2], motion[3]);
-    const double* turn = y + 4;
+    const double* turn = y + kTurn;
     const V4 turning{turn[i[0]] + turn[j[0]], turn[i[1]] + turn[j[1]], turn[i[2]] + turn[j[2]],
                      turn[i[3]] + turn[j[3]]};
     const V4 overlap{d[c[0]], d[c[1]], d[c[2]], d[c[3]]};
     const V4 memory{w.memory[c[0]], w.memory[c[1]], w.memory[c[2]], w.memory[c[3]]};
     const V4 F = normal_force(law, overlap, memory);
     // t = n x z = (n_y, -n_x); s_x = (v_i - v_j) . t - R (w_iz + w_jz), s_z = R (w_i + w_j) . t.
-    const V4 s_x = motion[0] * ny - motion[1] * nx - turning;
-    const V4 s_z = motion[2] * ny - motion[3] * nx;
+    const V4 s_x = motion[0] * ny - motion[2] * nx - turning;
+    const V4 s_z = motion[1] * ny - motion[3] * nx;
     const V4 k = law.minus_mu_b * F / square_root(s_x * s_x + s_z * s_z + law.epsilon2);
     const V4 f_x = k * s_x, f_z = k * s_z;
-    V4 rows[4] = {f_x * ny - F * nx, -F * ny - f_x * nx, 2.5 * f_z * ny, -2.5 * f_z * nx};
-    V4 ends[4] = {-2.5 * f_x, f_z, k, all(0.0)};
+    const V4 twist = 2.5 * f_z;
+    V4 rows[4] = {f_x * ny - F * nx, twist * ny, -F * ny - f_x * nx, -twist * nx};
+    V4 ends[4] = {f_z, -2.5 * f_x, all(0.0), k};
     transpose(rows[0], rows[1], rows[2], rows[3]);
     transpose(ends[0], ends[1], ends[2], ends[3]);
     for (int lane = 0; lane < 4; ++lane) {
         double *dy_i = dy + i[lane], *dy_j = dy + j[lane];
         store4(dy_i, load4(dy_i) + rows[lane]);
         store4(dy_i + 4, load4(dy_i + 4) + ends[lane]);
-        store4(dy_j, load4(dy_j) + second(rows[lane]));
-        store4(dy_j + 4, load4(dy_j + 4) + ends[lane] * V4{1.0, -1.0, 1.0, 0.0});
+        store4(dy_j, subtract_add(load4(dy_j), rows[lane]));
+        store4(dy_j + 4, subtract_add(load4(dy_j + 4), ends[lane]));
     }
 }
 
@@ -219,21 +223,21 @@ CAROM_INLINE void add_forces(const Work& w, const Law& law, const double* y, con
 CAROM_INLINE void add_cloth(const Work& w, const Law& law, const double* y, double* dy) {
     const V4 zero = all(0.0);
     for (int b = 0; b < kRow * w.rows; b += 4 * kRow) {
-        const double* vertical = dy + b + 5;
+        const double* vertical = dy + b + kLift;
         const V4 lift{vertical[0], vertical[kRow], vertical[2 * kRow], vertical[3 * kRow]};
         if (!any_below_zero(lift)) continue;
         V4 motion[4];
         for (int lane = 0; lane < 4; ++lane) motion[lane] = load4(y + b + kRow * lane);
         transpose(motion[0], motion[1], motion[2], motion[3]);
-        const V4 ux = motion[0] + law.cloth_sign * motion[3], uy = motion[1] - law.cloth_sign * motion[2];
+        const V4 ux = motion[0] + law.cloth_sign * motion[3], uy = motion[2] - law.cloth_sign * motion[1];
         const V4 pressed = lift < 0.0 ? law.mu_s * lift : zero;
         const V4 k = pressed / square_root(ux * ux + uy * uy + law.epsilon2);
-        V4 rows[4] = {k * ux, k * uy, 2.5 * k * uy, -2.5 * k * ux};
+        V4 rows[4] = {k * ux, 2.5 * k * uy, k * uy, -2.5 * k * ux};
         transpose(rows[0], rows[1], rows[2], rows[3]);
         for (int lane = 0; lane < 4; ++lane) {
             double* row = dy + b + kRow * lane;
             store4(row, load4(row) + rows[lane]);
-            row[6] += 0.5 * k[lane];
+            row[kStiffness] += 0.5 * k[lane];
         }
     }
 }
@@ -245,14 +249,28 @@ CAROM_INLINE void forces(Work& w, const Law& law, const double* y, const double*
     if (law.cloth) add_cloth(w, law, y, dy);
 }
 
+// Rows of eight, a number of a multiple of eight.
 CAROM_INLINE void shift(double* to, const double* from, const double* slope, double share, int count) {
-    for (int n = 0; n < count; n += 4) store4(to + n, load4(from + n) + share * load4(slope + n));
+    for (int n = 0; n < count; n += kRow) {
+        for (int half = n; half < n + kRow; half += 4)
+            store4(to + half, load4(from + half) + share * load4(slope + half));
+    }
 }
 
-CAROM_INLINE void combine(double* y, double* const* k, double sixth, int count) {
-    for (int n = 0; n < count; n += 4) {
-        const V4 outer = load4(k[0] + n) + load4(k[3] + n), inner = load4(k[1] + n) + load4(k[2] + n);
-        store4(y + n, load4(y + n) + sixth * (outer + 2.0 * inner));
+// The end of a step. The slopes that forces are added to are left at 0 for the next.
+template <bool kClear>
+CAROM_INLINE void combine(double* y, double* const* slope, double sixth, int count) {
+    double *k0 = slope[0], *k1 = slope[1], *k2 = slope[2], *k3 = slope[3];
+    for (int n = 0; n < count; n += kRow) {
+        for (int half = n; half < n + kRow; half += 4) {
+            const V4 outer = load4(k0 + half) + load4(k3 + half), inner = load4(k1 + half) + load4(k2 + half);
+            store4(y + half, load4(y + half) + sixth * (outer + 2.0 * inner));
+            if (!kClear) continue;
+            store4(k0 + half, all(0.0));
+            store4(k1 + half, all(0.0));
+            store4(k2 + half, all(0.0));
+            store4(k3 + half, all(0.0));
+        }
     }
 }
 
@@ -263,15 +281,12 @@ constexpr double kStableShare = 2.0 / 7.0;
 
 CAROM_INLINE double stable_step(const Work& w, const double* dy, double longest) {
     double least = 0.0;
-    for (int b = 0; b < w.balls; ++b) least = smallest(least, dy[kRow * b + 6]);
+    for (int b = 0; b < w.balls; ++b) least = smallest(least, dy[kRow * b + kStiffness]);
     return kStableShare < longest * -least ? kStableShare / -least : longest;
 }
 
 // rate[0] belongs to the state at entry; d_stage is the overlap before the step at exit. Returns its length.
 CAROM_INLINE double step(Work& w, const Law& law, double longest) {
-    for (int n = 0; n < kRow * w.rows; n += 4) {
-        for (double* dy : w.dy) store4(dy + n, all(0.0));
-    }
     forces(w, law, w.y, w.d, w.dy[0]);
     const double h = stable_step(w, w.dy[0], longest);
     const double share[kStages] = {0.0, 0.5 * h, 0.5 * h, h};
@@ -282,8 +297,8 @@ CAROM_INLINE double step(Work& w, const Law& law, double longest) {
         forces(w, law, w.y_stage, w.d_stage, w.dy[k]);
     }
     for (int c = 0; c < w.lanes; c += 4) store4(w.d_stage + c, load4(w.d + c));
-    combine(w.y, w.dy, h / 6.0, kRow * w.rows);
-    combine(w.d, w.rate, h / 6.0, w.lanes);
+    combine<true>(w.y, w.dy, h / 6.0, kRow * w.rows);
+    combine<false>(w.d, w.rate, h / 6.0, w.lanes);
     return h;
 }
 
@@ -340,7 +355,7 @@ long CAROM_CONTACT_PHASE_NAME(const ContactPhase& phase, const HertzLaw& law, do
         open = finished(w, w.rate[0], look_ahead);
     }
     for (int b = 0; b < w.balls; ++b) {
-        for (int k = 0; k < kPerBall; ++k) phase.motion[kPerBall * b + k] = w.y[kRow * b + k];
+        for (int k = 0; k < kPerBall; ++k) phase.motion[kPerBall * b + k] = w.y[kRow * b + kPlace[k]];
     }
     return steps;
 }

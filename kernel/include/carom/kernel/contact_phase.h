@@ -35,10 +35,10 @@ struct ContactPhase {
 };
 
 constexpr std::size_t contact_phase_numbers(int balls, int contacts) noexcept {
-    return 48 * (static_cast<std::size_t>(balls) + 4) + 11 * (static_cast<std::size_t>(contacts) + 4);
+    return 48 * (static_cast<std::size_t>(balls) + 4) + 11 * (static_cast<std::size_t>(contacts) + 8);
 }
 constexpr std::size_t contact_phase_places(int contacts) noexcept {
-    return 6 * (static_cast<std::size_t>(contacts) + 4);
+    return 6 * (static_cast<std::size_t>(contacts) + 8);
 }
 
 /// Classical Runge-Kutta steps until every contact is open and none would close again within look_ahead [L/V].
