@@ -55,6 +55,7 @@ Plan make_plan(const Scene& scene, kernel::Isa isa) {
     plan.jaw = &cushion_model(scene.physics.jaw_model());
     decide_effects(scene, plan);
     plan.isa = isa;
+    plan.contact_phase = kernel::contact_phase_function(isa);
     if (scene.physics.substeps)
         plan.march = kernel::march_function(isa);
     else

@@ -90,14 +90,16 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
         steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
     } else {
         const bool frictionless = plan_.scene.physics.ball_ball == BallBallModel::kElastic;
+        const double mu_b = frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b);
         const ClusterSettings settings{
             p.R,
             plan_.scene.physics.ball_ball == BallBallModel::kMathavan ? p.mu_s : 0.0,
-            frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b),
+            mu_b,
             frictionless ? 1.0 : p.e_b,
             plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
             kClusterEpsilon,
-            kClusterStep};
+            mu_b > 0.0 ? kClusterFrictionStep : kClusterStep,
+            plan_.contact_phase};
         steps = cluster_map_.compliant(cluster_balls_, cluster_contacts_, settings, v_n);
         if (steps < 0) fail("a cluster of balls did not part");
     }
