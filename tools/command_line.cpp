@@ -8,6 +8,7 @@
 #include <memory>
 #include <new>
 
+#include "accuracy_kernel.h"
 #include "bench_kernel.h"
 #include "carom/engine/scene.h"
 #include "carom/kernel/tolerance.h"
@@ -53,6 +54,12 @@ void add_gl(CLI::App& sub, std::string& gl) {
         ->type_name("NAME")
         ->check(CLI::IsMember({"osmesa", "egl"}))
         ->capture_default_str();
+}
+
+void add_reports(CLI::App& sub, std::string& csv, std::string& plot, bool& json) {
+    sub.add_option("--csv", csv, "Write the table (default: not written)")->type_name("FILE.csv");
+    sub.add_option("--plot", plot, "Draw it (default: not drawn)")->type_name("FILE.svg");
+    sub.add_flag("--json", json, "Print JSON (default: off)");
 }
 
 void add_render(CLI::App& app, Action& action) {
@@ -208,10 +215,41 @@ void add_bench_render(CLI::App& app, Action& action) {
     sub->callback([args, &action] { action = [args] { return run_bench_render(*args); }; });
 }
 
+void add_accuracy_kernel(CLI::App& accuracy, Action& action) {
+    auto args = std::make_shared<AccuracyKernelArgs>();
+    CLI::App* sub = accuracy.add_subcommand(
+        "kernel", "One impact: time and error of the march, of the tolerance kernel, of closed forms");
+    sub->add_option("--count", args->count, "Seeded random impacts")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
+    sub->add_option("--seed", args->seed, "Seed of the random impacts")
+        ->type_name("S")
+        ->capture_default_str();
+    sub->add_option("--repeat", args->repeat, "Interleaved rounds; minimum, median and maximum are over them")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    sub->add_option("--most-substeps", args->most_substeps, "Largest N of the march")
+        ->type_name("N")
+        ->check(CLI::Range(10, 100000))
+        ->capture_default_str();
+    add_reports(*sub, args->csv, args->plot, args->json);
+    sub->footer("Errors are shares of the approach speed, from a solution on which two methods agree.");
+    sub->callback([args, &action] { action = [args] { return run_accuracy_kernel(*args); }; });
+}
+
+void add_accuracy(CLI::App& app, Action& action) {
+    CLI::App* accuracy = app.add_subcommand("accuracy", "What accuracy costs in time");
+    accuracy->require_subcommand(0, 1);
+    add_accuracy_kernel(*accuracy, action);
+}
+
 void add_commands(CLI::App& app, Action& action) {
     add_simulate(app, action);
     add_render(app, action);
     add_margin(app, action);
+    add_accuracy(app, action);
     add_check(app, action);
     add_impact(app, action);
     add_bench(app, action);
@@ -243,7 +281,8 @@ int run(int argc, char** argv) {
     }
     if (!action)
         throw UsageError(
-            "a command is missing: simulate, render, margin, check, impact or bench; see carom --help");
+            "a command is missing: simulate, render, margin, accuracy, check, impact or bench; see carom "
+            "--help");
     return action();
 }
 
