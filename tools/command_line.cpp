@@ -9,6 +9,7 @@
 #include <new>
 
 #include "accuracy_kernel.h"
+#include "accuracy_scene.h"
 #include "bench_kernel.h"
 #include "carom/engine/scene.h"
 #include "carom/kernel/tolerance.h"
@@ -240,9 +241,43 @@ void add_accuracy_kernel(CLI::App& accuracy, Action& action) {
 }
 
 void add_accuracy(CLI::App& app, Action& action) {
-    CLI::App* accuracy = app.add_subcommand("accuracy", "What accuracy costs in time");
-    accuracy->require_subcommand(0, 1);
-    add_accuracy_kernel(*accuracy, action);
+    auto args = std::make_shared<AccuracySceneArgs>();
+    CLI::App* sub = app.add_subcommand(
+        "accuracy", "What accuracy costs in time: of a shot (SCENE), or of one impact (kernel)");
+    sub->add_option("SCENE", args->scene, "Scene file (TOML)");
+    sub->add_option("--target", args->target, "Final error allowed, in m: what the recommendation aims at")
+        ->type_name("M")
+        ->capture_default_str();
+    sub->add_option("--march", args->march, "Settings of the march to compare, N")
+        ->type_name("N,...")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(1, 100000000))
+        ->capture_default_str();
+    sub->add_option("--tolerance", args->tolerances, "Tolerances to compare")
+        ->type_name("E,...")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(kernel::kTightestTolerance, kernel::kLoosestTolerance))
+        ->capture_default_str();
+    sub->add_option("--repeat", args->repeat, "Interleaved rounds; minimum, median and maximum are over them")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    sub->add_flag("--box2d", args->box2d,
+                  "Also the same shot in a Box2D world stepped at 60 Hz to 10 kHz (default: off)");
+    add_reports(*sub, args->csv, args->plot, args->json);
+    sub->require_subcommand(0, 1);
+    sub->callback([args, sub, &action] {
+        if (!sub->get_subcommands().empty()) return;
+        action = [args] {
+            if (args->scene.empty())
+                throw UsageError(
+                    "accuracy: a scene file or the word kernel is required; see carom accuracy --help");
+            return run_accuracy_scene(*args);
+        };
+    });
+    add_accuracy_kernel(*sub, action);
 }
 
 void add_commands(CLI::App& app, Action& action) {

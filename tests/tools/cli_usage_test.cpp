@@ -18,7 +18,9 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         std::vector<std::string> arguments;
         const char* message;
     } kCases[] = {
-        {{}, "a command is missing: simulate, render, margin, accuracy, check, impact or bench; see carom --help"},
+        {{},
+         "a command is missing: simulate, render, margin, accuracy, check, impact or bench; see carom "
+         "--help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
         {{"simulate"}, "SCENE is required; see carom simulate --help"},
@@ -70,7 +72,7 @@ TEST(CliUsage, VersionAndHelpExit0) {
     EXPECT_EQ(carom({"--version"}).out, "carom " CAROM_VERSION "\n");
     const ProcessResult help = carom({"--help"});
     EXPECT_EQ(help.status, 0);
-    for (const char* command : {"simulate", "render", "margin", "check", "impact"}) {
+    for (const char* command : {"simulate", "render", "margin", "accuracy", "check", "impact"}) {
         EXPECT_TRUE(contains(help.out, command)) << command;
         const ProcessResult result = carom({command, "--help"});
         EXPECT_EQ(result.status, 0) << command;
@@ -79,7 +81,7 @@ TEST(CliUsage, VersionAndHelpExit0) {
 }
 
 TEST(CliUsage, HelpNamesEveryDefault) {
-    for (const char* command : {"simulate", "render", "margin", "check", "impact"}) {
+    for (const char* command : {"simulate", "render", "margin", "accuracy", "check", "impact"}) {
         // Options begin with two blanks and a dash; their text may go on in the lines below.
         std::string option;
         const auto has_default = [&option] {
