@@ -134,11 +134,19 @@ void add_margin(CLI::App& app, Action& action) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     sub->add_flag("--no-render", args->no_render, "Measure the simulation only (default: off)");
+    sub->add_flag("--sweep", args->sweep,
+                  "Every accuracy at every frame rate from 30 to 1000: where the scene stops being real time "
+                  "(default: off)");
     add_gl(*sub, args->gl);
-    sub->add_option("--csv", args->csv, "Write the costs of every frame (default: not written)")
-        ->type_name("FILE.csv");
-    sub->add_flag("--json", args->json, "Print JSON (default: off)");
-    sub->footer("kernel is a part of simulate. A frame costs simulate + draw + readback + encode.");
+    sub->add_option("--trace", args->trace,
+                    "Write the frames as Chrome trace events, for chrome://tracing or Perfetto (default: not "
+                    "written)")
+        ->type_name("FILE.json");
+    add_reports(*sub, args->csv, args->plot, args->json);
+    sub->footer(
+        "simulate = detect + resolve + kernel + cluster. A frame costs simulate + draw + readback + encode + "
+        "write,\nmeasured one after the other on one thread; frames go to a temporary folder and are "
+        "removed.");
     sub->callback([args, &action] { action = [args] { return run_margin(*args); }; });
 }
 

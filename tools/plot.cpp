@@ -78,6 +78,14 @@ class Scale {
         if (logarithmic_) {
             const int first = static_cast<int>(std::ceil(low_ - 1e-9)),
                       last = static_cast<int>(std::floor(high_ + 1e-9));
+            if (last - first < 2) {  // too few decades: steps of 1, 2, 5
+                for (int p = first - 1; p <= last; ++p)
+                    for (const double part : {1.0, 2.0, 5.0}) {
+                        const double value = part * std::pow(10.0, p);
+                        if (inside(value)) list.emplace_back(value, fmt::format("{:g}", value));
+                    }
+                return list;
+            }
             const int step = std::max(1, (last - first + 8) / 9);
             for (int p = first; p <= last; p += step)
                 list.emplace_back(std::pow(10.0, p), p >= 0 && p <= 3 ? fmt::format("{:.0f}", std::pow(10, p))
@@ -114,10 +122,10 @@ class Drawing {
             text(kLeft, 40 + 14 * static_cast<double>(i), plot_.notes[i], "start",
                  "font-size=\"11\" fill=\"#555\"");
         axes();
-        for (const Level& level : plot_.levels) draw(level);
         int next = 0;
         for (const Series& series : plot_.series) draw(series, series.colour >= 0 ? series.colour : next++);
         for (std::size_t i = 0; i < plot_.ticks.size(); ++i) draw(plot_.ticks[i], static_cast<int>(i), next);
+        for (const Level& level : plot_.levels) draw(level);
         add("</svg>\n");
         return fmt::to_string(out_);
     }
@@ -176,7 +184,8 @@ class Drawing {
         if (!y_.inside(level.y)) return;
         const double y = y_.at(level.y);
         stroke(kLeft, y, kRight, y, "#444", "stroke-dasharray=\"6 4\"");
-        text(kRight - 4, y - 4, level.name, "end", "font-size=\"11\" fill=\"#444\"");
+        text(kRight - 4, y - 4, level.name, "end",
+             "font-size=\"11\" fill=\"#444\" stroke=\"white\" stroke-width=\"4\" paint-order=\"stroke\"");
     }
 
     void draw(const Series& series, int number) {
