@@ -56,7 +56,7 @@ struct SceneAccuracy {
     bool converged = false;       ///< both agree, and far closer than the target: errors may be called errors
     std::optional<double> recommended;  ///< by gain alone; nothing where double precision does not allow it
     std::optional<double> loosest;      ///< measured here: met the target, as did every tighter one
-    std::size_t contacts = 0;
+    std::size_t contacts = 0, ball_hits = 0;  ///< of the converged run; hits: of two balls or a cluster
     std::string sentence;
     std::vector<SceneAccuracyRow> rows;
 };

@@ -83,6 +83,7 @@ std::string scene_accuracy_json(const SceneAccuracy& result) {
         {"target", result.target},
         {"gain", result.gain},
         {"contacts", result.contacts},
+        {"ball_hits", result.ball_hits},
         {"agreement", result.agreement},
         {"same_outcome", result.outcome_agrees},
         {"converged", result.converged},
