@@ -120,6 +120,8 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
 }
 
 template bool Shot::resolve_cluster<false>(const Candidate&, double);
+#ifndef CAROM_WITHOUT_PROFILE
 template bool Shot::resolve_cluster<true>(const Candidate&, double);
+#endif
 
 }  // namespace carom

@@ -184,7 +184,9 @@ void Shot::apply(const Candidate& c) {
 }
 
 template void Shot::apply<false>(const Candidate&);
+#ifndef CAROM_WITHOUT_PROFILE
 template void Shot::apply<true>(const Candidate&);
+#endif
 
 void Shot::guard_cap() const {
     const std::size_t count = record_.events.size(), cap = static_cast<std::size_t>(kEventCap);
