@@ -134,6 +134,32 @@ void add_margin(CLI::App& app, Action& action) {
     sub->callback([args, &action] { action = [args] { return run_margin(*args); }; });
 }
 
+void add_sweep(CLI::App& app, Action& action) {
+    auto args = std::make_shared<SweepArgs>();
+    CLI::App* sub = app.add_subcommand("sweep", "Many shots of one scene with values that vary: a row a shot");
+    sub->add_option("SCENE", args->scene, "Scene file (TOML)")->required();
+    sub->add_option("--vary", args->vary,
+                    "What varies and how, once per key: uniform(a,b), normal(sd) around the scene's value, "
+                    "normal(mean,sd), integer(a,b) or list(v,...)")
+        ->type_name("KEY=DISTRIBUTION")
+        ->allow_extra_args(false)
+        ->required();
+    sub->add_option("--count", args->count, "Number of shots")->type_name("N")->required();
+    sub->add_option("--seed", args->seed, "Seed of all draws")->type_name("S")->capture_default_str();
+    sub->add_option("--jobs", args->jobs, "Threads; 0: one per core; the rows do not depend on it")
+        ->type_name("J")
+        ->check(CLI::Range(0, 256))
+        ->capture_default_str();
+    sub->add_option("--shard", args->shard,
+                    "Only the I-th of N parts; the files of all parts, one behind the other, are the whole "
+                    "(default: all)")
+        ->type_name("I/N");
+    sub->add_option("-o,--output", args->output, "Table to write")->type_name("FILE.csv")->required();
+    sub->footer(
+        "A sweep that was stopped or killed goes on when the same command is given again (docs/sweep.md).");
+    sub->callback([args, &action] { action = [args] { return run_sweep(*args); }; });
+}
+
 void add_check(CLI::App& app, Action& action) {
     auto args = std::make_shared<CheckArgs>();
     CLI::App* sub =
@@ -212,6 +238,7 @@ void add_commands(CLI::App& app, Action& action) {
     add_simulate(app, action);
     add_render(app, action);
     add_margin(app, action);
+    add_sweep(app, action);
     add_check(app, action);
     add_impact(app, action);
     add_bench(app, action);
@@ -243,7 +270,7 @@ int run(int argc, char** argv) {
     }
     if (!action)
         throw UsageError(
-            "a command is missing: simulate, render, margin, check, impact or bench; see carom --help");
+            "a command is missing: simulate, render, margin, sweep, check, impact or bench; see carom --help");
     return action();
 }
 

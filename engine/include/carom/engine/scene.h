@@ -22,6 +22,12 @@ struct SourceLocation {
 class SceneError : public std::runtime_error {
   public:
     SceneError(const std::string& file, SourceLocation where, const std::string& message);
+
+    /// "what is wrong and what to do", without the place.
+    const std::string& message() const noexcept { return message_; }
+
+  private:
+    std::string message_;
 };
 
 /// Properties shared by all balls of a scene (SI; frictions and restitutions are numbers).

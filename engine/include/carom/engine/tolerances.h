@@ -114,5 +114,6 @@ inline constexpr int kMaxRackRows = 90;        ///< of a triangle: 4095 balls
 inline constexpr int kMaxTableParts = 4096;    ///< cushions, jaws and pockets of a table, each
 inline constexpr std::size_t kMaxFileSize = 4u << 20;  ///< [bytes] of a scene file
 inline constexpr std::size_t kMaxIdLength = 64;        ///< [bytes] of a ball's id
+inline constexpr int kVariationTrials = 100;  ///< shots of a variation, one of which has to be a valid scene
 
 }  // namespace carom
