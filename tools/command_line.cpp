@@ -136,7 +136,8 @@ void add_margin(CLI::App& app, Action& action) {
 
 void add_sweep(CLI::App& app, Action& action) {
     auto args = std::make_shared<SweepArgs>();
-    CLI::App* sub = app.add_subcommand("sweep", "Many shots of one scene with values that vary: a row a shot");
+    CLI::App* sub =
+        app.add_subcommand("sweep", "Many shots of one scene with values that vary: a row a shot");
     sub->add_option("SCENE", args->scene, "Scene file (TOML)")->required();
     sub->add_option("--vary", args->vary,
                     "What varies and how, once per key: uniform(a,b), normal(sd) around the scene's value, "
@@ -270,7 +271,8 @@ int run(int argc, char** argv) {
     }
     if (!action)
         throw UsageError(
-            "a command is missing: simulate, render, margin, sweep, check, impact or bench; see carom --help");
+            "a command is missing: simulate, render, margin, sweep, check, impact or bench; see carom "
+            "--help");
     return action();
 }
 

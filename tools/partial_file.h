@@ -8,8 +8,8 @@
 
 namespace carom::tools {
 
-/// Lines are appended to `path`.<id>.part, and commit() renames it to `path`. Whoever opens the same path and id
-/// again goes on behind its complete lines; another id is another file. A lock keeps two programs apart.
+/// Lines are appended to `path`.<id>.part, and commit() renames it to `path`. Whoever opens the same path and
+/// id again goes on behind its complete lines; another id is another file. A lock keeps two programs apart.
 ///
 /// What is not a regular file (/dev/null, a pipe) is written to directly and cannot be taken up.
 /// Every failure is a std::runtime_error that names the file and the reason.
@@ -20,9 +20,9 @@ class PartialFile {
     PartialFile(const PartialFile&) = delete;
     PartialFile& operator=(const PartialFile&) = delete;
 
-    long lines() const { return lines_; }                     ///< complete ones that were found
-    const std::string& last_line() const { return last_; }    ///< of those, without its end
-    const std::string& name() const { return name_; }         ///< of the file that grows
+    long lines() const { return lines_; }                   ///< complete ones that were found
+    const std::string& last_line() const { return last_; }  ///< of those, without its end
+    const std::string& name() const { return name_; }       ///< of the file that grows
     bool can_be_taken_up() const { return name_ != target_; }
 
     void append(std::string_view text);  ///< whole lines

@@ -1,7 +1,7 @@
 // carom sweep: many shots of one scene, a row a shot.
 //
-// A row depends on the scene, the rules, the seed and its number alone; threads only decide when it is computed.
-// Rows are written in their order, so that what a kill leaves behind is a beginning of the whole.
+// A row depends on the scene, the rules, the seed and its number alone; threads only decide when it is
+// computed. Rows are written in their order, so that what a kill leaves behind is a beginning of the whole.
 #include <fmt/format.h>
 
 #include <array>
@@ -76,7 +76,8 @@ class Queue {
                         [&] { return stopped_ || rows_.count(wanted_) != 0; });
         if (error_) std::rethrow_exception(error_);
         std::vector<SweepRow> rows;
-        for (auto it = rows_.begin(); it != rows_.end() && it->first == wanted_; it = rows_.erase(it), ++wanted_)
+        for (auto it = rows_.begin(); it != rows_.end() && it->first == wanted_;
+             it = rows_.erase(it), ++wanted_)
             rows.push_back(std::move(it->second));
         if (!rows.empty()) room_.notify_all();
         return rows;
@@ -106,7 +107,8 @@ class Workers {
         for (unsigned i = 0; i < jobs; ++i) {
             threads_.emplace_back([&queue, &variation, isa] {
                 try {
-                    while (const auto shot = queue.claim()) queue.put(*shot, sweep_row(variation, *shot, isa));
+                    while (const auto shot = queue.claim())
+                        queue.put(*shot, sweep_row(variation, *shot, isa));
                 } catch (...) {
                     queue.stop(std::current_exception());
                 }
@@ -125,19 +127,21 @@ class Workers {
     std::vector<std::thread> threads_;
 };
 
-/// Where to go on in a file that was left behind. The last line is made again, so that the rows of another build
-/// are not continued.
-std::uint64_t take_up(const PartialFile& file, const Variation& variation, const Range& range, kernel::Isa isa) {
+/// Where to go on in a file that was left behind. The last line is made again, so that the rows of another
+/// build are not continued.
+std::uint64_t take_up(const PartialFile& file, const Variation& variation, const Range& range,
+                      kernel::Isa isa) {
     if (file.lines() == 0) return range.first;
     const std::uint64_t rows = static_cast<std::uint64_t>(file.lines()) - (range.header ? 1 : 0);
     std::string expected;
     if (rows <= range.last - range.first)
-        expected = rows == 0 ? sweep_header(variation)
-                             : sweep_row(variation, range.first + rows - 1, isa).text;
+        expected =
+            rows == 0 ? sweep_header(variation) : sweep_row(variation, range.first + rows - 1, isa).text;
     if (expected != file.last_line() + '\n')
-        throw std::runtime_error(
-            fmt::format("{}: its last row is not what this program computes; remove it to begin anew", file.name()));
-    message(fmt::format("going on with {}: {} of {} shots are there", file.name(), rows, range.last - range.first));
+        throw std::runtime_error(fmt::format(
+            "{}: its last row is not what this program computes; remove it to begin anew", file.name()));
+    message(fmt::format("going on with {}: {} of {} shots are there", file.name(), rows,
+                        range.last - range.first));
     return range.first + rows;
 }
 
@@ -170,8 +174,9 @@ Outcomes write_rows(PartialFile& file, const Variation& variation, const Range& 
 std::string summary(const Outcomes& outcomes, const SweepArgs& args, unsigned jobs, double seconds) {
     std::uint64_t shots = 0;
     for (const std::uint64_t n : outcomes) shots += n;
-    std::string text = fmt::format("{}: {} shots in {:.2f} s on {} threads, {:.0f} a second\n", args.output, shots,
-                                   seconds, jobs, static_cast<double>(shots) / std::max(seconds, 1e-9));
+    std::string text =
+        fmt::format("{}: {} shots in {:.2f} s on {} threads, {:.0f} a second\n", args.output, shots, seconds,
+                    jobs, static_cast<double>(shots) / std::max(seconds, 1e-9));
     for (int i = 0; i < kShotOutcomes; ++i) {
         const std::uint64_t n = outcomes[static_cast<std::size_t>(i)];
         if (n > 0) text += fmt::format("  {:<8}{:>10}\n", name(static_cast<ShotOutcome>(i)), n);
@@ -195,10 +200,11 @@ int run_sweep(const SweepArgs& args) {
     const Range range = shard_range(args.shard, args.count);
     const kernel::Isa isa = chosen_isa();
     const Variation variation = read_variation(args);
-    for (const std::string& warning : make_plan(variation.base(), isa).warnings) message("warning: " + warning);
+    for (const std::string& warning : make_plan(variation.base(), isa).warnings)
+        message("warning: " + warning);
     // Another range of shots is another file.
-    const std::uint64_t id = variation.fingerprint() ^ (range.first * 0x9e3779b97f4a7c15u) ^
-                             (range.last * 0xbf58476d1ce4e5b9u);
+    const std::uint64_t id =
+        variation.fingerprint() ^ (range.first * 0x9e3779b97f4a7c15u) ^ (range.last * 0xbf58476d1ce4e5b9u);
     PartialFile file(args.output, id);
     const std::uint64_t from = take_up(file, variation, range, isa);
     if (range.header && file.lines() == 0) file.append(sweep_header(variation));

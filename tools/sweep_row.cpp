@@ -26,8 +26,8 @@ std::string field(std::string text) {
 int shooter(const Scene& scene) {
     for (std::size_t i = 0; i < scene.ball.size(); ++i) {
         const BallStart& ball = scene.ball[i];
-        const bool moves = scene.cue ? ball.id == scene.cue->ball
-                                     : !ball.velocity.isZero(0.0) || !ball.spin.isZero(0.0);
+        const bool moves =
+            scene.cue ? ball.id == scene.cue->ball : !ball.velocity.isZero(0.0) || !ball.spin.isZero(0.0);
         if (moves) return static_cast<int>(i);
     }
     return -1;
@@ -115,8 +115,9 @@ SweepRow sweep_row(const Variation& variation, std::uint64_t index, kernel::Isa 
     for (const std::string& value : shot.values) start += ',' + field(value);
     const auto without_results = [&](ShotOutcome outcome, const std::string& message) {
         const std::size_t empty = 4 + 3 * variation.base().ball.size();
-        return SweepRow{fmt::format("{},{}{},{}\n", start, name(outcome), std::string(empty, ','), field(message)),
-                        outcome};
+        return SweepRow{
+            fmt::format("{},{}{},{}\n", start, name(outcome), std::string(empty, ','), field(message)),
+            outcome};
     };
     if (!shot.scene) return without_results(ShotOutcome::kInvalid, shot.error);
     SimulateOptions options;

@@ -25,9 +25,10 @@ toml::array arguments(std::string_view name, std::string_view text) {
         if (const toml::array* array = table["v"].as_array(); array && table.size() == 1) return *array;
     } catch (const toml::parse_error&) {
     }
-    fail(fmt::format("cannot read the values of {}({}); write numbers, or strings in double quotes, with commas "
-                     "between them",
-                     name, text));
+    fail(fmt::format(
+        "cannot read the values of {}({}); write numbers, or strings in double quotes, with commas "
+        "between them",
+        name, text));
 }
 
 double number(std::string_view name, const toml::array& list, std::size_t i) {
@@ -66,8 +67,9 @@ Distribution Distribution::parse(std::string_view text, const toml::node* own) {
         need(1, 2, "normal(sd) or normal(mean,sd)");
         d.kind_ = Kind::kNormal;
         if (list.size() == 1 && (own == nullptr || !own->is_number()))
-            fail("normal(sd) is around the number in the scene, and there is none; write it there, or use "
-                 "normal(mean,sd)");
+            fail(
+                "normal(sd) is around the number in the scene, and there is none; write it there, or use "
+                "normal(mean,sd)");
         d.first_ = list.size() == 1 ? *own->value<double>() : number(name, list, 0);
         d.second_ = number(name, list, list.size() - 1);
         if (!(d.second_ >= 0.0)) fail("the standard deviation of normal must be at least 0");

@@ -87,7 +87,8 @@ std::string text_of(const Drawn& value) {
 
 /// Takes "name." from the front of a key; false where the key does not begin so.
 bool take(std::string_view& key, std::string_view name) {
-    if (key.size() <= name.size() || key.substr(0, name.size()) != name || key[name.size()] != '.') return false;
+    if (key.size() <= name.size() || key.substr(0, name.size()) != name || key[name.size()] != '.')
+        return false;
     key.remove_prefix(name.size() + 1);
     return true;
 }
@@ -114,7 +115,10 @@ std::size_t take_part(std::string_view& key, char letter) {
     const auto [rest, error] = std::from_chars(key.data() + (lettered ? 1 : 0), end, number);
     if (!lettered || error != std::errc() || rest == end || *rest != '.' || number < 1)
         fail(fmt::format("name the part by its number, as in table.{}.{}1.radius",
-                         letter == 'c' ? "cushion" : letter == 'j' ? "jaw" : "pocket", letter));
+                         letter == 'c'   ? "cushion"
+                         : letter == 'j' ? "jaw"
+                                         : "pocket",
+                         letter));
     key.remove_prefix(static_cast<std::size_t>(rest + 1 - key.data()));
     return number - 1;
 }
@@ -239,8 +243,8 @@ Variation::Variation(const std::string& path, const std::vector<std::string>& ru
     // A mistyped key or a hopeless range shows in every shot: better said now than in every row.
     for (int i = 0; i < kVariationTrials; ++i)
         if (shot(static_cast<std::uint64_t>(i)).scene) return;
-    throw VariationError(fmt::format("none of the first {} shots is a valid scene; shot 0: {}", kVariationTrials,
-                                     shot(0).error));
+    throw VariationError(fmt::format("none of the first {} shots is a valid scene; shot 0: {}",
+                                     kVariationTrials, shot(0).error));
 }
 
 Variation::~Variation() = default;

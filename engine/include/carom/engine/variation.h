@@ -27,9 +27,10 @@ struct VariedShot {
 
 /// A scene file and the rules by which its values vary.
 ///
-/// A rule is KEY=DISTRIBUTION. KEY is written as in the file, with dots: cue.speed, balls.mu_b, rack.seed. One
-/// element of an array is named by its number from 0 or by its name (x, y, z; side, height): cue.offset.side.
-/// Balls go by their ids, parts of an outline by their names: ball.cue.position.x, table.pocket.p1.radius.
+/// A rule is KEY=DISTRIBUTION. KEY is written as in the file, with dots: cue.speed, balls.mu_b, rack.seed.
+/// One element of an array is named by its number from 0 or by its name (x, y, z; side, height):
+/// cue.offset.side. Balls go by their ids, parts of an outline by their names: ball.cue.position.x,
+/// table.pocket.p1.radius.
 ///
 ///   uniform(a,b)                a <= x < b
 ///   normal(sd), normal(mean,sd) without a mean, around the number in the file
@@ -41,8 +42,8 @@ struct VariedShot {
 /// order shots are asked for.
 class Variation {
   public:
-    /// @throws SceneError for a bad file, VariationError for a bad rule, and when none of the first shots makes
-    /// a valid scene
+    /// @throws SceneError for a bad file, VariationError for a bad rule, and when none of the first shots
+    /// makes a valid scene
     Variation(const std::string& path, const std::vector<std::string>& rules, std::uint64_t seed);
     ~Variation();
     Variation(Variation&&) noexcept;
@@ -51,8 +52,8 @@ class Variation {
     const Scene& base() const;  ///< the file as it is
     const std::vector<std::string>& keys() const;
 
-    /// Shot 0, 1, ...; any thread may ask. Where the balls are not those of the file (a rack of another size),
-    /// there is no scene but an error: all shots share the columns of one table.
+    /// Shot 0, 1, ...; any thread may ask. Where the balls are not those of the file (a rack of another
+    /// size), there is no scene but an error: all shots share the columns of one table.
     VariedShot shot(std::uint64_t index) const;
 
     /// Of the file's content, the rules and the seed: the same number, the same shots.
