@@ -1,5 +1,5 @@
 // The program: reads the command line, runs one sub-command, turns what it throws into an exit status.
-// The only file that includes CLI11, which takes seconds to compile.
+// Only this file and describe.cpp include CLI11, which takes seconds to compile.
 #include <CLI/CLI.hpp>
 
 #include <cstdlib>
@@ -13,6 +13,7 @@
 #include "carom/kernel/tolerance.h"
 #include "commands.h"
 #include "console.h"
+#include "describe.h"
 
 namespace carom::tools {
 namespace {
@@ -235,6 +236,23 @@ void add_bench_render(CLI::App& app, Action& action) {
     sub->callback([args, &action] { action = [args] { return run_bench_render(*args); }; });
 }
 
+void add_describe(CLI::App& app, Action& action) {
+    auto format = std::make_shared<std::string>();
+    CLI::App* sub = app.add_subcommand("describe", "This program as a man page, or as completions for a shell");
+    sub->add_option("FORMAT", *format, "What to print")
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"man", "bash", "zsh"}))
+        ->required();
+    sub->callback([format, &app, &action] {
+        action = [format, &app] {
+            print(*format == "man"    ? man_page(app, CAROM_VERSION)
+                  : *format == "bash" ? bash_completion(app)
+                                      : zsh_completion(app));
+            return kOk;
+        };
+    });
+}
+
 void add_commands(CLI::App& app, Action& action) {
     add_simulate(app, action);
     add_render(app, action);
@@ -244,6 +262,7 @@ void add_commands(CLI::App& app, Action& action) {
     add_impact(app, action);
     add_bench(app, action);
     add_bench_render(app, action);
+    add_describe(app, action);
 }
 
 int run(int argc, char** argv) {
@@ -271,7 +290,7 @@ int run(int argc, char** argv) {
     }
     if (!action)
         throw UsageError(
-            "a command is missing: simulate, render, margin, sweep, check, impact or bench; see carom "
+            "a command is missing: simulate, render, margin, sweep, check, impact, bench or describe; see carom "
             "--help");
     return action();
 }

@@ -6,6 +6,7 @@ carom_packages=(
     libeigen3-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev libcli11-dev
     libosmesa6-dev libosmesa6 libgl-dev libpng-dev
     libgtest-dev libbenchmark-dev
+    pkg-config python3 python3-numpy
 )
 carom_say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
