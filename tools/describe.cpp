@@ -87,10 +87,11 @@ std::string roff(std::string text) {
     return replaced(std::move(text), "\n", "\n.br\n");
 }
 
-void man_command(std::string& out, const CLI::App& command, const std::string& path) {
+void man_command(std::string& out, const CLI::App& command, const std::string& path,
+                 const std::string& common_footer) {
     const Apps inner = commands_of(command);
     const std::string name = path + " " + command.get_name();
-    for (const CLI::App* sub : inner) man_command(out, *sub, name);
+    for (const CLI::App* sub : inner) man_command(out, *sub, name, common_footer);
     if (!inner.empty()) return;
     std::string synopsis = name;
     for (const Described& d : options_of(command, true)) synopsis += " " + d.positional;
@@ -99,29 +100,41 @@ void man_command(std::string& out, const CLI::App& command, const std::string& p
     out += ".SS \"" + roff(synopsis) + " [options]\"\n" + roff(command.get_description()) + ".\n";
     for (const bool positional : {true, false}) {
         for (const Described& d : options_of(command, positional)) {
+            if (!positional && d.names.back() == "--help") continue;
             out += ".TP\n\\fB" + roff(positional ? d.positional : joined(d.names, ", ")) + "\\fR";
             if (!positional && !d.value.empty()) out += " \\fI" + roff(d.value) + "\\fR";
             out += "\n" + roff(d.text) + "\n";
             if (!d.choices.empty()) out += ".br\nOne of " + roff(joined(d.choices, ", ")) + ".\n";
         }
     }
-    if (!command.get_footer().empty()) out += ".PP\n" + roff(command.get_footer()) + "\n";
+    // A command without a footer of its own has the program's.
+    if (command.get_footer() != common_footer) out += ".PP\n" + roff(command.get_footer()) + "\n";
 }
 
 }  // namespace
 
 std::string man_page(const CLI::App& app, const std::string& version) {
     std::string out = ".TH CAROM 1 \"\" \"carom " + version + "\" \"User Commands\"\n";
-    out += ".SH NAME\ncarom \\- event\\-based billiards simulator\n.SH SYNOPSIS\n\\fBcarom\\fR \\fICOMMAND\\fR [options]\n";
-    out += ".SH DESCRIPTION\nReads a scene (TOML): a table, its balls, perhaps a shot. Simulates it from event to event, draws "
-           "what happened without a display, and says what every frame cost.\n";
+    out +=
+        ".SH NAME\ncarom \\- event\\-based billiards simulator\n.SH SYNOPSIS\n\\fBcarom\\fR \\fICOMMAND\\fR "
+        "[options]\n";
+    out +=
+        ".SH DESCRIPTION\nReads a scene (TOML): a table, its balls, perhaps a shot. Simulates it from event "
+        "to event, draws "
+        "what happened without a display, and says what every frame cost.\n";
     out += ".SH COMMANDS\n";
-    for (const CLI::App* command : commands_of(app)) man_command(out, *command, "carom");
-    out += ".SH ENVIRONMENT\n.TP\n\\fBCAROM_ISA\\fR\nscalar, v3 or v4 forces the instruction set; all give the same bits. Left "
-           "out, the widest one that the processor has.\n";
-    out += ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\nfailed while running\n.TP\n2\nbad usage or bad scene\n.TP\n130\ninterrupted\n";
-    out += ".SH EXAMPLES\n.EX\ncarom simulate scenes/hello.toml\ncarom render scenes/eight_ball_break.toml \\-\\-to 2 \\-o "
-           "frames/%05d.png\n.EE\n";
+    for (const CLI::App* command : commands_of(app)) man_command(out, *command, "carom", app.get_footer());
+    out +=
+        ".SH ENVIRONMENT\n.TP\n\\fBCAROM_ISA\\fR\nscalar, v3 or v4 forces the instruction set; all give the "
+        "same bits. Left "
+        "out, the widest one that the processor has.\n";
+    out +=
+        ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\nfailed while running\n.TP\n2\nbad usage or bad "
+        "scene\n.TP\n130\ninterrupted\n";
+    out +=
+        ".SH EXAMPLES\n.EX\ncarom simulate scenes/hello.toml\ncarom render scenes/eight_ball_break.toml "
+        "\\-\\-to 2 \\-o "
+        "frames/%05d.png\n.EE\n";
     return out;
 }
 
@@ -140,8 +153,8 @@ void bash_cases(std::string& out, const CLI::App& app, const std::string& path) 
         if (d.value.empty()) continue;
         const std::string action = !d.choices.empty() ? "words='" + joined(d.choices, " ") + "'"
                                    : takes_file(d)    ? "files=1"
-                                                      : "";
-        values += "            " + joined(d.names, "|") + ") option=1 " + action + " ;;\n";
+                                                      : ":";
+        values += "            " + joined(d.names, "|") + ") " + action + " ;;\n";
     }
     bool positional_file = false;
     std::vector<std::string> choices;
@@ -149,10 +162,11 @@ void bash_cases(std::string& out, const CLI::App& app, const std::string& path) 
         positional_file = positional_file || takes_file(d);
         choices.insert(choices.end(), d.choices.begin(), d.choices.end());
     }
-    out += "    '" + path + "')\n        case \"$before\" in\n" + values + "        *) words='" + joined(words, " ") +
-           (choices.empty() ? "" : " " + joined(choices, " ")) + "'" + (positional_file ? " files=1" : "") +
-           " ;;\n        esac ;;\n";
-    for (const CLI::App* sub : inner) bash_cases(out, *sub, path.empty() ? sub->get_name() : path + " " + sub->get_name());
+    out += "    '" + path + "')\n        case \"$before\" in\n" + values + "        *) words='" +
+           joined(words, " ") + (choices.empty() ? "" : " " + joined(choices, " ")) + "'" +
+           (positional_file ? " files=1" : "") + " ;;\n        esac ;;\n";
+    for (const CLI::App* sub : inner)
+        bash_cases(out, *sub, path.empty() ? sub->get_name() : path + " " + sub->get_name());
 }
 
 }  // namespace
@@ -161,25 +175,27 @@ std::string bash_completion(const CLI::App& app) {
     std::string groups;
     for (const CLI::App* command : commands_of(app))
         if (!commands_of(*command).empty()) groups += (groups.empty() ? "" : "|") + command->get_name();
-    std::string out = "# Completion of carom for bash; made by: carom describe bash\n_carom() {\n"
-                      "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
-                      "    local command= words= files= option=\n"
-                      "    if [ \"$COMP_CWORD\" -gt 1 ]; then\n"
-                      "        command=${COMP_WORDS[1]}\n"
-                      "        case \"$command\" in\n        " +
-                      groups +
-                      ") [ \"$COMP_CWORD\" -gt 2 ] && command=\"$command ${COMP_WORDS[2]}\" ;;\n        esac\n    fi\n"
-                      "    case \"$command\" in\n";
+    std::string out =
+        "# Completion of carom for bash; made by: carom describe bash\n_carom() {\n"
+        "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
+        "    local command= words= files=\n"
+        "    if [ \"$COMP_CWORD\" -gt 1 ]; then\n"
+        "        command=${COMP_WORDS[1]}\n"
+        "        case \"$command\" in\n        " +
+        groups +
+        ") [ \"$COMP_CWORD\" -gt 2 ] && command=\"$command ${COMP_WORDS[2]}\" ;;\n        esac\n    fi\n"
+        "    case \"$command\" in\n";
     bash_cases(out, app, "");
-    out += "    esac\n"
-           "    COMPREPLY=()\n"
-           "    if [ -n \"$option\" ] || [[ $word == -* ]] || [ -z \"$files\" ]; then\n"
-           "        COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
-           "    fi\n"
-           "    if [ -n \"$files\" ] && [[ $word != -* ]]; then\n"
-           "        local file\n"
-           "        while IFS= read -r file; do COMPREPLY+=(\"$file\"); done < <(compgen -f -- \"$word\")\n"
-           "    fi\n}\ncomplete -o filenames -F _carom carom\n";
+    out +=
+        "    esac\n"
+        "    COMPREPLY=()\n"
+        "    COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
+        "    # Options only where one has been begun.\n"
+        "    [[ $word == -* ]] || COMPREPLY=($(printf '%s\\n' \"${COMPREPLY[@]}\" | grep -v '^-'))\n"
+        "    if [ -n \"$files\" ] && [[ $word != -* ]]; then\n"
+        "        local file\n"
+        "        while IFS= read -r file; do COMPREPLY+=(\"$file\"); done < <(compgen -f -- \"$word\")\n"
+        "    fi\n}\ncomplete -o filenames -F _carom carom\n";
     return out;
 }
 
@@ -207,7 +223,8 @@ void zsh_function(std::string& out, const CLI::App& app, const std::string& name
     for (const Described& d : options_of(app, false)) {
         const std::string value = d.value.empty() ? "" : ":" + zsh_text(d.value) + ":" + zsh_value(d);
         const std::string body = "'[" + zsh_text(d.text) + "]" + value + "'";
-        const std::string excluded = d.text.find("once per key") == d.text.npos ? "(" + joined(d.names, " ") + ")" : "*";
+        const std::string excluded =
+            d.text.find("once per key") == d.text.npos ? "(" + joined(d.names, " ") + ")" : "*";
         out += " \\\n        '" + excluded + "'";
         out += d.names.size() == 1 ? d.names[0] + body : "{" + joined(d.names, ",") + "}" + body;
     }
@@ -217,9 +234,12 @@ void zsh_function(std::string& out, const CLI::App& app, const std::string& name
         out += "\n}\n";
         return;
     }
-    out += " \\\n        '1:command:->command' '*::argument:->argument'\n    case $state in\n    command)\n        commands=(";
+    out +=
+        " \\\n        '1:command:->command' '*::argument:->argument'\n    case $state in\n    command)\n     "
+        "   commands=(";
     for (const CLI::App* sub : inner)
-        out += "\n            '" + sub->get_name() + ":" + replaced(sub->get_description(), "'", "'\\''") + "'";
+        out +=
+            "\n            '" + sub->get_name() + ":" + replaced(sub->get_description(), "'", "'\\''") + "'";
     out += ")\n        _describe command commands ;;\n    argument)\n        case $words[1] in\n";
     for (const CLI::App* sub : inner)
         out += "        " + sub->get_name() + ") " + name + "_" + sub->get_name() + " ;;\n";

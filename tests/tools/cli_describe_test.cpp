@@ -25,11 +25,11 @@ std::string described(const std::string& format) {
 std::set<std::string> offered(const TemporaryFolder& folder, const std::vector<std::string>& words) {
     std::string line;
     for (const std::string& word : words) line += " '" + word + "'";
-    const ProcessResult result =
-        shell("bash",
-              "set -u; . ./completion; COMP_WORDS=(" + line + "); COMP_CWORD=" + std::to_string(words.size() - 1) +
-                  "; _carom; printf '%s\\n' \"${COMPREPLY[@]}\"",
-              folder.path().string());
+    const ProcessResult result = shell("bash",
+                                       "set -u; . ./completion; COMP_WORDS=(" + line +
+                                           "); COMP_CWORD=" + std::to_string(words.size() - 1) +
+                                           "; _carom; printf '%s\\n' \"${COMPREPLY[@]}\"",
+                                       folder.path().string());
     EXPECT_EQ(result.status, 0) << result.err;
     std::istringstream lines(result.out);
     std::set<std::string> found;
@@ -48,7 +48,8 @@ TEST(CliDescribe, BashOffersCommandsOptionsValuesAndFiles) {
     EXPECT_EQ(offered(folder, {"carom", "--v"}), Words{"--version"});
     EXPECT_EQ(offered(folder, {"carom", "bench", "k"}), Words{"kernel"});
     EXPECT_EQ(offered(folder, {"carom", "bench", "kernel", "--ran"}), Words{"--random"});
-    EXPECT_EQ(offered(folder, {"carom", "render", "--camera", ""}), (Words{"top", "rail", "player", "follow"}));
+    EXPECT_EQ(offered(folder, {"carom", "render", "--camera", ""}),
+              (Words{"top", "rail", "player", "follow"}));
     EXPECT_EQ(offered(folder, {"carom", "render", "--fr"}), (Words{"--from", "--frame"}));
     EXPECT_EQ(offered(folder, {"carom", "render", "--fps", ""}), Words{});
     EXPECT_EQ(offered(folder, {"carom", "check", "a"}), Words{"a shot.toml"});
@@ -65,13 +66,14 @@ TEST(CliDescribe, ZshReadsItsCompletion) {
     const ProcessResult result = shell("zsh", "zsh -n _carom", folder.path().string());
     EXPECT_EQ(result.status, 0) << result.err;
     // What the functions hand to _arguments and _describe, seen by stand-ins for them.
-    const ProcessResult seen = shell("zsh",
-                                     "_arguments() { print -l -- \"$@\"; }; _describe() { print -l -- ${(P)2}; }\n"
-                                     "words=(x); state=command; source ./_carom; _carom_render; _carom_sweep",
-                                     folder.path().string());
+    const ProcessResult seen =
+        shell("zsh",
+              "_arguments() { print -l -- \"$@\"; }; _describe() { print -l -- ${(P)2}; }\n"
+              "words=(x); state=command; source ./_carom; _carom_render; _carom_sweep",
+              folder.path().string());
     EXPECT_EQ(seen.status, 0) << seen.err;
-    for (const char* line : {"*--vary[What varies and how", ":SCENE:_files", "(--camera)--camera[Camera (default",
-                             ":NAME:(top rail player follow)"})
+    for (const char* line : {"*--vary[What varies and how", ":SCENE:_files",
+                             "(--camera)--camera[Camera (default", ":NAME:(top rail player follow)"})
         EXPECT_NE(seen.out.find(line), std::string::npos) << line << "\n" << seen.out;
 }
 
@@ -85,7 +87,8 @@ TEST(CliDescribe, TheManPageHasEveryCommandAndIsCleanRoff) {
         EXPECT_NE(page.find(text), std::string::npos) << text;
     folder.write("carom.1", page);
     if (run_process({"groff", "--version"}).status != 0) GTEST_SKIP() << "groff is not installed";
-    const ProcessResult result = shell("bash", "groff -man -ww -z -Tascii carom.1 2>&1", folder.path().string());
+    const ProcessResult result =
+        shell("bash", "groff -man -ww -z -Tascii carom.1 2>&1", folder.path().string());
     EXPECT_EQ(result.out, "");
 }
 

@@ -18,7 +18,9 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         std::vector<std::string> arguments;
         const char* message;
     } kCases[] = {
-        {{}, "a command is missing: simulate, render, margin, sweep, check, impact, bench or describe; see carom --help"},
+        {{},
+         "a command is missing: simulate, render, margin, sweep, check, impact, bench or describe; see carom "
+         "--help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
         {{"simulate"}, "SCENE is required; see carom simulate --help"},

@@ -1,8 +1,8 @@
 // Every command that README.md, CONTRIBUTING.md and docs/ print works as printed, and prints what they say.
 //
-// A ```sh block is run as it stands, in a folder that looks like a clone after its build; the blocks of one page run in
-// their order in one folder. Lines of a ```text block right behind it have to appear in the output, in this order; "..."
-// stands for any lines. Two comments in front of a block change that:
+// A ```sh block is run as it stands, in a folder that looks like a clone after its build; the blocks of one
+// page run in their order in one folder. Lines of a ```text block right behind it have to appear in the
+// output, in this order; "..." stands for any lines. Two comments in front of a block change that:
 //   <!-- not run by the tests: WHY -->
 //   <!-- run by the tests where this succeeds: COMMAND -->
 #include <gtest/gtest.h>
@@ -127,12 +127,14 @@ TEST_P(Docs, CommandsWorkAsPrinted) {
         EXPECT_NE(result.out, "") << GetParam() << ":" << block.line << ": says nothing";
         if (i + 1 < blocks.size() && blocks[i + 1].language == "text") {
             const std::string missing = missing_line(blocks[i + 1].text, result.out);
-            EXPECT_EQ(missing, "") << GetParam() << ":" << blocks[i + 1].line << ": not in the output:\n" << result.out;
+            EXPECT_EQ(missing, "") << GetParam() << ":" << blocks[i + 1].line << ": not in the output:\n"
+                                   << result.out;
         }
     }
 }
 
-// A command with a file belongs into a block, where it is run; a mention may only name options that there are.
+// A command with a file belongs into a block, where it is run; a mention may only name options that there
+// are.
 TEST_P(Docs, MentionsOfTheProgramAreRight) {
     static std::map<std::string, std::string> helps;
     const std::regex span("`(?:build/release/)?carom ([a-z]+)([^`]*)`"), option("--[a-z][a-z-]*");
@@ -149,15 +151,16 @@ TEST_P(Docs, MentionsOfTheProgramAreRight) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Pages, Docs, testing::ValuesIn(pages()), [](const auto& info) {
-    std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(Pages, Docs, testing::ValuesIn(pages()), [](const auto& page) {
+    std::string name = page.param;
     for (char& c : name)
         if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
     return name;
 });
 
 TEST(DocsReader, FindsBlocksCommentsAndMissingLines) {
-    const auto blocks = blocks_of("<!-- not run by the tests: slow -->\n\n```sh\na\nb\n```\n```text\nx\n```\n");
+    const auto blocks =
+        blocks_of("<!-- not run by the tests: slow -->\n\n```sh\na\nb\n```\n```text\nx\n```\n");
     ASSERT_EQ(blocks.size(), 2u);
     EXPECT_EQ(blocks[0].text, "a\nb\n");
     EXPECT_EQ(comment_value(blocks[0].comment, "not run by the tests"), "slow");
