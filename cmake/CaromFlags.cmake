@@ -29,3 +29,12 @@ endif()
 function(carom_compile_for_level source level)
   set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-march=x86-64-${level}")
 endfunction()
+
+# What every library of the project is: hidden symbols, so that a program that embeds it shows none of ours, and headers
+# that are installed. TARGET carom_NAME has its headers in include/.
+function(carom_library target)
+  set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  if(CAROM_INSTALL)
+    install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  endif()
+endfunction()

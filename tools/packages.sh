@@ -6,6 +6,7 @@ carom_packages=(
     libeigen3-dev libbox2d-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev libcli11-dev
     libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri libpng-dev
     libgtest-dev libbenchmark-dev
+    pkg-config python3 python3-numpy
 )
 # What continuous integration needs in addition: a second compiler with its sanitizers, the static checks, valgrind.
 carom_check_packages=(clang clang-format clang-tidy valgrind)

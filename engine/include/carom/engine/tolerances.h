@@ -118,5 +118,6 @@ inline constexpr std::size_t kMaxFileSize = 4u << 20;  ///< [bytes] of a scene f
 /// [bytes] Of a record file: about 700 000 segments. Reading it takes some ten times as much memory.
 inline constexpr std::size_t kMaxRecordSize = std::size_t{256} << 20;
 inline constexpr std::size_t kMaxIdLength = 64;        ///< [bytes] of a ball's id
+inline constexpr int kVariationTrials = 100;  ///< shots of a variation, one of which has to be a valid scene
 
 }  // namespace carom
