@@ -3,7 +3,7 @@
 
 carom_packages=(
     cmake g++ ninja-build
-    libeigen3-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev libcli11-dev
+    libeigen3-dev libbox2d-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev libcli11-dev
     libosmesa6-dev libosmesa6 libgl-dev libpng-dev
     libgtest-dev libbenchmark-dev
 )
