@@ -1,6 +1,7 @@
 // Which boxes overlap a box? Boxes are in single precision, rounded outward: they only leave out, and what
-// they leave in is judged in double. Either all of them one after another, four at a time, or in Box2D's
-// dynamic tree; both give the same set.
+// they leave in is judged in double. Either all of them in one loop, four at a time, or first in Box2D's
+// dynamic tree, whose leaves are blocks of 64 neighbouring boxes, and then by that loop inside the blocks.
+// Both give the same set.
 #pragma once
 
 #include <box2d/b2_dynamic_tree.h>
@@ -29,6 +30,11 @@ class BoxSearch {
 
     void place(int index, const Box& box);
     void remove(int index);
+    /// Call between placing and searching: now and then, blocks are formed anew of what has become
+    /// neighbours.
+    void settle() {
+        if (tree_ && --until_rebuild_ <= 0) rebuild();
+    }
 
     /// Calls found(index) for every placed box that overlaps or touches `box`; in the order of the indices
     /// unless the search is a tree.
@@ -39,61 +45,73 @@ class BoxSearch {
     /// The same for a placed box; itself is not found.
     template <class Found>
     void neighbours(int index, Found found) const {
-        const auto i = static_cast<std::size_t>(index);
+        const std::size_t i = slot(index);
         search({low_x_[i], low_y_[i], high_x_[i], high_y_[i]}, [index, &found](int other) {
             if (other != index) found(other);
         });
     }
 
   private:
+    static constexpr std::size_t kBlock = 64;
     struct Rounded {
         float low_x, low_y, high_x, high_y;
     };
-    template <class Found>
-    void search(const Rounded& box, Found found) const;
     static Rounded outward(const Box& box);
-    bool overlaps(int index, const Rounded& box) const {
+    static b2AABB aabb_of(const Rounded& box);
+    std::size_t slot(int index) const {
         const auto i = static_cast<std::size_t>(index);
-        return low_x_[i] <= box.high_x && box.low_x <= high_x_[i] && low_y_[i] <= box.high_y &&
-               box.low_y <= high_y_[i];
+        return tree_ ? static_cast<std::size_t>(slot_[i]) : i;
     }
+    void set(std::size_t slot, const Rounded& box);
+    void rebuild();
+    void update_block(std::size_t block);
 
     template <class Found>
-    struct TreeVisitor {
-        const BoxSearch& search;
+    void search(const Rounded& box, Found found) const;
+    template <class Found>
+    void scan(std::size_t begin, std::size_t end, const Rounded& box, Found& found) const;
+
+    template <class Found>
+    struct BlockVisitor {
+        const BoxSearch& boxes;
         const Rounded& box;
         Found& found;
         bool QueryCallback(int proxy);  // Box2D's name
     };
 
-    // Padded to whole groups of four with boxes that overlap nothing.
+    // Per slot; padded with boxes that overlap nothing.
     std::vector<float> low_x_, low_y_, high_x_, high_y_;
+    // With the tree: which box stands in which slot, and a proxy for every block of slots.
     std::unique_ptr<b2DynamicTree> tree_;
-    std::vector<int> proxy_;  // -1: out
+    std::vector<int> slot_, index_, proxy_;
+    std::vector<Rounded> sorted_;
+    long until_rebuild_ = 0;
 };
 
 template <class Found>
-bool BoxSearch::TreeVisitor<Found>::QueryCallback(int proxy) {
-    // The tree keeps its boxes wider, so that small moves cost nothing.
-    const int index = static_cast<int>(reinterpret_cast<std::intptr_t>(search.tree_->GetUserData(proxy)));
-    if (search.overlaps(index, box)) found(index);
+bool BoxSearch::BlockVisitor<Found>::QueryCallback(int proxy) {
+    const auto block = reinterpret_cast<std::uintptr_t>(boxes.tree_->GetUserData(proxy));
+    auto by_slot = [this](int slot) { found(boxes.index_[static_cast<std::size_t>(slot)]); };
+    boxes.scan(block * kBlock, (block + 1) * kBlock, box, by_slot);
     return true;
 }
 
 template <class Found>
 void BoxSearch::search(const Rounded& box, Found found) const {
-    if (tree_) {
-        TreeVisitor<Found> visitor{*this, box, found};
-        b2AABB range;
-        range.lowerBound.Set(box.low_x, box.low_y);
-        range.upperBound.Set(box.high_x, box.high_y);
-        tree_->Query(&visitor, range);
+    if (!tree_) {
+        scan(0, low_x_.size(), box, found);
         return;
     }
+    BlockVisitor<Found> visitor{*this, box, found};
+    tree_->Query(&visitor, aabb_of(box));
+}
+
+template <class Found>
+void BoxSearch::scan(std::size_t begin, std::size_t end, const Rounded& box, Found& found) const {
 #if defined(__SSE2__)
     const __m128 lx = _mm_set1_ps(box.low_x), ly = _mm_set1_ps(box.low_y);
     const __m128 hx = _mm_set1_ps(box.high_x), hy = _mm_set1_ps(box.high_y);
-    for (std::size_t i = 0; i < low_x_.size(); i += 4) {
+    for (std::size_t i = begin; i < end; i += 4) {
         const __m128 in_x = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(&low_x_[i]), hx),
                                        _mm_cmple_ps(lx, _mm_loadu_ps(&high_x_[i])));
         const __m128 in_y = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(&low_y_[i]), hy),
@@ -103,8 +121,10 @@ void BoxSearch::search(const Rounded& box, Found found) const {
             found(static_cast<int>(i) + __builtin_ctz(mask));
     }
 #else
-    for (std::size_t i = 0; i < low_x_.size(); ++i)
-        if (overlaps(static_cast<int>(i), box)) found(static_cast<int>(i));
+    for (std::size_t i = begin; i < end; ++i)
+        if (low_x_[i] <= box.high_x && box.low_x <= high_x_[i] && low_y_[i] <= box.high_y &&
+            box.low_y <= high_y_[i])
+            found(static_cast<int>(i));
 #endif
 }
 

@@ -107,6 +107,7 @@ void Shot::offer(int ball, int partner, Candidate c) {
 // All contacts of one ball, each offered to both. Returns whether any other ball's box is near.
 bool Shot::search_pairs(int ball) {
     bool any = false;
+    ball_boxes_.settle();
     ball_boxes_.neighbours(ball, [this, ball, &any](int other) {
         any = true;
         // Of two new balls the first one has done it.

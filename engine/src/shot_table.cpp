@@ -29,6 +29,7 @@ void Shot::set_up_table() {
     for (std::size_t i = 0; i < plan_.pockets.size(); ++i)
         table_boxes_.place(static_cast<int>(round + i),
                            around(plan_.pockets[i].center, plan_.pockets[i].radius));
+    table_boxes_.settle();
 }
 
 // The parts of the table that the ball's surface can come to during its segment, in their order.
