@@ -9,11 +9,6 @@
 
 namespace carom {
 
-void Shot::begin(int ball, const Segment& segment) {
-    record_.tracks[static_cast<std::size_t>(ball)].segments.push_back(segment);
-    touched_.push_back(ball);
-}
-
 void Shot::record_event(EventType type, int a, int b, int detail) {
     record_.events.push_back({now_, type, a, b, detail});
     quiet_ = 0;
