@@ -19,13 +19,27 @@ bool Shot::held_to(int ball, int cushion, int nose) const {
     });
 }
 
-// Captures the contact if a bounce would be over before the contact itself is.
+// Captures the contact if a bounce would be over before the contact itself is; or if a held ball closes by no
+// more than the rounding of the velocities that hold.
 bool Shot::hold_instead(const HeldContact& contact, double v_n, double a_c, double restitution) {
-    if (!holds(v_n, a_c, restitution)) return false;
+    const bool rounding =
+        (is_held(contact.i) || (contact.j >= 0 && is_held(contact.j))) && v_n <= rounding_of_held(contact);
+    if (!rounding && !holds(v_n, a_c, restitution)) return false;
     held_.push_back(contact);
     record_event(contact.hold_type(), contact.i, contact.partner, contact.nose);
     solve_group(contact.i, false);
     return true;
+}
+
+double Shot::rounding_of_held(const HeldContact& contact) const {
+    const auto of = [this](int ball) { return held_noise(velocity_now(ball), spin_now(ball), plan_.balls.R); };
+    double noise = of(contact.i);
+    if (contact.j >= 0) noise = std::max(noise, of(contact.j));
+    for (const HeldContact& c : held_) {
+        noise = std::max(noise, of(c.i));
+        if (c.j >= 0) noise = std::max(noise, of(c.j));
+    }
+    return noise;
 }
 
 // Ends all sustained contacts of a ball that something else happens to; its partners go on without it.

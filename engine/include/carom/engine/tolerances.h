@@ -59,8 +59,27 @@ inline constexpr long kRigidSweeps = 100000;
 
 /// [s] Longest and shortest interval over which a sustained contact keeps the directions of its forces where
 /// they turn.
-inline constexpr double kHoldRefresh = 2e-3;
+inline constexpr double kHoldLongest = 5e-2;
 inline constexpr double kHoldShortest = 1e-5;
+/// [m] Error that one such interval may make in a ball's place: 1e-6 m in the hundred or so of a long push.
+inline constexpr double kHoldError = 2e-8;
+/// [rad] and [m] How far a normal may turn within one, and what gap its turning may leave.
+inline constexpr double kHoldTurn = 0.03;
+inline constexpr double kHoldGap = 1e-8;
+/// [of the sliding acceleration] A gap that opens by less does not open: the rounding of the forces.
+inline constexpr double kHoldOpening = 1e-10;
+/// [-] Rounding of the forces, relative.
+inline constexpr double kHoldRounding = 1e-9;
+/// [-] Part of itself by which each contact of a held group yields, to share the load of contacts that are
+/// more than the group needs.
+inline constexpr double kContactSoftness = 1e-12;
+/// [of what drives a group] Forces beyond this have no answer: what asks for them is left out.
+inline constexpr double kLargestHold = 1e6;
+/// [-] A held contact that opens at some rate is closed only if no ball changes by more than this many times
+/// the rate.
+inline constexpr double kStickyShare = 10.0;
+/// [-] Times that a ball may change between rest, rolling and sliding in one solution.
+inline constexpr int kModeChanges = 4;
 /// [s] A held ball that its own rolling friction would stop within this time rests: it would stop again and
 /// again.
 inline constexpr double kHoldRest = 1e-12;
