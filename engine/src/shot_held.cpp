@@ -32,7 +32,7 @@ bool Shot::hold_instead(const HeldContact& contact, double v_n, double a_c, doub
 }
 
 double Shot::rounding_of_held(const HeldContact& contact) const {
-    const auto of = [this](int ball) { return held_noise(velocity_now(ball), spin_now(ball), plan_.balls.R); };
+    const auto of = [this](int ball) { return held_noise(velocity_now(ball), spin_now(ball), motion_); };
     double noise = of(contact.i);
     if (contact.j >= 0) noise = std::max(noise, of(contact.j));
     for (const HeldContact& c : held_) {

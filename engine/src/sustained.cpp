@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 
 #include "carom/engine/tolerances.h"
@@ -20,9 +22,9 @@ void HeldSolver::run() {
     make_directions();
     solve_forces(0.0);  // which resting balls give way: the others take the capture like a wall
     capture();
-    settle();
     make_directions();
     solve_forces(0.0);
+    for (Link& link : links_) link.pressed = link.N > 0.0;
     // The normal turns while the balls move across each other; a margin keeps the third order from
     // penetrating.
     double interval = turning_interval();
@@ -35,6 +37,10 @@ void HeldSolver::run() {
         write_segments();
     }
     mark_released();
+    if (getenv("DBG")) { printf("solve t %.17g noise %g\n", now_, noise_);
+      for (size_t k=0;k<bodies_.size();++k){auto&b=bodies_[k];auto&h=group_.balls[k];printf("  ball %d mode %d starts %d ch %d lifted %d v %.6g %.6g w %.6g %.6g %.6g a %.6g %.6g dir %.6g %.6g push %.6g %.6g dur %.6g ends %d\n",h.ball,(int)b.mode,b.starts,b.changes,b.lifted,h.v.x(),h.v.y(),h.w.x(),h.w.y(),h.w.z(),b.a.x(),b.a.y(),b.direction.x(),b.direction.y(),b.push.x(),b.push.y(),h.segment.duration,h.segment.ends);}
+      for (size_t c=0;c<links_.size();++c){auto&l=links_[c];auto&h=group_.contacts[c];printf("  link %d-%d cu %d nose %d n %.9g %.9g N %.6g rate %.6g gacc %.6g open %d margin %.3g curv %.3g fz %.3g\n",h.i,h.j,h.cushion,h.nose,l.n.x(),l.n.y(),l.N,gap_rate(l),gap_acceleration(l),l.open,l.margin,l.curving,l.friction_z);}
+    }
 }
 
 Vec2 HeldSolver::velocity(int index) const {
@@ -56,7 +62,7 @@ void HeldSolver::make_bodies() {
                     : s.state == MotionState::kRolling ? Mode::kRolling
                                                        : Mode::kResting;
         bodies_.push_back(body);
-        noise_ = std::max(noise_, held_noise(ball.v, ball.w, motion_.R));
+        noise_ = std::max(noise_, held_noise(ball.v, ball.w, motion_));
     }
     settle();
 }
@@ -66,8 +72,7 @@ void HeldSolver::make_bodies() {
 void HeldSolver::settle() {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         HeldBall& ball = group_.balls[k];
-        const double slowest = std::max(noise_, kHoldRest * motion_.roll);
-        if (bodies_[k].mode != Mode::kRolling || length(planar(ball.v)) > slowest) continue;
+        if (bodies_[k].mode != Mode::kRolling || length(planar(ball.v)) > noise_) continue;
         bodies_[k].mode = Mode::kResting;
         ball.v = Vec3::Zero();
         ball.w.x() = ball.w.y() = 0.0;
@@ -127,9 +132,10 @@ bool holds(double v_n, double a_c, double restitution) {
     return x2 * x2 * x * v_n <= f2 * f2 * kContactTimeFactor / (kContactStiffness * kContactStiffness);
 }
 
-double held_noise(const Vec3& v, const Vec3& w, double R) {
+double held_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
     const double speed = length(planar(v)), spin = length(Vec2(length(planar(w)), w.z()));
-    return 8.0 * kClosingUlp * std::numeric_limits<double>::epsilon() * (speed + R * spin);
+    return std::max(kHoldRest * motion.roll, 8.0 * kClosingUlp * std::numeric_limits<double>::epsilon() *
+                                                 (speed + motion.R * spin));
 }
 
 void solve_held(HeldGroup& group, const Plan& plan, const MotionParams& motion, double now) {

@@ -19,8 +19,9 @@ namespace carom {
 /// bouncing.
 bool holds(double v_n, double a_c, double restitution);
 
-/// What rounding makes of the velocities of a held ball in a few sums of eight [m/s].
-double held_noise(const Vec3& v, const Vec3& w, double R);
+/// Speed that counts as none in a held group [m/s]: what rounding makes of the velocities in a few sums of
+/// eight, or what rolling friction stops within kHoldRest.
+double held_noise(const Vec3& v, const Vec3& w, const MotionParams& motion);
 
 struct HeldContact {
     int i = -1, j = -1;           ///< balls (engine indices); j = -1 for the table

@@ -15,6 +15,7 @@ void HeldSolver::capture() {
     const std::vector<char> sticky = sticky_contacts();
     const bool any = std::any_of(sticky.begin(), sticky.end(), [](char s) { return s != 0; });
     if (!any || !project(sticky)) project(std::vector<char>(links_.size(), 0));
+    settle();
     for (Link& link : links_) {
         link.open = gap_rate(link) > noise_;
         link.N = 0.0;

@@ -45,7 +45,7 @@ void HeldSolver::accelerate() {
                 b.a = (5.0 / 7.0) * (b.push + b.couple) - motion_.roll * b.direction;
                 break;
             case Mode::kResting:
-                b.a = Vec2::Zero();
+                b.a = give_ * (b.push + b.couple);
                 break;
         }
     }
@@ -87,7 +87,7 @@ Vec2 HeldSolver::response(const Link& link, int index, bool friction) const {
         case Mode::kRolling:
             return (5.0 / 7.0) * (sign - f) * link.n;
         case Mode::kResting:
-            break;
+            return give_ * (sign - f) * link.n;
     }
     return Vec2::Zero();
 }
@@ -100,7 +100,8 @@ bool HeldSolver::solve_contacts_once(bool friction, bool margins) {
     std::vector<std::size_t> active;
     for (std::size_t c = 0; c < links_.size(); ++c) {
         Link& link = links_[c];
-        link.diagonal = body(link.i).mobility() + (link.j >= 0 ? body(link.j).mobility() : 0.0);
+        const auto mobility = [this](const Body& b) { return std::max(give_, b.mobility()); };
+        link.diagonal = mobility(body(link.i)) + (link.j >= 0 ? mobility(body(link.j)) : 0.0);
         if (!link.open && link.diagonal > 0.0) active.push_back(c);
     }
     Complementarity problem(active.size());
@@ -151,48 +152,69 @@ bool HeldSolver::change_mode(Body& b, Mode mode) {
     return true;
 }
 
-// Whether every ball can do what its mode says; where not, the mode or the direction changes. Only what
-// starts now may change back, and not for ever: a ball that finds no consistent mode keeps its last one.
+// A ball at rest stays while (5/7) |F| <= mu_r g, with the forces of what it leans on.
+bool HeldSolver::resting_holds(Body& b) {
+    const Vec2 force = b.push + b.couple;
+    const double size = length(force), rounding = kHoldRounding * (motion_.slide + length(b.push));
+    if ((5.0 / 7.0) * size <= motion_.roll + rounding) return true;
+    if (!change_mode(b, Mode::kRolling)) return true;
+    b.starts = true;
+    b.direction = force / size;
+    return false;
+}
+
+// A ball rolls while the cloth can give what that takes. One that has no velocity yet rolls along the force
+// on it, or stays after all.
+bool HeldSolver::rolling_holds(Body& b) {
+    const double grip = motion_.slide * load(b) + motion_.roll;
+    if (length(b.a - b.push) > grip * (1.0 + kHoldRounding)) {
+        const Vec2 slip = b.push - 2.5 * b.couple;
+        const double size = length(slip);
+        if (!change_mode(b, Mode::kSliding)) return true;
+        b.starts = true;
+        b.direction = size > 0.0 ? Vec2(slip / size) : Vec2(-b.direction);
+        return false;
+    }
+    if (!b.starts) return true;
+    const Vec2 force = b.push + b.couple;
+    const double size = length(force);
+    if ((5.0 / 7.0) * size <= motion_.roll || b.changes >= kModeChanges) {
+        b.mode = Mode::kResting;
+        b.changes = kModeChanges;  // for good
+        return false;
+    }
+    return turn_to(b, force, size);
+}
+
+// A ball that starts to slip slips along what drives the slip.
+bool HeldSolver::sliding_holds(Body& b) {
+    bool hold = true;
+    if (!b.lifted && b.lift > plan_.gravity) {
+        b.lifted = true;
+        hold = false;
+    }
+    const Vec2 slip = b.push - 2.5 * b.couple;
+    const double size = length(slip);
+    return (!b.starts || size == 0.0 || turn_to(b, slip, size)) && hold;
+}
+
+bool HeldSolver::turn_to(Body& b, const Vec2& drive, double size) {
+    if (dot(b.direction, drive) > 0.0 && std::abs(cross(b.direction, drive)) <= kHoldRounding * size) return true;
+    if (b.changes >= kModeChanges) return true;
+    ++b.changes;
+    b.direction = drive / size;
+    return false;
+}
+
+// Whether every ball can do what its mode says; where not, the mode or the direction changes, a bounded number
+// of times: a ball that finds no consistent mode rests, or keeps its direction.
 bool HeldSolver::modes_hold() {
     bool hold = true;
     for (Body& b : bodies_) {
-        const Vec2 roll = b.push + b.couple, slip = b.push - 2.5 * b.couple;
-        const double roll_size = length(roll), slip_size = length(slip);
-        if (b.mode == Mode::kSliding && !b.lifted && b.lift > plan_.gravity) {
-            b.lifted = true;
-            hold = false;
-        }
-        if (b.mode == Mode::kResting) {
-            if ((5.0 / 7.0) * roll_size <= motion_.roll + kHoldRounding * (motion_.slide + length(b.push)))
-                continue;
-            if (!change_mode(b, Mode::kRolling)) continue;
-            b.starts = true;
-            b.direction = roll / roll_size;
-            hold = false;
-        } else if (b.mode == Mode::kRolling) {
-            const double grip = motion_.slide * load(b) + motion_.roll;
-            if (length(b.a - b.push) > grip * (1.0 + kHoldRounding)) {  // it slips
-                if (!change_mode(b, Mode::kSliding)) continue;
-                b.starts = true;
-                b.direction = slip_size > 0.0 ? Vec2(slip / slip_size) : Vec2(-b.direction);
-                hold = false;
-            } else if (b.starts && (5.0 / 7.0) * roll_size <= motion_.roll) {  // it stays after all
-                if (change_mode(b, Mode::kResting)) hold = false;
-            } else if (b.starts && std::abs(cross(b.direction, roll)) > kHoldRounding * roll_size) {
-                if (b.changes >= kModeChanges) continue;
-                ++b.changes;
-                b.direction = roll / roll_size;
-                hold = false;
-            }
-        } else if (b.mode == Mode::kSliding && b.starts && slip_size > 0.0) {
-            if (std::abs(cross(b.direction, slip)) <= kHoldRounding * slip_size &&
-                dot(b.direction, slip) > 0.0)
-                continue;
-            if (b.changes >= kModeChanges) continue;
-            ++b.changes;
-            b.direction = slip / slip_size;
-            hold = false;
-        }
+        const bool holds = b.mode == Mode::kResting   ? resting_holds(b)
+                           : b.mode == Mode::kRolling ? rolling_holds(b)
+                                                      : sliding_holds(b);
+        hold = hold && holds;
     }
     return hold;
 }
@@ -218,10 +240,18 @@ void HeldSolver::solve_forces(double interval) {
         b.changes = 0;
         b.lifted = false;
     }
-    for (std::size_t tries = 0; tries < static_cast<std::size_t>(kModeChanges) * bodies_.size() + 2; ++tries) {
+    // First balls at rest give way a little, which shows what they need of the forces between them and of
+    // cushions to stay; then not at all.
+    give_ = kRestGives;
+    const std::size_t most = static_cast<std::size_t>(kModeChanges + 2) * bodies_.size() + 2;
+    for (std::size_t tries = 0; tries < most; ++tries) {
         solve_contacts();
         if (modes_hold()) break;
     }
+    give_ = 0.0;
+    const bool any_rests = std::any_of(bodies_.begin(), bodies_.end(),
+                                       [](const Body& b) { return b.mode == Mode::kResting; });
+    if (any_rests) solve_contacts();
 }
 
 }  // namespace carom

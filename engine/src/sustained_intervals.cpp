@@ -131,7 +131,7 @@ double HeldSolver::friction_flip(const Link& link) const {
 
 // A contact that is about to open is let go when its rate can be told from rounding.
 double HeldSolver::opening_interval(const Link& link) const {
-    if (link.open || link.N > 0.0) return kNever;
+    if (link.open || link.pressed || link.N > 0.0) return kNever;
     const double opening = gap_acceleration(link);
     if (!(opening > kHoldOpening * motion_.slide)) return kNever;
     const double tick = 8.0 * std::numeric_limits<double>::epsilon() * now_;

@@ -42,7 +42,8 @@ class HeldSolver {
         double margin = 0.0;      // what they may take away again within the interval
         double diagonal = 0.0;
         double N = 0.0;
-        bool open = false;  // the gap is opening by more than rounding
+        bool open = false;     // the gap is opening by more than rounding
+        bool pressed = false;  // by the forces at the start of the interval
     };
 
     // sustained.cpp
@@ -71,7 +72,11 @@ class HeldSolver {
     void accelerate();
     void sum_forces();
     bool modes_hold();
+    bool resting_holds(Body& body);
+    bool rolling_holds(Body& body);
+    bool sliding_holds(Body& body);
     bool change_mode(Body& body, Mode mode);
+    bool turn_to(Body& body, const Vec2& drive, double size);
     double load(const Body& body) const;
     double gap_acceleration(const Link& link) const;
 
@@ -92,6 +97,7 @@ class HeldSolver {
     double now_;
     std::vector<Body> bodies_;
     std::vector<Link> links_;
+    double give_ = 0.0;   // mobility of balls at rest
     double noise_ = 0.0;  // m/s: what rounding makes of the group's speeds in a few sums of eight
 };
 

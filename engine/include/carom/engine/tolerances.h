@@ -78,8 +78,10 @@ inline constexpr double kLargestHold = 1e6;
 /// [-] A held contact that opens at some rate is closed only if no ball changes by more than this many times
 /// the rate.
 inline constexpr double kStickyShare = 10.0;
+/// [-] Mobility of balls at rest while it is decided which of them stay, against 1 of a ball that slips.
+inline constexpr double kRestGives = 1e-4;
 /// [-] Times that a ball may change between rest, rolling and sliding in one solution.
-inline constexpr int kModeChanges = 4;
+inline constexpr int kModeChanges = 8;
 /// [s] A held ball that its own rolling friction would stop within this time rests: it would stop again and
 /// again.
 inline constexpr double kHoldRest = 1e-12;
