@@ -77,7 +77,8 @@ class Shot {
     // shot_cluster.cpp
     template <bool kProfile>
     bool resolve_cluster(const Candidate& c, double v_n);
-    void collect_cluster(int a, int b, double v_n);
+    double collect_cluster(int a, int b, double v_n);
+    void collect_cluster_at(int a, int b, double v_n);
 
     // shot_held.cpp
     bool is_held(int ball) const { return now_of(ball).held; }

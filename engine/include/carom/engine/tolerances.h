@@ -47,6 +47,9 @@ inline constexpr double kLeastRestitution =
 inline constexpr double kClusterEpsilon = 2e-3;
 inline constexpr double kClusterStep = 1.0 / 80.0;
 inline constexpr double kClusterLookAhead = 2.0;
+/// [V] A contact of a cluster that closes faster than this sets the scale V itself: the step is made for
+/// approaches near V.
+inline constexpr double kClusterFaster = 2.0;
 /// [L/V] A cluster that has not parted after this many contact times is reported; the slowest of 16 balls
 /// takes a few dozen.
 inline constexpr double kClusterTimeLimit = 2000.0;
