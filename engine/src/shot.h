@@ -85,6 +85,7 @@ class Shot {
     bool held_together(int a, int b) const;
     bool held_to(int ball, int cushion, int nose) const;
     bool hold_instead(const HeldContact& contact, double v_n, double a_c, double restitution);
+    bool rattles(const HeldContact& contact) const;
     double rounding_of_held(const HeldContact& contact) const;
     void free_ball(int ball);
     void solve_group(int ball, bool transitions);

@@ -114,7 +114,8 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
             kClusterEpsilon,
             kClusterStep};
         steps = cluster_map_.compliant(cluster_balls_, cluster_contacts_, settings, v_n);
-        if (steps < 0) fail("a cluster of balls did not part");
+        // Friction and a wedge can keep balls pressed together without end: then as if they were rigid.
+        if (steps < 0) steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
     }
     if constexpr (kProfile) {
         cost_.kernel_ns = nanoseconds(start, Clock::now());

@@ -22,6 +22,9 @@ inline constexpr double kRollingUlp = 8.0;
 /// [s] and [-] More events than this within one such span is an error with a dump, never a silent stop.
 inline constexpr double kEventCapSpan = 1e-6;
 inline constexpr int kEventCap = 10000;
+/// [-] A contact that has bounced this often within one such span is held. A row of 15 elastic balls taken
+/// pair by pair needs 30, the last bounces before a ball is held, about 100.
+inline constexpr int kRattle = 200;
 /// [-] Rounds of the loop in a row that changed directions of sustained contacts but brought no event: as
 /// bad.
 inline constexpr int kQuietCap = 1000000;
@@ -50,9 +53,9 @@ inline constexpr double kClusterLookAhead = 2.0;
 /// [V] A contact of a cluster that closes faster than this sets the scale V itself: the step is made for
 /// approaches near V.
 inline constexpr double kClusterFaster = 2.0;
-/// [L/V] A cluster that has not parted after this many contact times is reported; the slowest of 16 balls
-/// takes a few dozen.
-inline constexpr double kClusterTimeLimit = 2000.0;
+/// [L/V] A cluster that has not parted after this many contact times is resolved as rigid; the slowest of 16
+/// balls takes a few dozen.
+inline constexpr double kClusterTimeLimit = 200.0;
 /// [-] Largest exponent of the unloading law; restitutions below 0.05 are taken as 0.05 inside a cluster.
 inline constexpr int kLargestLawExponent = 1024;
 /// [share of R] Gaps up to this are rounding of the positions: the balls touch.
