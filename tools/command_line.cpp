@@ -1,5 +1,5 @@
 // The program: reads the command line, runs one sub-command, turns what it throws into an exit status.
-// The only file that includes CLI11, which takes seconds to compile.
+// Only this file and describe.cpp include CLI11, which takes seconds to compile.
 #include <CLI/CLI.hpp>
 
 #include <cstdlib>
@@ -15,6 +15,7 @@
 #include "carom/kernel/tolerance.h"
 #include "commands.h"
 #include "console.h"
+#include "describe.h"
 
 namespace carom::tools {
 namespace {
@@ -150,6 +151,33 @@ void add_margin(CLI::App& app, Action& action) {
     sub->callback([args, &action] { action = [args] { return run_margin(*args); }; });
 }
 
+void add_sweep(CLI::App& app, Action& action) {
+    auto args = std::make_shared<SweepArgs>();
+    CLI::App* sub =
+        app.add_subcommand("sweep", "Many shots of one scene with values that vary: a row a shot");
+    sub->add_option("SCENE", args->scene, "Scene file (TOML)")->required();
+    sub->add_option("--vary", args->vary,
+                    "What varies and how, once per key: uniform(a,b), normal(sd) around the scene's value, "
+                    "normal(mean,sd), integer(a,b) or list(v,...)")
+        ->type_name("KEY=DISTRIBUTION")
+        ->allow_extra_args(false)
+        ->required();
+    sub->add_option("--count", args->count, "Number of shots")->type_name("N")->required();
+    sub->add_option("--seed", args->seed, "Seed of all draws")->type_name("S")->capture_default_str();
+    sub->add_option("--jobs", args->jobs, "Threads; 0: one per core; the rows do not depend on it")
+        ->type_name("J")
+        ->check(CLI::Range(0, 256))
+        ->capture_default_str();
+    sub->add_option("--shard", args->shard,
+                    "Only the I-th of N parts; the files of all parts, one behind the other, are the whole "
+                    "(default: all)")
+        ->type_name("I/N");
+    sub->add_option("-o,--output", args->output, "Table to write")->type_name("FILE.csv")->required();
+    sub->footer(
+        "A sweep that was stopped or killed goes on when the same command is given again (docs/sweep.md).");
+    sub->callback([args, &action] { action = [args] { return run_sweep(*args); }; });
+}
+
 void add_check(CLI::App& app, Action& action) {
     auto args = std::make_shared<CheckArgs>();
     CLI::App* sub =
@@ -217,7 +245,7 @@ void add_bench_render(CLI::App& app, Action& action) {
     sub->add_option("SCENE", args->scene, "Scene file (TOML)")->capture_default_str();
     sub->add_option("--frames", args->frames, "Frames at each size, spread over the shot")
         ->type_name("N")
-        ->check(CLI::Range(2, 100000))
+        ->check(CLI::Range(3, 100000))
         ->capture_default_str();
     add_gl(*sub, args->gl);
     sub->add_flag("--json", args->json, "Print JSON (default: off)");
@@ -288,15 +316,34 @@ void add_accuracy(CLI::App& app, Action& action) {
     add_accuracy_kernel(*sub, action);
 }
 
+void add_describe(CLI::App& app, Action& action) {
+    auto format = std::make_shared<std::string>();
+    CLI::App* sub = app.add_subcommand("describe", "This program as a man page, or as completions for a shell");
+    sub->add_option("FORMAT", *format, "What to print")
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"man", "bash", "zsh"}))
+        ->required();
+    sub->callback([format, &app, &action] {
+        action = [format, &app] {
+            print(*format == "man"    ? man_page(app, CAROM_VERSION)
+                  : *format == "bash" ? bash_completion(app)
+                                      : zsh_completion(app));
+            return kOk;
+        };
+    });
+}
+
 void add_commands(CLI::App& app, Action& action) {
     add_simulate(app, action);
     add_render(app, action);
     add_margin(app, action);
     add_accuracy(app, action);
+    add_sweep(app, action);
     add_check(app, action);
     add_impact(app, action);
     add_bench(app, action);
     add_bench_render(app, action);
+    add_describe(app, action);
 }
 
 int run(int argc, char** argv) {
@@ -324,7 +371,7 @@ int run(int argc, char** argv) {
     }
     if (!action)
         throw UsageError(
-            "a command is missing: simulate, render, margin, accuracy, check, impact or bench; see carom "
+            "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or describe; see carom "
             "--help");
     return action();
 }
@@ -336,7 +383,7 @@ int guarded(int argc, char** argv) {
         flush_output();
         return status;
     } catch (const Interrupted&) {
-        return kInterrupted;
+        return interrupted_status();
     } catch (const OutputClosed&) {
         return kFailed;
     } catch (const UsageError& error) {

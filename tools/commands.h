@@ -5,8 +5,10 @@
 // command_line.cpp.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace carom::tools {
 
@@ -59,6 +61,17 @@ struct MarginArgs {
     bool json = false;
 };
 int run_margin(const MarginArgs& args);
+
+struct SweepArgs {
+    std::string scene;
+    std::vector<std::string> vary;  ///< "KEY=DISTRIBUTION"
+    std::uint64_t count = 0;
+    std::uint64_t seed = 1;
+    int jobs = 0;
+    std::string shard;  ///< "2/4"; empty: all
+    std::string output;
+};
+int run_sweep(const SweepArgs& args);
 
 struct CheckArgs {
     std::string scene;

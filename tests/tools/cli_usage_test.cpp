@@ -19,7 +19,7 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "a command is missing: simulate, render, margin, accuracy, check, impact or bench; see carom "
+         "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or describe; see carom "
          "--help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
