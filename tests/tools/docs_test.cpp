@@ -88,6 +88,8 @@ class Clone {
         ProcessOptions options;
         options.folder = folder_.path().string();
         options.environment = {{"CAROM_ISA", ""}, {"HOME", folder_.file("home")}};
+        // The system's own tools first: another Python may stand in front that has no packages.
+        options.environment.emplace_back("PATH", std::string("/usr/bin:/bin:") + std::getenv("PATH"));
         return run_process({"/bin/bash", "-euo", "pipefail", "-c", script}, options);
     }
 
