@@ -55,8 +55,9 @@ struct MarginArgs {
     std::string size;
     int repeat = 1;
     bool no_render = false;
+    bool sweep = false;  ///< accuracy x frame rate
     std::string gl = "osmesa";
-    std::string csv;
+    std::string csv, plot, trace;  ///< file names; empty: not asked for
     bool json = false;
 };
 int run_margin(const MarginArgs& args);

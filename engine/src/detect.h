@@ -35,4 +35,13 @@ double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, d
 /// Time until the centre enters a pocket's circle; 0 if it is inside.
 double time_to_pocket(const Path& ball, const Vec2& center, double radius);
 
+/// Whether a relative motion stays out of reach on [0, window], by a margin far above rounding: then the
+/// functions above would find nothing there. No root, no division by a length; false where a look is needed.
+/// Two projections bound the distance from below: on the direction to the other centre now, and across the
+/// relative velocity.
+bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reach, double window);
+
+/// The same for a straight line, from either side.
+bool stays_off_line(const Path& ball, const Vec2& from, const Vec2& direction, double R, double window);
+
 }  // namespace carom

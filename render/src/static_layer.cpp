@@ -21,7 +21,8 @@ double r2(int i, double step) {
 
 }  // namespace
 
-// Only there while the table is drawn: two images of 16-bit floats and a depth buffer.
+// Only there while the table is drawn, or between two drawings for a camera that moves: two images of 16-bit
+// floats and a depth buffer.
 struct StaticLayer::Scratch {
     const gl::Api& api;
     GLuint pass, depth, sum, pass_framebuffer, sum_framebuffer;
@@ -60,6 +61,8 @@ StaticLayer::StaticLayer(const gl::Api& api) : api_(api) {
     api.GenBuffers(1, &buffer_);
 }
 
+StaticLayer::~StaticLayer() = default;
+
 void StaticLayer::upload(const TableMesh& table) {
     const auto group_of = [](const MeshVertex& vertex) {
         const auto material = static_cast<Material>(static_cast<int>(vertex.material));
@@ -93,6 +96,7 @@ void StaticLayer::upload(const TableMesh& table) {
 
 void StaticLayer::resize(int width, int height) {
     if (width == width_ && height == height_) return;
+    scratch_.reset();
     if (color_ != 0) {
         const GLuint textures[] = {color_, occluders_},
                      framebuffers[] = {color_framebuffer_, occluders_framebuffer_};
@@ -177,11 +181,12 @@ void StaticLayer::add_pass(const View& view, const Scratch& scratch, int pass, i
     api_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
-void StaticLayer::draw(const TableMesh& table, const View& view, int samples) {
+void StaticLayer::draw(const TableMesh& table, const View& view, int samples, bool again_soon) {
     samples = std::max(samples, 1);
     if (uploaded_ != &table) upload(table);
     resize(static_cast<int>(view.size[0]), static_cast<int>(view.size[1]));
-    const Scratch scratch(api_, width_, height_);
+    if (!scratch_) scratch_ = std::make_unique<Scratch>(api_, width_, height_);
+    const Scratch& scratch = *scratch_;
     api_.Viewport(0, 0, width_, height_);
     api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.sum_framebuffer);
     api_.ClearColor(0.0F, 0.0F, 0.0F, 0.0F);
@@ -196,6 +201,7 @@ void StaticLayer::draw(const TableMesh& table, const View& view, int samples) {
     api_.UseProgram(resolve_program_);
     gl::bind_texture(api_, resolve_program_, 0, "u_pass", scratch.sum);
     api_.DrawArrays(GL_TRIANGLES, 0, 3);
+    if (!again_soon) scratch_.reset();
 }
 
 }  // namespace carom::render

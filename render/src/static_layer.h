@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 
 #include "gl_api.h"
 #include "view.h"
@@ -11,9 +12,13 @@ namespace carom::render {
 class StaticLayer {
   public:
     explicit StaticLayer(const gl::Api& api);
+    ~StaticLayer();
+    StaticLayer(const StaticLayer&) = delete;
+    StaticLayer& operator=(const StaticLayer&) = delete;
 
-    /// Draws the table: `samples` jittered passes, averaged in linear light.
-    void draw(const TableMesh& table, const View& view, int samples);
+    /// Draws the table: `samples` jittered passes, averaged in linear light. again_soon: keep the memory that
+    /// only drawing needs.
+    void draw(const TableMesh& table, const View& view, int samples, bool again_soon);
 
     GLuint color() const { return color_; }  ///< RGBA8; alpha: how much of the pixel is cloth
     GLuint occluders() const {
@@ -41,6 +46,7 @@ class StaticLayer {
     GLuint vertex_array_ = 0, buffer_ = 0, empty_array_ = 0;
     const TableMesh* uploaded_ = nullptr;
     int width_ = 0, height_ = 0;
+    std::unique_ptr<Scratch> scratch_;
     GLuint color_ = 0, occluders_ = 0, color_framebuffer_ = 0, occluders_framebuffer_ = 0;
 };
 

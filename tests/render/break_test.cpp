@@ -108,7 +108,7 @@ long peak_memory_kb() {
 }
 
 TEST(Break, MemoryStaysUnder300MegabytesAt1080p) {
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef CAROM_SANITIZED
     GTEST_SKIP() << "the sanitizer's own memory counts";
 #endif
     const render_test::ScratchFolder folder("memory");

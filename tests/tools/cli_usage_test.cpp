@@ -19,7 +19,7 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "a command is missing: simulate, render, margin, sweep, check, impact, bench or describe; see carom "
+         "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or describe; see carom "
          "--help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
@@ -49,7 +49,9 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         {{"render", scene, "--png-level", "10"}, "10"},
         {{"render", scene, "--camera", "from the moon"}, "from the moon"},
         {{"margin", scene, "--repeat", "0"}, "--repeat"},
-        {{"margin", scene, "--sweep"}, "--sweep"},
+        {{"margin", scene, "--sweep", "--fps", "60"}, "--sweep goes through the frame rates"},
+        {{"margin", scene, "--sweep", "--trace", folder.file("t.json")}, "--trace is of one setting"},
+        {{"margin", scene, "--plot", folder.file("t.png")}, "a name that ends in .svg"},
         {{"check", scene, "more"}, "more"},
         {{"impact", "--method", "magic"}, "magic"},
         {{"impact", "--substeps", "0"}, "--substeps"},
@@ -72,7 +74,7 @@ TEST(CliUsage, VersionAndHelpExit0) {
     EXPECT_EQ(carom({"--version"}).out, "carom " CAROM_VERSION "\n");
     const ProcessResult help = carom({"--help"});
     EXPECT_EQ(help.status, 0);
-    for (const char* command : {"simulate", "render", "margin", "check", "impact"}) {
+    for (const char* command : {"simulate", "render", "margin", "accuracy", "check", "impact"}) {
         EXPECT_TRUE(contains(help.out, command)) << command;
         const ProcessResult result = carom({command, "--help"});
         EXPECT_EQ(result.status, 0) << command;
@@ -81,7 +83,7 @@ TEST(CliUsage, VersionAndHelpExit0) {
 }
 
 TEST(CliUsage, HelpNamesEveryDefault) {
-    for (const char* command : {"simulate", "render", "margin", "check", "impact"}) {
+    for (const char* command : {"simulate", "render", "margin", "accuracy", "check", "impact"}) {
         // Options begin with two blanks and a dash; their text may go on in the lines below.
         std::string option;
         const auto has_default = [&option] {
