@@ -113,7 +113,7 @@ class Docs : public testing::TestWithParam<std::string> {};
 
 TEST_P(Docs, CommandsWorkAsPrinted) {
 #ifdef CAROM_SANITIZED
-    if (GetParam() == "docs/embedding.md") GTEST_SKIP() << "a sanitized library cannot be loaded by others";
+    GTEST_SKIP() << "the tests of the program run under sanitizers; what pages print runs in the plain build";
 #endif
     const std::vector<Block> blocks = blocks_of(read_page(GetParam()));
     const Clone clone;
