@@ -9,11 +9,6 @@
 
 namespace carom {
 
-void Shot::begin(int ball, const Segment& segment) {
-    record_.tracks[static_cast<std::size_t>(ball)].segments.push_back(segment);
-    touched_.push_back(ball);
-}
-
 void Shot::record_event(EventType type, int a, int b, int detail) {
     record_.events.push_back({now_, type, a, b, detail});
     quiet_ = 0;
@@ -182,7 +177,9 @@ void Shot::apply(const Candidate& c) {
 }
 
 template void Shot::apply<false>(const Candidate&);
+#ifndef CAROM_WITHOUT_PROFILE
 template void Shot::apply<true>(const Candidate&);
+#endif
 
 void Shot::guard_cap() const {
     const std::size_t count = record_.events.size(), cap = static_cast<std::size_t>(kEventCap);
