@@ -115,15 +115,14 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     } else {
         const bool frictionless = !plan_.ball_ball->reads_friction;
         const double mu_b = frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b);
-        const ClusterSettings settings{
-            p.R,
-            plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
-            mu_b,
-            frictionless ? 1.0 : p.e_b,
-            plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
-            kClusterEpsilon,
-            mu_b > 0.0 ? kClusterFrictionStep : kClusterStep,
-            plan_.contact_phase};
+        const ClusterSettings settings{p.R,
+                                       plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
+                                       mu_b,
+                                       frictionless ? 1.0 : p.e_b,
+                                       plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
+                                       kClusterEpsilon,
+                                       mu_b > 0.0 ? kClusterFrictionStep : kClusterStep,
+                                       plan_.contact_phase};
         steps = cluster_map_.compliant(cluster_balls_, cluster_contacts_, settings, v_n);
         // Friction and a wedge can keep balls pressed together without end: then as if they were rigid.
         if (steps < 0) steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
