@@ -145,12 +145,13 @@ TEST_P(Docs, MentionsOfTheProgramAreRight) {
         const std::string whole = it->str(0), command = it->str(1), rest = it->str(2);
         EXPECT_EQ(rest.find(".toml"), rest.npos) << whole << " is not run: make it a ```sh block";
         // "bench kernel": the options of both count.
-        const std::string inner = rest.substr(0, rest.find_first_not_of(" abcdefghijklmnopqrstuvwxyz"));
-        const std::string key = command + inner;
+        std::smatch word;
+        const std::string inner = std::regex_search(rest, word, std::regex("^ ([a-z]+)")) ? word.str(1) : "";
+        const std::string key = command + " " + inner;
         if (helps.count(key) == 0) {
             helps[key] = carom({command, "--help"}).out;
             EXPECT_NE(helps[key], "") << whole << ": there is no such command";
-            if (inner.size() > 1) helps[key] += carom({command, inner.substr(1), "--help"}).out;
+            if (!inner.empty()) helps[key] += carom({command, inner, "--help"}).out;
         }
         const std::string& help = helps[key];
         for (std::sregex_iterator o(rest.begin(), rest.end(), option), none; o != none; ++o)
