@@ -43,8 +43,23 @@ Nearness nearness(const ClusterBall& p, const ClusterBall& q, double R) {
 }  // namespace
 
 // Breadth first from the pair: every ball that can be reached while the contact lasts (equation 5); then all
-// their contacts.
-void Shot::collect_cluster(int a, int b, double v_n) {
+// their contacts. The fastest approach among them sets the scale of the map: a pair may begin to touch very
+// slowly while its neighbours are about to meet at full speed.
+double Shot::collect_cluster(int a, int b, double v_n) {
+    for (;;) {
+        collect_cluster_at(a, b, v_n);
+        double fastest = v_n;
+        for (const ClusterContact& c : cluster_contacts_) {
+            const ClusterBall &p = cluster_balls_[static_cast<std::size_t>(c.i)],
+                              &q = cluster_balls_[static_cast<std::size_t>(c.j)];
+            fastest = std::max(fastest, c.n.dot(planar(p.v) - planar(q.v)));
+        }
+        if (cluster_balls_.size() < 3 || !(fastest > kClusterFaster * v_n)) return v_n;
+        v_n = fastest;
+    }
+}
+
+void Shot::collect_cluster_at(int a, int b, double v_n) {
     const double R = plan_.balls.R;
     const double time = plan_.clusters == ClusterModel::kCompliant ? contact_time(v_n) : 0.0;
     const auto reach = [&](const Nearness& near) { return time * (std::max(0.0, near.closing) + v_n); };
@@ -90,7 +105,7 @@ void Shot::collect_cluster(int a, int b, double v_n) {
 // True if the impact was a cluster's; false leaves it to the pair kernel.
 template <bool kProfile>
 bool Shot::resolve_cluster(const Candidate& c, double v_n) {
-    collect_cluster(c.a, c.b, v_n);
+    v_n = collect_cluster(c.a, c.b, v_n);
     if (cluster_balls_.size() < 3) return false;
     const BallParams& p = plan_.balls;
     const auto start = kProfile ? Clock::now() : Clock::time_point{};
@@ -110,7 +125,8 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
             mu_b > 0.0 ? kClusterFrictionStep : kClusterStep,
             plan_.contact_phase};
         steps = cluster_map_.compliant(cluster_balls_, cluster_contacts_, settings, v_n);
-        if (steps < 0) fail("a cluster of balls did not part");
+        // Friction and a wedge can keep balls pressed together without end: then as if they were rigid.
+        if (steps < 0) steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
     }
     if constexpr (kProfile) {
         cost_.kernel_ns = nanoseconds(start, Clock::now());
@@ -129,6 +145,8 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
 }
 
 template bool Shot::resolve_cluster<false>(const Candidate&, double);
+#ifndef CAROM_WITHOUT_PROFILE
 template bool Shot::resolve_cluster<true>(const Candidate&, double);
+#endif
 
 }  // namespace carom

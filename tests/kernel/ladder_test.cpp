@@ -136,7 +136,8 @@ TEST(Ladder, TheTableIsWhole) {
           "branch order", "unconditional roots", "masks",          "two stages",       "precomputed",
           "fma",          "packed blocks",       "simd around",    "simd loop",        "simd ssa",
           "combined",     "four lanes",          "four lanes fma", "four lanes rsqrt", "reduced state",
-          "packed",       "extrapolated seed",   "pipelined",      "carried roots",    "2x4 lanes"})
+          "packed",       "extrapolated seed",   "pipelined",      "carried roots",    "decoupled roots",
+          "2x4 lanes"})
         EXPECT_TRUE(seen.count({needed, Isa::kV3})) << needed;
     for (const char* needed : {"8 lanes", "2x8 lanes"}) EXPECT_TRUE(seen.count({needed, Isa::kV4})) << needed;
     EXPECT_STREQ(baseline_rung().name, "baseline");

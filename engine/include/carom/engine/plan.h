@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,11 @@ struct Nose {
     int index;       ///< of the jaw or cushion in scene.table
 };
 
+/// How detection looks for what a ball can meet: through all boxes, or in a tree of them (Box2D's). The
+/// events are the same to the last bit; docs/speed.md has the measured crossing.
+enum class Search : std::uint8_t { kDirect, kTree };
+const char* name(Search search);
+
 struct Plan {
     Scene scene;         ///< ids, table and settings as read
     BallParams balls{};  ///< as the scene, with the friction of skipped effects 0
@@ -63,7 +69,12 @@ struct Plan {
     kernel::ToleranceFunction by_tolerance = nullptr;      ///< set otherwise
     kernel::ContactPhaseFunction contact_phase = nullptr;  ///< of compliant clusters
     ClusterModel clusters =
-        ClusterModel::kSequential;      ///< kSequential where fewer than three balls leave nothing to decide
+        ClusterModel::kSequential;  ///< kSequential where fewer than three balls leave nothing to decide
+    Search ball_search = Search::kDirect;   ///< among balls
+    Search table_search = Search::kDirect;  ///< among cushions, noses and pockets
+    /// [ball radii] Way that a ball's box covers before it is renewed; infinite: until the ball's next own
+    /// event.
+    double box_travel = std::numeric_limits<double>::infinity();
     std::vector<std::string> warnings;  ///< one sentence each, for stderr
 };
 
