@@ -21,7 +21,7 @@ import tempfile
 MODELS = ("compliant", "rigid", "sequential")
 COLOURS = {"compliant": "#1f6fb4", "rigid": "#d9822b", "sequential": "#888888"}
 GAPS = [0.0] + [10.0**k for k in range(-12, -3)]
-STOP = 0.24  # s: about 0.06 s after the cue ball has met the rack
+STOP = 0.16  # s: about 0.05 s after the cue ball has met the rack
 SCENE = """[table]
 preset = "nine_foot"
 [rack]
