@@ -42,7 +42,10 @@ clusters = "{model}"
 
 
 def run(command):
-    result = subprocess.run(command, capture_output=True, text=True)
+    try:
+        result = subprocess.run(command, capture_output=True, text=True)
+    except OSError as error:
+        sys.exit(f"{command[0]}: {error.strerror}")
     if result.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))}: {result.stderr.strip()}")
     return result.stdout
@@ -81,12 +84,7 @@ def costs(carom, folder, repeats):
     return times
 
 
-def draw(results, output):
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
+def draw(plt, results, output):
     figure, axes = plt.subplots(figsize=(8, 4.5), dpi=100)
     for model in MODELS:
         moved = [farthest(results[model][gap], results[model][0.0]) for gap in GAPS[1:]]
@@ -115,6 +113,13 @@ def main():
     parser.add_argument("--count", type=int, default=40, help="breaks per model and gap (default 40)")
     parser.add_argument("--repeats", type=int, default=15, help="timed runs per model (default 15)")
     args = parser.parse_args()
+    try:
+        import matplotlib
+    except ImportError:
+        sys.exit("needs matplotlib (Debian: python3-matplotlib)")
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         results = {model: {gap: places(args.carom, folder, model, gap, args.count) for gap in GAPS} for model in MODELS}
@@ -129,7 +134,7 @@ def main():
         apart = "  ".join(f"{other} {1e3 * statistics.median(farthest(results['compliant'][gap], results[other][gap])):.1f}"
                           for other in MODELS[1:])
         print(f"gap {gap:.0e} m: moved by (mm) {moved}; from compliant (mm) {apart}")
-    draw(results, args.output)
+    draw(plt, results, args.output)
 
 
 if __name__ == "__main__":
