@@ -56,6 +56,10 @@ carom_ensure() {
         exit 2
     fi
     missing=$(carom_missing "$@")
+    # Package lists that do not know OSMesa say that there is none; no lists say nothing.
+    if compgen -G '/var/lib/apt/lists/*Packages*' >/dev/null && ! carom_has_osmesa; then
+        missing=${missing/$carom_osmesa /}
+    fi
     [ -n "$missing" ] || return 0
     if ! carom_can_install; then
         carom_say "packages are missing, and installing them needs root or sudo. As root:"

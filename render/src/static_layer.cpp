@@ -180,7 +180,8 @@ void StaticLayer::add_pass(const Scratch& scratch, int pass, int samples) {
     api_.Disable(GL_DEPTH_TEST);
     api_.BindVertexArray(empty_array_);
     api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.sum_framebuffer);
-    if (pass > 0) api_.Enable(GL_BLEND);
+    // The first one replaces what the drawing before left there.
+    pass == 0 ? api_.Disable(GL_BLEND) : api_.Enable(GL_BLEND);
     api_.BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ONE);
     api_.UseProgram(add_program_);
     gl::bind_texture(api_, add_program_, 0, "u_pass", scratch.pass);
