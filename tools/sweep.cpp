@@ -195,7 +195,7 @@ Variation read_variation(const SweepArgs& args) {
     try {
         return Variation(args.scene, args.vary, args.seed);
     } catch (const VariationError& error) {
-        throw UsageError(fmt::format("--vary {}", error.what()));
+        throw UsageError(fmt::format("--vary: {}", error.what()));
     }
 }
 
