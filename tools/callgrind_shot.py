@@ -24,10 +24,10 @@ import tempfile
 PARTS = [
     ("cluster", r"carom::ClusterMap::|collect_cluster|resolve_cluster"),
     ("kernel", r"carom::kernel::"),
-    ("queue", r"EventQueue|Shot::next|Shot::before|Shot::closing|Shot::place|Shot::requeue"),
-    ("detect", r"Shot::(pair|rescan|redetect|detect_|bound|path|swept|scan|offer|refresh)|BallSearch|TableSearch|b2|"
-               r"time_to_|time_along|stays_|first_descent|bracketed_root|closing_speed|refine|along_line|brought_near|"
-               r"first_touch|held_together|held_to|Descent|unit_roots"),
+    ("queue", r"EventQueue|Shot::(next|before|closing|place|requeue|changed)"),
+    ("detect", r"Shot::(pair|search_pairs|look_again|redetect|renew|detect_|find_parts|offer|bound|path|swept|held_to|"
+               r"rescan)|BoxSearch|b2|time_to_|time_along|stays_|first_descent|bracketed_root|closing_speed|refine|"
+               r"along_line|brought_near|first_touch|Descent|unit_roots"),
     ("memory", r"^(_int_malloc|_int_free|malloc|free|operator new|operator delete|malloc_consolidate|unlink_chunk|"
                r"_int_realloc|sysmalloc|memcpy|memset|__mem)|_M_realloc"),
     ("resolve", r""),

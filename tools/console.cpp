@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -17,12 +18,14 @@ namespace {
 /// What is done sooner than this shows no progress: a line that flashes by is noise.
 constexpr std::chrono::milliseconds kPatience(300);
 
-volatile std::sig_atomic_t g_interrupts = 0;
+/// Written by the handler, read by every thread that works.
+std::atomic<int> g_interrupts = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not wait");
 volatile std::sig_atomic_t g_signal = SIGINT;
 
 void on_interrupt(int signal) {
     g_signal = signal;
-    g_interrupts = g_interrupts + 1;
+    ++g_interrupts;
     // Whoever presses Ctrl-C a third time wants out now, whatever it leaves behind.
     if (g_interrupts >= 3) ::_exit(128 + signal);
 }

@@ -104,25 +104,31 @@ class Queue {
 class Workers {
   public:
     Workers(Queue& queue, const Variation& variation, kernel::Isa isa, unsigned jobs) : queue_(queue) {
-        for (unsigned i = 0; i < jobs; ++i) {
-            threads_.emplace_back([&queue, &variation, isa] {
-                try {
-                    while (const auto shot = queue.claim())
-                        queue.put(*shot, sweep_row(variation, *shot, isa));
-                } catch (...) {
-                    queue.stop(std::current_exception());
-                }
-            });
+        try {
+            for (unsigned i = 0; i < jobs; ++i)
+                threads_.emplace_back([&queue, &variation, isa] { work(queue, variation, isa); });
+        } catch (...) {  // the system gives no more threads
+            finish();
+            throw;
         }
     }
-    ~Workers() {
-        queue_.stop(nullptr);
-        for (std::thread& thread : threads_) thread.join();
-    }
+    ~Workers() { finish(); }
     Workers(const Workers&) = delete;
     Workers& operator=(const Workers&) = delete;
 
   private:
+    static void work(Queue& queue, const Variation& variation, kernel::Isa isa) noexcept {
+        try {
+            while (const auto shot = queue.claim()) queue.put(*shot, sweep_row(variation, *shot, isa));
+        } catch (...) {
+            queue.stop(std::current_exception());
+        }
+    }
+    void finish() {
+        queue_.stop(nullptr);
+        for (std::thread& thread : threads_) thread.join();
+    }
+
     Queue& queue_;
     std::vector<std::thread> threads_;
 };

@@ -25,6 +25,7 @@ Vec2 at(const Relative& m, double t) {
 Vec2 rate(const Relative& m, double t) {
     return {m.v.x() + t * m.a.x(), m.v.y() + t * m.a.y()};
 }
+
 double dot(const Vec2& a, const Vec2& b) {
     return a.x() * b.x() + a.y() * b.y();
 }
@@ -236,35 +237,6 @@ double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, d
         if (closing < best && closing <= ball.horizon && foot_inside(closing)) best = closing;
     }
     return best;
-}
-
-namespace {
-
-// Margins of the rejects: a share of the reach, and a share of the terms that are summed.
-constexpr double kApartShare = 1e-6;
-constexpr double kTermShare = 1e-12;
-
-// Least value of c + b t + a t^2 on [0, T] less the rounding of its terms; T may be infinite.
-double least(double c, double b, double a, double T) {
-    if (b >= 0.0 && a >= 0.0) return c;
-    if (!(T < kNever)) return -kNever;
-    const double linear = b * T, square = a * T * T;
-    double low = std::min(c, c + (linear + square));
-    if (a > 0.0 && -b < 2.0 * a * T) low = c - b * b / (4.0 * a);
-    return low - kTermShare * (std::abs(c) + std::abs(linear) + std::abs(square));
-}
-
-}  // namespace
-
-bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reach, double window) {
-    if (!(window >= 0.0)) return true;
-    const double far = reach * (1.0 + kApartShare);
-    const double d2 = dot(r, r);
-    const double towards = least(d2, dot(r, v), 0.5 * dot(r, a), window);
-    if (towards > 0.0 && towards * towards > far * far * d2) return true;
-    const double side = cross(r, v), bend = 0.5 * cross(a, v);
-    const double across = side < 0.0 ? least(-side, 0.0, -bend, window) : least(side, 0.0, bend, window);
-    return across > 0.0 && across * across > far * far * dot(v, v);
 }
 
 bool stays_off_line(const Path& ball, const Vec2& from, const Vec2& direction, double R, double window) {

@@ -48,8 +48,8 @@ std::string read_text(const std::string& path) {
 
 void check_size(std::string_view text, const std::string& name) {
     if (text.size() <= kMaxFileSize) return;
-    throw SceneError(
-        name, {}, fmt::format("is larger than {} MiB; a scene file is a few lines", kMaxFileSize >> 20));
+    throw SceneError(name, {},
+                     fmt::format("is larger than {} MiB; a scene file is a few lines", kMaxFileSize >> 20));
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ class Shot {
     Path path(int ball, double from) const;
     void bound(int ball, double from);
     bool search_pairs(int ball);
-    Candidate pair(int a, int b, double latest) const;
+    Candidate pair(int a, const Path& mine, int b, double latest) const;
     void offer(int ball, int partner, Candidate c);
     void look_again(int ball);
 
@@ -174,5 +174,16 @@ class Shot {
     std::uint32_t round_ = 0;
     double search_ns_ = 0.0;  // profiled: of look_again()
 };
+
+// Motion of a ball from the time `from` on. Contacts are sought from the start of the segments concerned, not
+// from now: the answer is then a function of the segments alone, whenever it is computed.
+inline Path Shot::path(int ball, double from) const {
+    const Segment& s = now_of(ball);
+    const Mover& mover = mover_[static_cast<std::size_t>(ball)];
+    const double tau = from - s.start;
+    const Vec3 r = position_at(s, tau), v = velocity_at(s, tau);
+    return {Vec2(r.x(), r.y()), Vec2(v.x(), v.y()),  s.a,          std::max(0.0, s.duration - tau),
+            mover.straight,     translates(s.state), mover.surface};
+}
 
 }  // namespace carom

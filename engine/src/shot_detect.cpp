@@ -37,17 +37,6 @@ void extend(double r, double v, double a, double T, double margin, double& low, 
 
 }  // namespace
 
-// Motion of a ball from the time `from` on. Contacts are sought from the start of the segments concerned, not
-// from now: the answer is then a function of the segments alone, whenever it is computed.
-Path Shot::path(int ball, double from) const {
-    const Segment& s = now_of(ball);
-    const Mover& mover = mover_[static_cast<std::size_t>(ball)];
-    const double tau = from - s.start;
-    const Vec3 r = position_at(s, tau), v = velocity_at(s, tau);
-    return {Vec2(r.x(), r.y()), Vec2(v.x(), v.y()),  s.a,          std::max(0.0, s.duration - tau),
-            mover.straight,     translates(s.state), mover.surface};
-}
-
 // Where the ball's surface can be from the time `from` until `duration` later; the share keeps rounding
 // inside.
 Box Shot::swept(int ball, double from, double duration) const {
@@ -81,15 +70,15 @@ void Shot::bound(int ball, double from) {
 }
 
 // First contact of two balls, unless it comes later than `latest` or than what either does next: both will be
-// looked at again then.
-Candidate Shot::pair(int a, int b, double latest) const {
+// looked at again then. `mine` is the path of ball a from the start of its segment.
+Candidate Shot::pair(int a, const Path& mine, int b, double latest) const {
     const Segment &s = now_of(a), &q = now_of(b);
-    if (!translates(s.state) && !translates(q.state)) return {};
+    if (!mine.moves && !translates(q.state)) return {};
     const double from = std::max(s.start, q.start);
     const double until = std::min(
         std::min(mover_[static_cast<std::size_t>(a)].until, mover_[static_cast<std::size_t>(b)].until),
         latest);
-    const Path one = path(a, from), two = path(b, from);
+    const Path one = from == s.start ? mine : path(a, from), two = path(b, from);
     if (stays_apart(two.r - one.r, two.v - one.v, two.a - one.a, 2.0 * plan_.balls.R, span(from, until)))
         return {};
     const double t = time_to_ball(one, two, 2.0 * plan_.balls.R);
@@ -108,14 +97,15 @@ void Shot::offer(int ball, int partner, Candidate c) {
 bool Shot::search_pairs(int ball) {
     bool any = false;
     ball_boxes_.settle();
-    ball_boxes_.neighbours(ball, [this, ball, &any](int other) {
+    const Path mine = path(ball, now_of(ball).start);
+    ball_boxes_.neighbours(ball, [this, ball, &mine, &any](int other) {
         any = true;
         // Of two new balls the first one has done it.
         if (mover_[static_cast<std::size_t>(other)].round == round_ && other < ball) return;
         if (held_together(ball, other)) return;
         const double latest =
             std::max(pair_[static_cast<std::size_t>(ball)].time, pair_[static_cast<std::size_t>(other)].time);
-        const Candidate c = pair(ball, other, latest);
+        const Candidate c = pair(ball, mine, other, latest);
         if (c.time == kNever) return;
         offer(ball, other, c);
         offer(other, ball, c);

@@ -38,12 +38,18 @@ static void impacts(void) {
 static void shot(void) {
     carom_scene* scene;
     carom_record* record;
+    carom_cue cue;
     double radius;
     check(carom_scene_create("nine_foot", "pool", &scene));
     check(carom_scene_get_ball_param(scene, "radius", &radius));
     check(carom_scene_set_ball(scene, "cue", (const double[9]){0.635, 0.60, radius}));
     check(carom_scene_set_ball(scene, "1", (const double[9]){0.65, 1.40, radius}));
-    check(carom_scene_set_cue(scene, "cue", &(carom_cue){.speed = 3.0, .aim_deg = 90.0, .side = 0.1}));
+    carom_cue_init(&cue);
+    cue.speed = 3.0;
+    cue.aim_deg = 90.0;
+    cue.side = 0.1;
+    cue.height = 0.0;
+    check(carom_scene_set_cue(scene, "cue", &cue));
     check(carom_simulate(scene, -1.0, &record));
     for (size_t i = 0; i < carom_record_event_count(record); ++i) {
         carom_event event;

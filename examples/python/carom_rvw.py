@@ -17,7 +17,13 @@ class ImpactParams(ctypes.Structure):
 
 
 class Cue(ctypes.Structure):
+    """The defaults are those of a scene file."""
+
     _fields_ = [(name, c_double) for name in ("speed", "aim_deg", "elevation_deg", "side", "height", "mass", "end_mass")]
+
+    def __init__(self, **values):
+        lib.carom_cue_init(byref(self))
+        super().__init__(**values)
 
 
 class Event(ctypes.Structure):
@@ -33,6 +39,7 @@ lib.carom_scene_create.argtypes = [c_char_p, c_char_p, POINTER(c_void_p)]
 lib.carom_scene_free.argtypes = [c_void_p]
 lib.carom_scene_set_ball.argtypes = [c_void_p, c_char_p, doubles]
 lib.carom_scene_set_cue.argtypes = [c_void_p, c_char_p, POINTER(Cue)]
+lib.carom_cue_init.argtypes = [POINTER(Cue)]
 lib.carom_simulate.argtypes = [c_void_p, c_double, POINTER(c_void_p)]
 lib.carom_record_free.argtypes = [c_void_p]
 lib.carom_record_duration.argtypes = [c_void_p]
@@ -111,7 +118,7 @@ def main():
     assert np.allclose(many, after, atol=2e-6), "a batch keeps the same bound"
 
     balls = {"cue": [[0.635, 0.60, radius], [0, 0, 0], [0, 0, 0]], "1": [[0.65, 1.40, radius], [0, 0, 0], [0, 0, 0]]}
-    events, end, sampled = simulate(balls, Cue(speed=3.0, aim_deg=90.0, side=0.1), times=[0.0, 0.25, 0.5])
+    events, end, sampled = simulate(balls, Cue(speed=3.0, aim_deg=90.0, side=0.1, height=0.0), times=[0.0, 0.25, 0.5])
     for time, kind, a, b in events:
         print(f"{time:9.6f} s  {kind:<14} {a} {b}")
     print("cue ball at the end\n", end["cue"])

@@ -47,6 +47,7 @@ struct Work {
 // HertzLaw, ready for use in lanes.
 struct Law {
     Four a, b, minus_mu_b, mu_s, epsilon2, cloth_sign;
+    Four stiffest;  // -mu_b / epsilon
     int p;
     bool cloth;
 };
@@ -110,6 +111,14 @@ CAROM_INLINE void rates(const Work& w, const double* y, double* rate) {
     }
 }
 
+// The regularised friction is stiff: friction over slip, k = mu_b F / |s|, of one contact makes its slip
+// decay at the rate 7 k, and by Gershgorin no rate of all contacts together exceeds 7 times the largest sum
+// of k over a ball (the cloth under it counts half). Runge-Kutta steps are stable up to 2.78 over that. Where
+// a slip is still above epsilon, steps of that length would jump over the way into stick: there k counts
+// kResolve times, up to its value in stick, mu_b F / epsilon.
+constexpr double kStableShare = 2.0 / 7.0;
+constexpr double kResolve = 8.0;
+
 CAROM_INLINE Four normal_force(const Law& law, Four d, Four memory) {
     const Four loading = d * square_root(d);
     Four share = d / memory;  // not used where memory is 0
@@ -161,7 +170,8 @@ CAROM_INLINE void add_forces(const Work& w, const Law& law, const double* y, con
     const Four f_x = k * s_x, f_z = k * s_z;
     const Four twist = 2.5 * f_z;
     Four rows[4] = {f_x * ny - F * nx, twist * ny, -F * ny - f_x * nx, -twist * nx};
-    Four ends[4] = {f_z, -2.5 * f_x, every(0.0), k};
+    const Four resolved = kResolve * k, stuck = law.stiffest * F;
+    Four ends[4] = {f_z, -2.5 * f_x, every(0.0), where_less(resolved, stuck, stuck, resolved)};
     transpose(rows[0], rows[1], rows[2], rows[3]);
     transpose(ends[0], ends[1], ends[2], ends[3]);
     for (int lane = 0; lane < 4; ++lane) {
@@ -229,11 +239,6 @@ CAROM_INLINE void combine(double* y, double* const* slope, double sixth, int cou
         }
     }
 }
-
-// The regularised friction is stiff: friction over slip, k, of one contact makes its slip decay at the rate 7
-// k, and by Gershgorin no rate of all contacts together exceeds 7 times the largest sum of k over a ball (the
-// cloth under it counts half). Runge-Kutta steps are stable up to 2.78 over that.
-constexpr double kStableShare = 2.0 / 7.0;
 
 CAROM_INLINE double stable_step(const Work& w, const double* dy, double longest) {
     double least = 0.0;
@@ -303,6 +308,7 @@ long CAROM_CONTACT_PHASE_NAME(const ContactPhase& phase, const HertzLaw& law, do
                     every(law.mu_s),
                     every(law.epsilon * law.epsilon),
                     every(law.published_slip_sign ? 1.0 : -1.0),
+                    every(-law.mu_b / law.epsilon),
                     law.p,
                     law.mu_s > 0.0};
     rates(w, w.y, w.rate[0]);

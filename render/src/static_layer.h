@@ -31,8 +31,9 @@ class StaticLayer {
     void upload(const TableMesh& table);
     void resize(int width, int height);
     void set_table_uniforms(const TableMesh& table, const View& view, GLuint program, double jx, double jy);
-    void draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, double jx, double jy);
-    void add_pass(const View& view, const Scratch& scratch, int pass, int samples);
+    void draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, int pass, int samples);
+    void add_pass(const Scratch& scratch, int pass, int samples);
+    void keep_depths(const View& view, const Scratch& scratch, int samples);
 
     const gl::Api& api_;
     /// Vertices that one program draws.

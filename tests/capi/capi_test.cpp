@@ -194,7 +194,9 @@ TEST(CApi, SaysWhatIsWrongWithAScene) {
     EXPECT_NE(std::string(carom_last_error()).find("z has to be the radius"), std::string::npos)
         << carom_last_error();
     ASSERT_EQ(carom_scene_set_ball(h.scene, "cue", fine), CAROM_OK);
-    const carom_cue cue{2.0, 90.0, 0.0, 0.9, 0.0, 0.0, 0.0};
+    carom_cue cue;
+    carom_cue_init(&cue);
+    cue.side = 0.9;
     ASSERT_EQ(carom_scene_set_cue(h.scene, "cue", &cue), CAROM_OK);
     EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_BAD_SCENE);
     EXPECT_NE(std::string(carom_last_error()).find("cue.offset"), std::string::npos) << carom_last_error();
@@ -227,7 +229,22 @@ TEST(CApi, WritesTheSceneAsAFile) {
     EXPECT_EQ(carom_scene_text(nullptr, nullptr, 0), static_cast<std::size_t>(-1));
 }
 
+// The cue of a file that says nothing about it.
+TEST(CApi, TheCueBeginsAsInASceneFile) {
+    carom_cue cue;
+    carom_cue_init(&cue);
+    const Cue file = *parse_scene("[[ball]]\n[cue]\n", "x").cue;
+    EXPECT_EQ(cue.speed, file.speed);
+    EXPECT_EQ(cue.aim_deg, file.aim_deg);
+    EXPECT_EQ(cue.elevation_deg, file.elevation_deg);
+    EXPECT_EQ(cue.side, file.side);
+    EXPECT_EQ(cue.height, file.height);
+    EXPECT_EQ(cue.mass, file.mass);
+    EXPECT_EQ(cue.end_mass, file.end_mass);
+}
+
 TEST(CApi, NullIsAnAnswerNotACrash) {
+    carom_cue_init(nullptr);
     carom_scene_free(nullptr);
     carom_record_free(nullptr);
     EXPECT_EQ(carom_record_duration(nullptr), 0.0);

@@ -3,6 +3,8 @@
 # only. Usage: examples.sh BUILD_DIR SOURCE_DIR C++_COMPILER
 set -euo pipefail
 build=$1 source=$2 compiler=$3
+# The system's own tools first: another Python may stand in front that has no numpy.
+PATH=/usr/bin:/bin:$PATH
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "examples.sh: $*" >&2; exit 1; }

@@ -19,7 +19,8 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or describe; see carom "
+         "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or describe; "
+         "see carom "
          "--help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
@@ -74,7 +75,8 @@ TEST(CliUsage, VersionAndHelpExit0) {
     EXPECT_EQ(carom({"--version"}).out, "carom " CAROM_VERSION "\n");
     const ProcessResult help = carom({"--help"});
     EXPECT_EQ(help.status, 0);
-    for (const char* command : {"simulate", "render", "margin", "accuracy", "check", "impact"}) {
+    for (const char* command :
+         {"simulate", "render", "margin", "accuracy", "sweep", "check", "impact", "describe"}) {
         EXPECT_TRUE(contains(help.out, command)) << command;
         const ProcessResult result = carom({command, "--help"});
         EXPECT_EQ(result.status, 0) << command;
@@ -83,12 +85,13 @@ TEST(CliUsage, VersionAndHelpExit0) {
 }
 
 TEST(CliUsage, HelpNamesEveryDefault) {
-    for (const char* command : {"simulate", "render", "margin", "accuracy", "check", "impact"}) {
+    for (const char* command :
+         {"simulate", "render", "margin", "accuracy", "sweep", "check", "impact", "describe"}) {
         // Options begin with two blanks and a dash; their text may go on in the lines below.
         std::string option;
         const auto has_default = [&option] {
             return option.empty() || contains(option, "--help") || contains(option, "default:") ||
-                   contains(option, "=");
+                   contains(option, "=") || contains(option, "REQUIRED");
         };
         for (const std::string& line : lines_of(carom({command, "--help"}).out)) {
             const bool starts = line.substr(0, 3) == "  -";

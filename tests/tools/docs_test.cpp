@@ -88,6 +88,8 @@ class Clone {
         ProcessOptions options;
         options.folder = folder_.path().string();
         options.environment = {{"CAROM_ISA", ""}, {"HOME", folder_.file("home")}};
+        // The system's own tools first: another Python may stand in front that has no packages.
+        options.environment.emplace_back("PATH", std::string("/usr/bin:/bin:") + std::getenv("PATH"));
         return run_process({"/bin/bash", "-euo", "pipefail", "-c", script}, options);
     }
 
@@ -111,7 +113,7 @@ class Docs : public testing::TestWithParam<std::string> {};
 
 TEST_P(Docs, CommandsWorkAsPrinted) {
 #ifdef CAROM_SANITIZED
-    if (GetParam() == "docs/embedding.md") GTEST_SKIP() << "a sanitized library cannot be loaded by others";
+    GTEST_SKIP() << "the tests of the program run under sanitizers; what pages print runs in the plain build";
 #endif
     const std::vector<Block> blocks = blocks_of(read_page(GetParam()));
     const Clone clone;

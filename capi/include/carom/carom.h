@@ -43,8 +43,7 @@ typedef enum carom_status {
  */
 CAROM_API const char* carom_last_error(void);
 
-/* ---- Impacts
- * ------------------------------------------------------------------------------------------------- */
+/* ---- Impacts ---- */
 
 /* Balls of equal radius and mass. */
 typedef struct carom_impact_params {
@@ -80,8 +79,7 @@ CAROM_API carom_status carom_collide_balls_batch(size_t count, const double* in1
                                                  double tolerance, double* out1, double* out2,
                                                  int32_t* status);
 
-/* ---- Scenes
- * -------------------------------------------------------------------------------------------------- */
+/* ---- Scenes ---- */
 
 typedef struct carom_scene carom_scene;
 
@@ -109,9 +107,13 @@ typedef struct carom_cue {
     double aim_deg;       /* 0 = +x, 90 = +y */
     double elevation_deg; /* of the butt */
     double side, height;  /* offset in ball radii: left +, up +; together at most 0.5 */
-    double mass;          /* [kg]; 0 stands for 0.567 */
+    double mass;          /* [kg] */
     double end_mass;      /* [kg], for squirt; 0 for none */
 } carom_cue;
+
+/* Fills in the defaults of a scene file: 9 m/s along +y, a little above the centre, 0.567 kg, end mass
+ * 0.00567 kg. */
+CAROM_API void carom_cue_init(carom_cue* cue);
 
 /* The ball of this id is struck at the start; it has to be at rest. NULL for `cue` takes the cue away. */
 CAROM_API carom_status carom_scene_set_cue(carom_scene* scene, const char* id, const carom_cue* cue);
@@ -120,8 +122,7 @@ CAROM_API carom_status carom_scene_set_cue(carom_scene* scene, const char* id, c
  * NULL where `size` is 0. (size_t)-1 on failure. */
 CAROM_API size_t carom_scene_text(const carom_scene* scene, char* text, size_t size);
 
-/* ---- Shots
- * --------------------------------------------------------------------------------------------------- */
+/* ---- Shots ---- */
 
 typedef struct carom_record carom_record;
 

@@ -16,7 +16,7 @@ namespace carom::kernel {
 namespace {
 
 struct DecoupledMarch {
-    static constexpr int kLag = 2, kBlock = 4;
+    static constexpr int kLag = 2, kBlock = 3;
     static constexpr double kFastError = 5e-7;    // |f| in a block; 3/2 f^2 is dropped
     static constexpr double kEnterError = 5e-8;   // of the slow steps, for the next block to be tried
     static constexpr double kSeriesError = 5e-4;  // |f| up to which the series holds: 63/8 f^5 are left

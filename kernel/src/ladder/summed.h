@@ -16,13 +16,15 @@ namespace {
 
 constexpr int kMostSweeps = 24;
 // Change of a node per sweep, and highest modes of the rates, both relative to the approach speed.
-constexpr double kSweepTolerance = 3e-13, kModeTolerance = 1e-10;
+constexpr double kSweepTolerance = 5e-13, kModeTolerance = 2e-10;
 
+// What the modes may exceed that by after two sweeps: a block that will not do ends there.
+constexpr double kEarlySlack = 10.0;
 // Rounding of a sweep, summed over the nodes, relative to the slips.
 constexpr double kSweepRounding = 4e-15;
 
 // How far the poles are kept, relative to the estimate.
-constexpr double kPoleMargin = 0.5;
+constexpr double kPoleMargin = 0.35;
 
 template <int kSign>
 class SummedMarch {
@@ -232,7 +234,7 @@ class SummedMarch {
                 break;
             }
             change_before = change;
-            if (sweep == 2 && !resolved(table, now, 1e3)) return false;
+            if (sweep == 2 && !resolved(table, now, kEarlySlack)) return false;
             if (!(sweep < kMostSweeps)) return false;
         }
         if (!resolved(table, f, 1.0)) return false;

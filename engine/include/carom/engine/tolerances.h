@@ -46,11 +46,11 @@ inline constexpr double kLeastRestitution =
 
 /// [V] and [L/V] Regularisation of the friction in the compliant cluster map, which errs by about 2e-3 V in
 /// stick (docs/hard_cases.md), and its longest steps: without friction, where they err by 3e-7 V, and with it,
-/// where 1e-5 V (largest of 60 racks 2e-4 V) is far below the former. [L/V] The map goes on while a listed
+/// where 2e-5 V (largest of 40 racks 8e-5 V) is far below the former. [L/V] The map goes on while a listed
 /// pair would touch within this time.
 inline constexpr double kClusterEpsilon = 2e-3;
 inline constexpr double kClusterStep = 1.0 / 80.0;
-inline constexpr double kClusterFrictionStep = 1.0 / 40.0;
+inline constexpr double kClusterFrictionStep = 1.0 / 16.0;
 inline constexpr double kClusterLookAhead = 2.0;
 /// [V] A contact of a cluster that closes faster than this sets the scale V itself: the step is made for
 /// approaches near V.
