@@ -54,7 +54,6 @@ void Shot::reserve_log() {
 // All other memory of the loop is taken here.
 void Shot::first_candidates() {
     const auto count = static_cast<std::size_t>(balls_);
-    for (std::vector<Candidate>* list : {&own_, &feature_, &pair_, &first_}) list->resize(count);
     key_.assign(count, kNever);
     mover_.resize(count);
     changed_.reserve(count);
