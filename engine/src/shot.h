@@ -87,7 +87,7 @@ class Shot {
     Box swept(int ball, double from, double duration) const;
     Path path(int ball, double from) const;
     void bound(int ball, double from);
-    bool search_pairs(int ball);
+    void search_pairs(int ball);
     Candidate pair(int a, const Path& mine, int b, double latest) const;
     void offer(int ball, int partner, Candidate c);
     void look_again(int ball);

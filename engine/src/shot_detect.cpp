@@ -93,13 +93,11 @@ void Shot::offer(int ball, int partner, Candidate c) {
     changed(ball);
 }
 
-// All contacts of one ball, each offered to both. Returns whether any other ball's box is near.
-bool Shot::search_pairs(int ball) {
-    bool any = false;
+// All contacts of one ball, each offered to both.
+void Shot::search_pairs(int ball) {
     ball_boxes_.settle();
     const Path mine = path(ball, now_of(ball).start);
-    ball_boxes_.neighbours(ball, [this, ball, &mine, &any](int other) {
-        any = true;
+    ball_boxes_.neighbours(ball, [this, ball, &mine](int other) {
         // Of two new balls the first one has done it.
         if (mover_[static_cast<std::size_t>(other)].round == round_ && other < ball) return;
         if (held_together(ball, other)) return;
@@ -110,7 +108,6 @@ bool Shot::search_pairs(int ball) {
         offer(ball, other, c);
         offer(other, ball, c);
     });
-    return any;
 }
 
 // A ball's own part after an event that touched it: its transition, the table, its box.
@@ -154,9 +151,12 @@ void Shot::look_again(int ball) {
     const double refresh = mover.refresh;
     const bool ended = refresh <= key_[static_cast<std::size_t>(ball)];
     mover.pair = {};
-    if (ended) bound(ball, refresh);
-    // Where nobody is near, the next box covers twice the way.
-    if (!search_pairs(ball) && ended) mover.travel *= 2.0;
+    if (ended) {
+        // Twice the way each time: a ball that meets nobody for ever is asked a finite number of times.
+        mover.travel *= 2.0;
+        bound(ball, refresh);
+    }
+    search_pairs(ball);
     changed(ball);
 }
 
