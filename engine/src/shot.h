@@ -159,7 +159,9 @@ class Shot {
     std::vector<Segment> current_;  // per ball
     std::vector<Segment> log_;      // every segment begun in this run, in order; the record's at the end
     std::vector<int> log_ball_;
-    std::vector<int> touched_;  // balls whose motion the present event changed
+    std::vector<int> log_member_;           // balls of every cluster of this run
+    std::vector<std::size_t> log_cluster_;  // where each cluster's balls end
+    std::vector<int> touched_;              // balls whose motion the present event changed
     std::vector<HeldContact> held_;
     ClusterMap cluster_map_;
     std::vector<ClusterBall> cluster_balls_;

@@ -101,6 +101,13 @@ TEST(Memory, NoAllocationInTheLoopOfABreak) {
     EXPECT_EQ(count.in_loop(), 0);
 }
 
+// The first cluster of a rack is the largest; later ones find its scratch memory.
+TEST(Memory, NoAllocationInTheLoopOfABreakWithClusters) {
+    const LoopCount count(plan_of(eight_ball_break(ClusterModel::kCompliant)));
+    EXPECT_GT(count.events, 50u);
+    EXPECT_EQ(count.in_loop(), 0);
+}
+
 TEST(Memory, NoAllocationInTheLoopOfAShot) {
     for (const char* file : {"draw", "hello", "three_cushion", "stop"}) {
         const LoopCount count(
