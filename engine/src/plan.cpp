@@ -69,6 +69,7 @@ Plan make_plan(const Scene& scene, kernel::Isa isa) {
     decide_effects(scene, plan);
     choose_search(plan);
     plan.isa = isa;
+    plan.contact_phase = kernel::contact_phase_function(isa);
     if (scene.physics.substeps)
         plan.march = kernel::march_function(isa);
     else

@@ -124,13 +124,16 @@ class Shot {
     // shot_cluster.cpp
     template <bool kProfile>
     bool resolve_cluster(const Candidate& c, double v_n);
-    void collect_cluster(int a, int b, double v_n);
+    double collect_cluster(int a, int b, double v_n);
+    void collect_cluster_at(int a, int b, double v_n);
 
     // shot_held.cpp
     bool is_held(int ball) const { return now_of(ball).held; }
     bool held_together(int a, int b) const;
     bool held_to(int ball, int cushion, int nose) const;
     bool hold_instead(const HeldContact& contact, double v_n, double a_c, double restitution);
+    bool rattles(const HeldContact& contact) const;
+    double rounding_of_held(const HeldContact& contact) const;
     void free_ball(int ball);
     void solve_group(int ball, bool transitions);
     bool release_past_ends(HeldGroup& group);

@@ -1,5 +1,7 @@
 // Ball-ball impacts with a third ball within reach: one event for the whole cluster.
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "carom/engine/tolerances.h"
 #include "shot.h"
@@ -8,8 +10,14 @@ namespace carom {
 
 namespace {
 
-bool left_of(const Vec2& p, const Vec2& q) {
-    return p.x() < q.x() || (p.x() == q.x() && p.y() < q.y());
+// An order of places that mirrors in the axes and quarter turns keep, up to the order of mirror images among
+// themselves: so do the sums of a cluster, to the last bit.
+bool before_place(const Vec2& p, const Vec2& q) {
+    const auto key = [](const Vec2& a) {
+        const double x = std::abs(a.x()), y = std::abs(a.y());
+        return std::array<double, 4>{std::max(x, y), std::min(x, y), a.y(), a.x()};
+    };
+    return key(p) < key(q);
 }
 
 Vec2 planar(const Vec3& a) {
@@ -35,8 +43,23 @@ Nearness nearness(const ClusterBall& p, const ClusterBall& q, double R) {
 }  // namespace
 
 // Breadth first from the pair: every ball that can be reached while the contact lasts (equation 5); then all
-// their contacts.
-void Shot::collect_cluster(int a, int b, double v_n) {
+// their contacts. The fastest approach among them sets the scale of the map: a pair may begin to touch very
+// slowly while its neighbours are about to meet at full speed.
+double Shot::collect_cluster(int a, int b, double v_n) {
+    for (;;) {
+        collect_cluster_at(a, b, v_n);
+        double fastest = v_n;
+        for (const ClusterContact& c : cluster_contacts_) {
+            const ClusterBall &p = cluster_balls_[static_cast<std::size_t>(c.i)],
+                              &q = cluster_balls_[static_cast<std::size_t>(c.j)];
+            fastest = std::max(fastest, c.n.dot(planar(p.v) - planar(q.v)));
+        }
+        if (cluster_balls_.size() < 3 || !(fastest > kClusterFaster * v_n)) return v_n;
+        v_n = fastest;
+    }
+}
+
+void Shot::collect_cluster_at(int a, int b, double v_n) {
     const double R = plan_.balls.R;
     const double time = plan_.clusters == ClusterModel::kCompliant ? contact_time(v_n) : 0.0;
     const auto reach = [&](const Nearness& near) { return time * (std::max(0.0, near.closing) + v_n); };
@@ -59,8 +82,9 @@ void Shot::collect_cluster(int a, int b, double v_n) {
         }
     }
     if (cluster_balls_.size() < 3) return;
-    std::sort(cluster_balls_.begin(), cluster_balls_.end(),
-              [](const ClusterBall& p, const ClusterBall& q) { return left_of(planar(p.r), planar(q.r)); });
+    std::sort(cluster_balls_.begin(), cluster_balls_.end(), [](const ClusterBall& p, const ClusterBall& q) {
+        return before_place(planar(p.r), planar(q.r));
+    });
     for (std::size_t i = 0; i < cluster_balls_.size(); ++i) {
         for (std::size_t j = i + 1; j < cluster_balls_.size(); ++j) {
             const Nearness near = nearness(cluster_balls_[i], cluster_balls_[j], R);
@@ -76,7 +100,7 @@ void Shot::collect_cluster(int a, int b, double v_n) {
     for (auto here = cluster_contacts_.begin(); here != cluster_contacts_.end(); ++here) {
         const auto to = std::upper_bound(cluster_contacts_.begin(), here, *here,
                                          [&place](const ClusterContact& p, const ClusterContact& q) {
-                                             return left_of(place(p), place(q));
+                                             return before_place(place(p), place(q));
                                          });
         std::rotate(to, here, here + 1);
     }
@@ -85,7 +109,7 @@ void Shot::collect_cluster(int a, int b, double v_n) {
 // True if the impact was a cluster's; false leaves it to the pair kernel.
 template <bool kProfile>
 bool Shot::resolve_cluster(const Candidate& c, double v_n) {
-    collect_cluster(c.a, c.b, v_n);
+    v_n = collect_cluster(c.a, c.b, v_n);
     if (cluster_balls_.size() < 3) return false;
     const BallParams& p = plan_.balls;
     const auto start = kProfile ? Clock::now() : Clock::time_point{};
@@ -94,16 +118,19 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
         steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
     } else {
         const bool frictionless = plan_.scene.physics.ball_ball == BallBallModel::kElastic;
+        const double mu_b = frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b);
         const ClusterSettings settings{
             p.R,
             plan_.scene.physics.ball_ball == BallBallModel::kMathavan ? p.mu_s : 0.0,
-            frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b),
+            mu_b,
             frictionless ? 1.0 : p.e_b,
             plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
             kClusterEpsilon,
-            kClusterStep};
+            mu_b > 0.0 ? kClusterFrictionStep : kClusterStep,
+            plan_.contact_phase};
         steps = cluster_map_.compliant(cluster_balls_, cluster_contacts_, settings, v_n);
-        if (steps < 0) fail("a cluster of balls did not part");
+        // Friction and a wedge can keep balls pressed together without end: then as if they were rigid.
+        if (steps < 0) steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
     }
     if constexpr (kProfile) {
         cost_.kernel_ns = nanoseconds(start, Clock::now());
@@ -121,6 +148,8 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
 }
 
 template bool Shot::resolve_cluster<false>(const Candidate&, double);
+#ifndef CAROM_WITHOUT_PROFILE
 template bool Shot::resolve_cluster<true>(const Candidate&, double);
+#endif
 
 }  // namespace carom

@@ -1,6 +1,7 @@
 // Sustained contacts of a run: entry, groups, end.
 #include <algorithm>
 
+#include "carom/engine/tolerances.h"
 #include "shot.h"
 
 namespace carom {
@@ -19,13 +20,47 @@ bool Shot::held_to(int ball, int cushion, int nose) const {
     });
 }
 
-// Captures the contact if a bounce would be over before the contact itself is.
+// Captures the contact if a bounce would be over before the contact itself is; if a held ball closes by no
+// more than the rounding of the velocities that hold; or if the same contact has bounced again and again in no
+// time, as in a wedge whose sides take the speed out of each other: the limit of such a row is the capture.
 bool Shot::hold_instead(const HeldContact& contact, double v_n, double a_c, double restitution) {
-    if (!holds(v_n, a_c, restitution)) return false;
+    const bool rounding =
+        (is_held(contact.i) || (contact.j >= 0 && is_held(contact.j))) && v_n <= rounding_of_held(contact);
+    if (!rounding && !holds(v_n, a_c, restitution) && !rattles(contact)) return false;
     held_.push_back(contact);
     record_event(contact.hold_type(), contact.i, contact.partner, contact.nose);
     solve_group(contact.i, false);
     return true;
+}
+
+// Read from the record, so that a run that is taken up decides alike.
+bool Shot::rattles(const HeldContact& contact) const {
+    int hits = 0;
+    for (std::size_t k = record_.events.size(); k-- > 0;) {
+        const Event& e = record_.events[k];
+        if (e.time < now_ - kEventCapSpan) break;
+        const bool balls = e.type == EventType::kBallBall || e.type == EventType::kBallCluster ||
+                           e.type == EventType::kBallBallHold;
+        const bool table = e.type == EventType::kBallCushion || e.type == EventType::kBallJaw ||
+                           e.type == EventType::kBallCushionHold || e.type == EventType::kBallJawHold;
+        const bool same =
+            contact.j >= 0
+                ? balls && ((e.a == contact.i && e.b == contact.j) || (e.a == contact.j && e.b == contact.i))
+                : table && e.a == contact.i && e.b == contact.partner && e.detail == contact.nose;
+        if (same && ++hits >= kRattle) return true;
+    }
+    return false;
+}
+
+double Shot::rounding_of_held(const HeldContact& contact) const {
+    const auto of = [this](int ball) { return held_noise(velocity_now(ball), spin_now(ball), motion_); };
+    double noise = of(contact.i);
+    if (contact.j >= 0) noise = std::max(noise, of(contact.j));
+    for (const HeldContact& c : held_) {
+        noise = std::max(noise, of(c.i));
+        if (c.j >= 0) noise = std::max(noise, of(c.j));
+    }
+    return noise;
 }
 
 // Ends all sustained contacts of a ball that something else happens to; its partners go on without it.

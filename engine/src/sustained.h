@@ -19,13 +19,17 @@ namespace carom {
 /// bouncing.
 bool holds(double v_n, double a_c, double restitution);
 
+/// Speed that counts as none in a held group [m/s]: what rounding makes of the velocities in a few sums of
+/// eight, or what rolling friction stops within kHoldRest.
+double held_noise(const Vec3& v, const Vec3& w, const MotionParams& motion);
+
 struct HeldContact {
     int i = -1, j = -1;           ///< balls (engine indices); j = -1 for the table
     int cushion = -1, nose = -1;  ///< the straight cushion (Plan::cushions), or the round nose (Plan::noses)
     bool jaw = false;             ///< the nose is a jaw
     Vec2 n = Vec2::Zero();        ///< unit, from i to j or into the table's part; kept over one interval
     double force = 0.0;           ///< N / m [m/s^2]
-    bool released = false;        ///< result: no longer pressed together
+    bool released = false;        ///< result: its gap opens
     EventType hold_type() const;
     EventType release_type() const;
     int partner = -1;  ///< what an event calls b
@@ -44,8 +48,8 @@ struct HeldGroup {
 };
 
 /// Solves for forces and accelerations at `now` and writes the segments of all members, which end together at
-/// the first transition, turn of a direction, or end of a cushion. Contacts that are no longer pressed
-/// together are marked released.
+/// the first transition, turn of a direction, opening of a gap, or end of a cushion. Contacts that open are
+/// marked released; one without force that does not open stays.
 void solve_held(HeldGroup& group, const Plan& plan, const MotionParams& motion, double now);
 
 /// Time until the foot point of a ball that runs along a cushion passes the cushion's end; 0 if it is leaving

@@ -24,8 +24,15 @@ struct Result {
 };
 
 ClusterSettings settings(double mu_b, double mu_s, double e, double epsilon = kClusterEpsilon,
-                         double step = kClusterStep) {
-    return {kR, mu_s, mu_b, e, false, epsilon, step};
+                         double frictionless_step = kClusterStep) {
+    return {kR,
+            mu_s,
+            mu_b,
+            e,
+            false,
+            epsilon,
+            mu_b > 0.0 ? kClusterFrictionStep : frictionless_step,
+            kernel::contact_phase_function(kernel::best_isa())};
 }
 
 double energy(const std::vector<ClusterBall>& balls) {

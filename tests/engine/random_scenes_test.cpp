@@ -2,6 +2,10 @@
 // aim of 10 000 scenes is not met: see kOpen.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
 #include "support/random_scenes.h"
 
 namespace carom {
@@ -27,6 +31,41 @@ TEST_P(RandomScenes, ComeToRest) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Part, RandomScenes, testing::Range(0, kParts));
+
+// CAROM_RANDOM_SCENES=FROM:COUNT runs these seeds and prints a line for each that fails or takes long; for
+// whoever changes sustained contacts. It asserts nothing about time.
+TEST(RandomSceneScan, PrintsWhatFailsOrTakesLong) {
+    const char* wanted = std::getenv("CAROM_RANDOM_SCENES");
+    if (wanted == nullptr) GTEST_SKIP() << "set CAROM_RANDOM_SCENES=FROM:COUNT to run it";
+    unsigned long long from = 0, count = 0;
+    ASSERT_EQ(std::sscanf(wanted, "%llu:%llu", &from, &count), 2) << "CAROM_RANDOM_SCENES=FROM:COUNT";
+    using Clock = std::chrono::steady_clock;
+    const double slow_ms = 300.0, give_up_ms = 3000.0;
+    double total_ms = 0.0;
+    int failed = 0;
+    for (unsigned long long seed = from; seed < from + count; ++seed) {
+        const Scene scene = RandomScene(seed).make();
+        const Clock::time_point start = Clock::now();
+        const auto taken = [start] {
+            return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        };
+        std::size_t rounds = 0;
+        SimulateOptions options;
+        options.progress = [&](std::size_t, double time) {
+            if (++rounds % 64 == 0 && taken() > give_up_ms)
+                throw std::runtime_error("given up at t = " + std::to_string(time) + " s");
+        };
+        const std::string what = what_breaks(scene, options);
+        const double ms = taken();
+        total_ms += ms;
+        failed += what.empty() ? 0 : 1;
+        if (!what.empty() || ms > slow_ms)
+            std::printf("seed %llu: %.0f ms, %zu rounds: %s\n", seed, ms, rounds, what.c_str());
+        std::fflush(stdout);
+    }
+    std::printf("%llu scenes from %llu: %d failed, %.1f ms on average\n", count, from, failed,
+                total_ms / static_cast<double>(count));
+}
 
 /// The seven-foot table's cushion and jaw where a ball stood at their join.
 Table cushion_and_jaw() {

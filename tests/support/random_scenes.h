@@ -196,11 +196,12 @@ inline std::string dump(const Scene& scene) {
     return text;
 }
 
-/// What went wrong in a run of the scene: a broken law or an error; empty if nothing.
-inline std::string what_breaks(const Scene& scene) {
+/// What went wrong in a run of the scene: a broken law or an error; empty if nothing. `options` lets a caller
+/// watch the run and give it up (by throwing from its progress).
+inline std::string what_breaks(const Scene& scene, const SimulateOptions& options = {}) {
     const Plan plan = plan_of(scene);
     try {
-        const Record record = simulate(plan);
+        const Record record = simulate(plan, options);
         if (const auto violation = verify(record, plan))
             return violation->law + " at event " + std::to_string(violation->event) + ": " +
                    violation->message;

@@ -10,6 +10,7 @@
 #include "carom/engine/record.h"
 #include "carom/engine/scene.h"
 #include "carom/kernel/closed_forms.h"
+#include "carom/kernel/contact_phase.h"
 #include "carom/kernel/march.h"
 #include "carom/kernel/tolerance.h"
 
@@ -64,8 +65,9 @@ struct Plan {
     bool cloth_in_impact = true;  ///< the cloth acts during a ball-ball impact
     bool squirt = true;           ///< a struck ball leaves the line of aim
     kernel::Isa isa = kernel::Isa::kScalar;
-    kernel::MarchFunction march = nullptr;             ///< set where the scene asks for substeps
-    kernel::ToleranceFunction by_tolerance = nullptr;  ///< set otherwise
+    kernel::MarchFunction march = nullptr;                 ///< set where the scene asks for substeps
+    kernel::ToleranceFunction by_tolerance = nullptr;      ///< set otherwise
+    kernel::ContactPhaseFunction contact_phase = nullptr;  ///< of compliant clusters
     ClusterModel clusters =
         ClusterModel::kSequential;  ///< kSequential where fewer than three balls leave nothing to decide
     Search ball_search = Search::kDirect;   ///< among balls

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "carom/engine/scene.h"
@@ -149,5 +150,8 @@ void write_record(const Record& record, const std::string& path);
 
 /// Reads what write_record wrote. @throws SceneError
 Record read_record(const std::string& path);
+
+/// The same from text; `name` stands for the file in messages.
+Record parse_record(std::string_view text, const std::string& name);
 
 }  // namespace carom

@@ -22,6 +22,9 @@ inline constexpr double kRollingUlp = 8.0;
 /// [s] and [-] More events than this within one such span is an error with a dump, never a silent stop.
 inline constexpr double kEventCapSpan = 1e-6;
 inline constexpr int kEventCap = 10000;
+/// [-] A contact that has bounced this often within one such span is held. A row of 15 elastic balls taken
+/// pair by pair needs 30, the last bounces before a ball is held, about 100.
+inline constexpr int kRattle = 200;
 /// [-] Rounds of the loop in a row that changed directions of sustained contacts but brought no event: as
 /// bad.
 inline constexpr int kQuietCap = 1000000;
@@ -41,15 +44,20 @@ inline constexpr double kContactStiffness = 3.094e9;  ///< [m^-0.5 s^-2] k/m
 inline constexpr double kLeastRestitution =
     0.1;  ///< stands for a smaller e in that rule, where no bounce is left at all
 
-/// [V] and [L/V] Regularisation of the friction in the compliant cluster map, and its step: errs by about
-/// 2e-3 V in stick (docs/hard_cases.md), 4e-7 V of it from the step. [L/V] The map goes on while a listed
+/// [V] and [L/V] Regularisation of the friction in the compliant cluster map, which errs by about 2e-3 V in
+/// stick (docs/hard_cases.md), and its longest steps: without friction, where they err by 3e-7 V, and with it,
+/// where 2e-5 V (largest of 40 racks 8e-5 V) is far below the former. [L/V] The map goes on while a listed
 /// pair would touch within this time.
 inline constexpr double kClusterEpsilon = 2e-3;
 inline constexpr double kClusterStep = 1.0 / 80.0;
+inline constexpr double kClusterFrictionStep = 1.0 / 16.0;
 inline constexpr double kClusterLookAhead = 2.0;
-/// [L/V] A cluster that has not parted after this many contact times is reported; the slowest of 16 balls
-/// takes a few dozen.
-inline constexpr double kClusterTimeLimit = 2000.0;
+/// [V] A contact of a cluster that closes faster than this sets the scale V itself: the step is made for
+/// approaches near V.
+inline constexpr double kClusterFaster = 2.0;
+/// [L/V] A cluster that has not parted after this many contact times is resolved as rigid; the slowest of 16
+/// balls takes a few dozen.
+inline constexpr double kClusterTimeLimit = 200.0;
 /// [-] Largest exponent of the unloading law; restitutions below 0.05 are taken as 0.05 inside a cluster.
 inline constexpr int kLargestLawExponent = 1024;
 /// [share of R] Gaps up to this are rounding of the positions: the balls touch.
@@ -59,8 +67,29 @@ inline constexpr long kRigidSweeps = 100000;
 
 /// [s] Longest and shortest interval over which a sustained contact keeps the directions of its forces where
 /// they turn.
-inline constexpr double kHoldRefresh = 2e-3;
+inline constexpr double kHoldLongest = 5e-2;
 inline constexpr double kHoldShortest = 1e-5;
+/// [m] Error that one such interval may make in a ball's place: 1e-6 m in the hundred or so of a long push.
+inline constexpr double kHoldError = 2e-8;
+/// [rad] and [m] How far a normal may turn within one, and what gap its turning may leave.
+inline constexpr double kHoldTurn = 0.03;
+inline constexpr double kHoldGap = 1e-8;
+/// [of the sliding acceleration] A gap that opens by less does not open: the rounding of the forces.
+inline constexpr double kHoldOpening = 1e-10;
+/// [-] Rounding of the forces, relative.
+inline constexpr double kHoldRounding = 1e-9;
+/// [-] Part of itself by which each contact of a held group yields, to share the load of contacts that are
+/// more than the group needs.
+inline constexpr double kContactSoftness = 1e-12;
+/// [of what drives a group] Forces beyond this have no answer: what asks for them is left out.
+inline constexpr double kLargestHold = 1e6;
+/// [-] A held contact that opens at some rate is closed only if no ball changes by more than this many times
+/// the rate.
+inline constexpr double kStickyShare = 10.0;
+/// [-] Mobility of balls at rest while it is decided which of them stay, against 1 of a ball that slips.
+inline constexpr double kRestGives = 1e-4;
+/// [-] Times that a ball may change between rest, rolling and sliding in one solution.
+inline constexpr int kModeChanges = 8;
 /// [s] A held ball that its own rolling friction would stop within this time rests: it would stop again and
 /// again.
 inline constexpr double kHoldRest = 1e-12;
@@ -68,16 +97,17 @@ inline constexpr double kHoldRest = 1e-12;
 /// straight line.
 inline constexpr double kHoldStraight = 1e-9;
 
-/// [of the approach speed] Error per step of the cushion model mathavan_2010, and the slip at the nose or the
-/// cloth that counts as none. The direction of a slip near the tolerance is noise of the integration; a
-/// hundred times above it is not.
-inline constexpr double kCushionTolerance = 1e-10;
-inline constexpr double kCushionStick = 1e-8;
+/// [of the approach speed] Error per step of the cushion model mathavan_2010; a result of its ten or so steps
+/// errs by about as much. Far below the ball-ball impact's default.
+inline constexpr double kCushionTolerance = 1e-7;
+/// [of the approach speed] Slip at the nose that a nose which can stick is taken to have lost; what that
+/// leaves out is of second order (docs/physics.md, "Cushion impact").
+inline constexpr double kCushionStick = 3e-5;
 /// A nose that has let go slips by less than this for a while, and its direction follows the drive at once
 /// (stiff): it is taken as driven. What that leaves out is of second order, about the square root of this
 /// times its square.
 inline constexpr double kCushionCreep = 1e-4;
-inline constexpr int kCushionSteps = 20000;  ///< [-] bound on its steps; a real impact takes 10 to 1000
+inline constexpr int kCushionSteps = 5000;  ///< [-] bound on its steps; an impact takes 3 to 300
 /// [-] Grid on which the cushion model stronge brackets the end of stick: a thirtieth of the restitution, far
 /// finer than the swing of its tangential spring.
 inline constexpr int kStrongeGrid = 32;
@@ -122,6 +152,9 @@ inline constexpr int kMaxBalls = 4096;         ///< balls of a scene, written an
 inline constexpr int kMaxRackRows = 90;        ///< of a triangle: 4095 balls
 inline constexpr int kMaxTableParts = 4096;    ///< cushions, jaws and pockets of a table, each
 inline constexpr std::size_t kMaxFileSize = 4u << 20;  ///< [bytes] of a scene file
+/// [bytes] Of a record file: about 700 000 segments. Reading it takes some ten times as much memory.
+inline constexpr std::size_t kMaxRecordSize = std::size_t{256} << 20;
 inline constexpr std::size_t kMaxIdLength = 64;        ///< [bytes] of a ball's id
+inline constexpr int kVariationTrials = 100;  ///< shots of a variation, one of which has to be a valid scene
 
 }  // namespace carom

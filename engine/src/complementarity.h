@@ -1,0 +1,42 @@
+// Dense linear complementarity problems of a few dozen unknowns: the contact forces, and the impulses of a
+// capture, of a group of balls in sustained contact.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace carom {
+
+/// z >= 0, w = A z + q >= 0, z . w = 0; where `free`, z has either sign and w = 0 instead.
+struct Complementarity {
+    /// All zero, none free.
+    explicit Complementarity(std::size_t n) : A(n * n, 0.0), q(n, 0.0), free(n, 0), z(n, 0.0), size(n) {}
+
+    /// Block principal pivoting: exchange all that is infeasible while their number falls, else one by least
+    /// index (Murty's rule), which ends for every P-matrix (Judice and Pires, "A block principal pivoting
+    /// algorithm for large-scale strictly monotone linear complementarity problems", 1994). The diagonal is
+    /// raised by kContactSoftness of itself, so that contacts more than a group needs (a ball in three of
+    /// them) share their load evenly and have one answer; one step of refinement takes its effect out again.
+    /// @return false if no answer was found within the bound on pivots (A is no P-matrix); z is then 0
+    bool solve();
+
+    double& at(std::size_t row, std::size_t column) { return A[row * size + column]; }
+    double at(std::size_t row, std::size_t column) const { return A[row * size + column]; }
+
+    std::vector<double> A;  ///< by rows
+    std::vector<double> q;
+    std::vector<char> free;
+    std::vector<double> z;  ///< result
+    std::size_t size;
+
+  private:
+    bool factor();
+    void back_substitute(std::vector<double>& x) const;
+    void residual(std::vector<double>& w) const;
+
+    std::vector<char> basic_;
+    std::vector<std::size_t> index_, pivot_;
+    std::vector<double> lu_;
+};
+
+}  // namespace carom

@@ -1,0 +1,257 @@
+// Contact forces and accelerations of a held group.
+#include <algorithm>
+#include <cmath>
+
+#include "carom/engine/tolerances.h"
+#include "complementarity.h"
+#include "sustained_solver.h"
+
+namespace carom {
+
+void HeldSolver::make_directions() {
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        const HeldBall& ball = group_.balls[k];
+        Body& b = bodies_[k];
+        const Vec2 along =
+            b.mode == Mode::kSliding ? cloth_slip(ball.v, ball.w, motion_.R) : planar(ball.v);
+        const double size = length(along);
+        b.starts = !(size > 0.0);  // then the direction is that of the forces
+        if (!b.starts) b.direction = along / size;
+    }
+    for (Link& link : links_) {
+        if (link.j < 0) continue;
+        const HeldBall &bi = group_.balls[static_cast<std::size_t>(link.i)],
+                       &bj = group_.balls[static_cast<std::size_t>(link.j)];
+        const Vec2 t(link.n.y(), -link.n.x());
+        const double s_x = dot(planar(bi.v) - planar(bj.v), t) - motion_.R * (bi.w.z() + bj.w.z());
+        const double s_z = motion_.R * (dot(planar(bi.w), t) + dot(planar(bj.w), t));
+        const double slip = length(Vec2(s_x, s_z));
+        link.friction_z = slip > 0.0 ? -ball_friction(plan_.balls, slip) * s_z / slip : 0.0;
+    }
+}
+
+// Share of the weight that the cloth carries.
+double HeldSolver::load(const Body& b) const {
+    return b.lifted ? 0.0 : std::max(0.0, 1.0 - b.lift / plan_.gravity);
+}
+
+void HeldSolver::accelerate() {
+    for (Body& b : bodies_) {
+        switch (b.mode) {
+            case Mode::kSliding:
+                b.a = b.push - motion_.slide * load(b) * b.direction;
+                break;
+            case Mode::kRolling:
+                b.a = (5.0 / 7.0) * (b.push + b.couple) - motion_.roll * b.direction;
+                break;
+            case Mode::kResting:
+                b.a = give_ * (b.push + b.couple);
+                break;
+        }
+    }
+}
+
+void HeldSolver::sum_forces() {
+    for (Body& b : bodies_) {
+        b.push = b.couple = Vec2::Zero();
+        b.lift = 0.0;
+    }
+    for (const Link& link : links_) {
+        Body& bi = body(link.i);
+        bi.push -= link.N * link.n;
+        bi.couple -= link.friction_z * link.N * link.n;
+        bi.lift += link.friction_z * link.N;
+        if (link.j < 0) continue;
+        Body& bj = body(link.j);
+        bj.push += link.N * link.n;
+        bj.couple -= link.friction_z * link.N * link.n;
+        bj.lift -= link.friction_z * link.N;
+    }
+}
+
+// Acceleration of the gap with the present forces.
+double HeldSolver::gap_acceleration(const Link& link) const {
+    const Vec2 other = link.j >= 0 ? body(link.j).a : Vec2::Zero();
+    return dot(link.n, other - body(link.i).a) + link.curving;
+}
+
+// Acceleration of a body by a force of 1 in the contact.
+Vec2 HeldSolver::response(const Link& link, int index, bool friction) const {
+    const Body& b = body(index);
+    const double f = friction ? link.friction_z : 0.0, sign = index == link.i ? -1.0 : 1.0;
+    switch (b.mode) {
+        case Mode::kSliding: {
+            const double lift = b.lifted ? 0.0 : -sign * f / plan_.gravity;
+            return sign * link.n + motion_.slide * lift * b.direction;
+        }
+        case Mode::kRolling:
+            return (5.0 / 7.0) * (sign - f) * link.n;
+        case Mode::kResting:
+            return give_ * (sign - f) * link.n;
+    }
+    return Vec2::Zero();
+}
+
+// N >= 0, gap acceleration >= margin, complementary; for the present modes and directions.
+bool HeldSolver::solve_contacts_once(bool friction, bool margins) {
+    for (Link& link : links_) link.N = 0.0;
+    sum_forces();
+    accelerate();
+    std::vector<std::size_t> active;
+    for (std::size_t c = 0; c < links_.size(); ++c) {
+        Link& link = links_[c];
+        const auto mobility = [this](const Body& b) { return std::max(give_, b.mobility()); };
+        link.diagonal = mobility(body(link.i)) + (link.j >= 0 ? mobility(body(link.j)) : 0.0);
+        if (!link.open && link.diagonal > 0.0) active.push_back(c);
+    }
+    Complementarity problem(active.size());
+    double drive = 0.0;
+    for (std::size_t k = 0; k < active.size(); ++k) {
+        const Link& column = links_[active[k]];
+        const Vec2 on_i = response(column, column.i, friction),
+                   on_j = column.j >= 0 ? response(column, column.j, friction) : Vec2::Zero();
+        problem.q[k] = gap_acceleration(column) - (margins ? column.margin : 0.0);
+        drive = std::max(drive, std::abs(problem.q[k]));
+        for (std::size_t r = 0; r < active.size(); ++r) {
+            const Link& row = links_[active[r]];
+            double sum = 0.0;
+            if (row.i == column.i) sum -= dot(row.n, on_i);
+            if (row.i == column.j) sum -= dot(row.n, on_j);
+            if (row.j >= 0 && row.j == column.i) sum += dot(row.n, on_i);
+            if (row.j >= 0 && row.j == column.j) sum += dot(row.n, on_j);
+            problem.at(r, k) = sum;
+        }
+    }
+    if (!problem.solve()) return false;
+    for (std::size_t k = 0; k < active.size(); ++k) {
+        if (!(problem.z[k] <= kLargestHold * (drive + motion_.slide + motion_.roll))) return false;
+        links_[active[k]].N = problem.z[k];
+    }
+    sum_forces();
+    accelerate();
+    return true;
+}
+
+// Margins can ask for what a wedge cannot give, and friction can leave no answer at all (Painleve): then
+// without.
+bool HeldSolver::solve_contacts() {
+    const bool margins = std::any_of(links_.begin(), links_.end(), [](const Link& l) { return l.margin != 0.0; });
+    const bool friction =
+        std::any_of(links_.begin(), links_.end(), [](const Link& l) { return l.friction_z != 0.0; });
+    if (solve_contacts_once(friction, margins)) return true;
+    if (margins && solve_contacts_once(friction, false)) return true;
+    if (!friction) return false;
+    for (Link& link : links_) link.friction_z = 0.0;
+    return solve_contacts_once(false, false);
+}
+
+bool HeldSolver::change_mode(Body& b, Mode mode) {
+    if (b.changes >= kModeChanges) return false;
+    ++b.changes;
+    b.mode = mode;
+    return true;
+}
+
+// A ball at rest stays while (5/7) |F| <= mu_r g, with the forces of what it leans on.
+bool HeldSolver::resting_holds(Body& b) {
+    const Vec2 force = b.push + b.couple;
+    const double size = length(force), rounding = kHoldRounding * (motion_.slide + length(b.push));
+    if ((5.0 / 7.0) * size <= motion_.roll + rounding) return true;
+    if (!change_mode(b, Mode::kRolling)) return true;
+    b.starts = true;
+    b.direction = force / size;
+    return false;
+}
+
+// A ball rolls while the cloth can give what that takes. One that has no velocity yet rolls along the force
+// on it, or stays after all.
+bool HeldSolver::rolling_holds(Body& b) {
+    const double grip = motion_.slide * load(b) + motion_.roll;
+    if (length(b.a - b.push) > grip * (1.0 + kHoldRounding)) {
+        const Vec2 slip = b.push - 2.5 * b.couple;
+        const double size = length(slip);
+        if (!change_mode(b, Mode::kSliding)) return true;
+        b.starts = true;
+        b.direction = size > 0.0 ? Vec2(slip / size) : Vec2(-b.direction);
+        return false;
+    }
+    if (!b.starts) return true;
+    const Vec2 force = b.push + b.couple;
+    const double size = length(force);
+    if ((5.0 / 7.0) * size <= motion_.roll || b.changes >= kModeChanges) {
+        b.mode = Mode::kResting;
+        b.changes = kModeChanges;  // for good
+        return false;
+    }
+    return turn_to(b, force, size);
+}
+
+// A ball that starts to slip slips along what drives the slip.
+bool HeldSolver::sliding_holds(Body& b) {
+    bool hold = true;
+    if (!b.lifted && b.lift > plan_.gravity) {
+        b.lifted = true;
+        hold = false;
+    }
+    const Vec2 slip = b.push - 2.5 * b.couple;
+    const double size = length(slip);
+    return (!b.starts || size == 0.0 || turn_to(b, slip, size)) && hold;
+}
+
+bool HeldSolver::turn_to(Body& b, const Vec2& drive, double size) {
+    if (dot(b.direction, drive) > 0.0 && std::abs(cross(b.direction, drive)) <= kHoldRounding * size) return true;
+    if (b.changes >= kModeChanges) return true;
+    ++b.changes;
+    b.direction = drive / size;
+    return false;
+}
+
+// Whether every ball can do what its mode says; where not, the mode or the direction changes, a bounded number
+// of times: a ball that finds no consistent mode rests, or keeps its direction.
+bool HeldSolver::modes_hold() {
+    bool hold = true;
+    for (Body& b : bodies_) {
+        const bool holds = b.mode == Mode::kResting   ? resting_holds(b)
+                           : b.mode == Mode::kRolling ? rolling_holds(b)
+                                                      : sliding_holds(b);
+        hold = hold && holds;
+    }
+    return hold;
+}
+
+// The contacts' share of the gap's acceleration that does not come from accelerations: |r|'' has v_t^2 / |r|
+// from the turning normal; its own rate, 3 v_t a_t / |r|, must not close the gap within the interval.
+void HeldSolver::curve(double interval) {
+    for (std::size_t c = 0; c < links_.size(); ++c) {
+        Link& link = links_[c];
+        Vec2 t;
+        const double distance = across(c, t);
+        link.curving = distance > 0.0 ? t.x() * t.x() / distance : 0.0;
+        link.margin = distance > 0.0 && interval > 0.0
+                          ? 1.5 * interval * std::abs(t.x() * t.y()) / distance +
+                                interval * interval * t.y() * t.y() / distance
+                          : 0.0;
+    }
+}
+
+void HeldSolver::solve_forces(double interval) {
+    curve(interval);
+    for (Body& b : bodies_) {
+        b.changes = 0;
+        b.lifted = false;
+    }
+    // First balls at rest give way a little, which shows what they need of the forces between them and of
+    // cushions to stay; then not at all.
+    give_ = kRestGives;
+    const std::size_t most = static_cast<std::size_t>(kModeChanges + 2) * bodies_.size() + 2;
+    for (std::size_t tries = 0; tries < most; ++tries) {
+        solve_contacts();
+        if (modes_hold()) break;
+    }
+    give_ = 0.0;
+    const bool any_rests = std::any_of(bodies_.begin(), bodies_.end(),
+                                       [](const Body& b) { return b.mode == Mode::kResting; });
+    if (any_rests) solve_contacts();
+}
+
+}  // namespace carom

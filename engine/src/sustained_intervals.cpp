@@ -1,0 +1,180 @@
+// Intervals of a held group: how long its forces stay what they are, and the segments of its members.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "carom/engine/tolerances.h"
+#include "roots.h"
+#include "sustained_solver.h"
+
+namespace carom {
+
+namespace {
+
+// Longest time up to kHoldLongest at which `error` is at most `allowed`, in steps of a fifth.
+template <class Error>
+double longest(double allowed, const Error& error) {
+    double h = kHoldLongest;
+    while (h > kHoldShortest && error(h) > allowed) h *= 0.8;
+    return h;
+}
+
+}  // namespace
+
+// Relative motion across the normal, and the distance over which the normal turns (0: a straight cushion).
+double HeldSolver::across(std::size_t c, Vec2& velocity_across) const {
+    const HeldContact& contact = group_.contacts[c];
+    const Link& link = links_[c];
+    const Vec2 t(link.n.y(), -link.n.x());
+    const Vec2 other = link.j >= 0 ? velocity(link.j) : Vec2::Zero();
+    const Vec2 other_a = link.j >= 0 ? body(link.j).a : Vec2::Zero();
+    velocity_across = Vec2(dot(other - velocity(link.i), t), dot(other_a - body(link.i).a, t));
+    if (contact.cushion >= 0) return 0.0;
+    return contact.j >= 0 ? 2.0 * motion_.R
+                          : motion_.R + plan_.noses[static_cast<std::size_t>(contact.nose)].radius;
+}
+
+// How long normals may be taken as they are; kNever if none turns.
+double HeldSolver::turning_interval() const {
+    double interval = kNever;
+    for (std::size_t c = 0; c < links_.size(); ++c) {
+        const Link& link = links_[c];
+        if (link.open) continue;
+        Vec2 t;
+        const double distance = across(c, t);
+        if (distance == 0.0) continue;
+        const double speeds = length(velocity(link.i)) + (link.j >= 0 ? length(velocity(link.j)) : 0.0);
+        const double pulls = length(body(link.i).a) + (link.j >= 0 ? length(body(link.j).a) : 0.0);
+        if (std::abs(t.x()) <= kHoldStraight * speeds && std::abs(t.y()) <= kHoldStraight * pulls) continue;
+        const double v = std::abs(t.x()), a = std::abs(t.y());
+        interval = std::min(interval, longest(kHoldTurn, [&](double h) { return h * (v + 0.5 * h * a) / distance; }));
+        interval =
+            std::min(interval, longest(kHoldGap, [&](double h) { return 0.5 * h * h * h * a * (v + h * a) / distance; }));
+    }
+    return interval;
+}
+
+// What gives a member's friction its direction, and its rate of change.
+Vec2 HeldSolver::slip_or_velocity(std::size_t k, Vec2& rate) const {
+    const HeldBall& ball = group_.balls[k];
+    const Segment& s = ball.segment;
+    if (bodies_[k].mode == Mode::kSliding) {
+        rate = Vec2(s.a.x() - motion_.R * s.dw.y(), s.a.y() + motion_.R * s.dw.x());
+        return cloth_slip(ball.v, ball.w, motion_.R);
+    }
+    rate = s.a;
+    return planar(ball.v);
+}
+
+bool HeldSolver::take_middle_directions() {
+    bool turned = false;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        Body& b = bodies_[k];
+        const double duration = group_.balls[k].segment.duration;
+        if (b.mode == Mode::kResting || !(duration < kNever)) continue;
+        Vec2 dx;
+        const Vec2 x = slip_or_velocity(k, dx);
+        if (std::abs(cross(x, dx)) <= kHoldStraight * length(x) * length(dx)) continue;
+        const Vec2 middle = x + 0.5 * duration * dx;
+        const double size = length(middle);
+        // Near its end the direction may turn over: then the one at the start stays.
+        if (!(size > 0.0) || middle.dot(x) <= 0.0) continue;
+        b.direction = middle / size;
+        turned = true;
+    }
+    return turned;
+}
+
+// Time until a member's slip or velocity is gone or turns too far; `gone` says which. Friction of strength S
+// along a direction that turns at the rate w, taken at the middle of h, errs by S w h^3 / 12 in the place.
+double HeldSolver::time_of(std::size_t k, bool& gone) const {
+    gone = false;
+    Vec2 dx;
+    const Vec2 x = slip_or_velocity(k, dx);
+    const double size = length(x), rate = length(dx);
+    if (size == 0.0 || rate == 0.0) return kNever;
+    const double toward = -dot(x, dx) / rate, turning = std::abs(cross(x, dx));
+    if (turning <= kHoldStraight * size * rate) {
+        gone = toward > 0.0;
+        return gone ? size / rate : kNever;
+    }
+    const double strength = bodies_[k].mode == Mode::kSliding ? motion_.slide : motion_.roll;
+    const double w = turning / (size * size);
+    const double accurate = longest(kHoldError, [&](double h) { return strength * w * h * h * h / 12.0; });
+    const double limit = std::max(kHoldShortest, std::min(accurate, 0.25 * size / rate));
+    const double nearest = toward / rate;
+    gone = nearest > 0.0 && nearest <= limit;
+    return gone ? nearest : limit;
+}
+
+Vec2 HeldSolver::spin_rate(std::size_t k) const {
+    const Body& b = bodies_[k];
+    const double R = motion_.R;
+    if (b.mode == Mode::kRolling) return {-b.a.y() / R, b.a.x() / R};
+    if (b.mode == Mode::kResting) return Vec2::Zero();
+    const double turn = 2.5 * motion_.slide * load(b) / R;
+    // T / I with (T x z) / R = couple: T = R z x couple.
+    return {-turn * b.direction.y() - 2.5 * b.couple.y() / R,
+            turn * b.direction.x() + 2.5 * b.couple.x() / R};
+}
+
+// The vertical friction keeps its direction until the slip s_z changes sign.
+double HeldSolver::friction_flip(const Link& link) const {
+    if (link.friction_z == 0.0 || link.N == 0.0) return kNever;
+    const Segment &si = group_.balls[static_cast<std::size_t>(link.i)].segment,
+                  &sj = group_.balls[static_cast<std::size_t>(link.j)].segment;
+    const Vec2 t(link.n.y(), -link.n.x());
+    const double s_z = dot(planar(si.w) + planar(sj.w), t), rate = dot(si.dw + sj.dw, t);
+    if (!(s_z * rate < 0.0)) return kNever;
+    return std::max(kHoldShortest, -s_z / rate);
+}
+
+// A contact that is about to open is let go when its rate can be told from rounding.
+double HeldSolver::opening_interval(const Link& link) const {
+    if (link.open || link.pressed || link.N > 0.0) return kNever;
+    const double opening = gap_acceleration(link);
+    if (!(opening > kHoldOpening * motion_.slide)) return kNever;
+    const double tick = 8.0 * std::numeric_limits<double>::epsilon() * now_;
+    return std::max(4.0 * noise_ / opening, tick);
+}
+
+void HeldSolver::write_segments() {
+    double interval = turning_interval();
+    std::vector<double> ends(bodies_.size(), kNever);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        const Body& b = bodies_[k];
+        HeldBall& ball = group_.balls[k];
+        Segment& s = ball.segment;
+        s = start_segment(now_, ball.r, ball.v, ball.w, motion_);
+        s.held = true;
+        s.a = b.a;
+        s.dw = spin_rate(k);
+        bool gone = false;
+        double time = kNever;
+        if (b.mode == Mode::kSliding || b.mode == Mode::kRolling) {
+            s.state = b.mode == Mode::kSliding ? MotionState::kSliding : MotionState::kRolling;
+            time = time_of(k, gone);
+        } else if (s.state == MotionState::kSpinning) {
+            time = s.duration;
+            gone = true;
+        }
+        interval = std::min(interval, time);
+        if (gone) ends[k] = time;
+    }
+    for (std::size_t c = 0; c < links_.size(); ++c) {
+        const HeldContact& contact = group_.contacts[c];
+        const Link& link = links_[c];
+        if (contact.cushion >= 0)
+            interval =
+                std::min(interval, time_to_line_end(plan_.cushions[static_cast<std::size_t>(contact.cushion)],
+                                                    group_.balls[static_cast<std::size_t>(link.i)].segment));
+        if (link.j >= 0) interval = std::min(interval, friction_flip(link));
+        interval = std::min(interval, opening_interval(link));
+    }
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        group_.balls[k].segment.duration = interval;
+        group_.balls[k].segment.ends = ends[k] <= interval;
+    }
+}
+
+}  // namespace carom

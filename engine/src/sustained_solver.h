@@ -1,0 +1,111 @@
+// One solution of one held group (sustained.h): capture, forces, intervals. Split over sustained.cpp (the order
+// of steps), sustained_capture.cpp, sustained_forces.cpp and sustained_intervals.cpp.
+#pragma once
+
+#include <vector>
+
+#include "sustained.h"
+
+namespace carom {
+
+class HeldSolver {
+  public:
+    HeldSolver(HeldGroup& group, const Plan& plan, const MotionParams& motion, double now);
+    void run();
+
+  private:
+    enum class Mode : unsigned char { kSliding, kRolling, kResting };
+
+    // A member with what the equations need. All forces are per mass.
+    struct Body {
+        Mode mode = Mode::kResting;
+        Vec2 direction =
+            Vec2::Zero();  // sliding: of the slip; rolling: of the velocity, or of the push that starts it
+        bool starts = false;         // direction is that of the forces: there is no slip, or no velocity, yet
+        bool lifted = false;         // its contacts carry its whole weight: no friction from the cloth
+        int changes = 0;             // of mode, in one solution
+        Vec2 push = Vec2::Zero();    // sum of contact forces
+        Vec2 couple = Vec2::Zero();  // (T x z) / R of the contact torques
+        double lift = 0.0;           // vertical contact force
+        Vec2 a = Vec2::Zero();       // acceleration
+        double mobility() const {
+            return mode == Mode::kSliding ? 1.0 : (mode == Mode::kRolling ? 5.0 / 7.0 : 0.0);
+        }
+    };
+
+    // A contact as the solver sees it; i, j index the bodies.
+    struct Link {
+        int i, j;
+        Vec2 n;
+        double friction_z = 0.0;  // f_z / N, on ball i
+        double curving = 0.0;     // what turning normals add to the acceleration of the gap
+        double margin = 0.0;      // what they may take away again within the interval
+        double diagonal = 0.0;
+        double N = 0.0;
+        bool open = false;     // the gap is opening by more than rounding
+        bool pressed = false;  // by the forces at the start of the interval
+    };
+
+    // sustained.cpp
+    void make_bodies();
+    void settle();
+    void make_links();
+    void mark_released();
+    Vec2 velocity(int body) const;
+    double gap_rate(const Link& link) const;
+    Body& body(int index) { return bodies_[static_cast<std::size_t>(index)]; }
+    const Body& body(int index) const { return bodies_[static_cast<std::size_t>(index)]; }
+
+    // sustained_capture.cpp
+    void capture();
+    bool project(const std::vector<char>& sticky);
+    std::vector<char> sticky_contacts() const;
+    void kick(int body, const Vec2& dv);
+
+    // sustained_forces.cpp
+    void make_directions();
+    void solve_forces(double interval);
+    void curve(double interval);
+    bool solve_contacts();
+    bool solve_contacts_once(bool friction, bool margins);
+    Vec2 response(const Link& link, int body, bool friction) const;
+    void accelerate();
+    void sum_forces();
+    bool modes_hold();
+    bool resting_holds(Body& body);
+    bool rolling_holds(Body& body);
+    bool sliding_holds(Body& body);
+    bool change_mode(Body& body, Mode mode);
+    bool turn_to(Body& body, const Vec2& drive, double size);
+    double load(const Body& body) const;
+    double gap_acceleration(const Link& link) const;
+
+    // sustained_intervals.cpp
+    double across(std::size_t link, Vec2& velocity_across) const;
+    double turning_interval() const;
+    bool take_middle_directions();
+    Vec2 slip_or_velocity(std::size_t body, Vec2& rate) const;
+    double time_of(std::size_t body, bool& gone) const;
+    double friction_flip(const Link& link) const;
+    double opening_interval(const Link& link) const;
+    Vec2 spin_rate(std::size_t body) const;
+    void write_segments();
+
+    HeldGroup& group_;
+    const Plan& plan_;
+    const MotionParams& motion_;
+    double now_;
+    std::vector<Body> bodies_;
+    std::vector<Link> links_;
+    double give_ = 0.0;   // mobility of balls at rest
+    double noise_ = 0.0;  // m/s: what rounding makes of the group's speeds in a few sums of eight
+};
+
+inline double dot(const Vec2& a, const Vec2& b) {
+    return a.x() * b.x() + a.y() * b.y();
+}
+inline Vec2 planar(const Vec3& a) {
+    return {a.x(), a.y()};
+}
+
+}  // namespace carom
