@@ -27,14 +27,16 @@ void HeldSolver::run() {
     for (Link& link : links_) link.pressed = link.N > 0.0;
     // The normal turns while the balls move across each other; a margin keeps the third order from
     // penetrating.
-    double interval = turning_interval();
-    if (interval < kNever) solve_forces(interval);
-    write_segments();
-    // Directions that turn are taken at the middle of the interval: second order.
-    if (take_middle_directions()) {
-        interval = turning_interval();
-        solve_forces(interval < kNever ? interval : 0.0);
-        write_segments();
+    const double turning = turning_interval();
+    if (turning < kNever) solve_forces(turning);
+    const double interval = write_segments(kNever);
+    // Directions that turn are taken at the middle of the interval: second order. The interval may grow by
+    // that, but not beyond what the margin is made for.
+    const bool turned = take_middle_directions();
+    if (turned || (turning < kNever && interval < 0.5 * turning)) {
+        const double longest = std::min(1.25 * interval, turning_interval());
+        solve_forces(longest < kNever ? longest : 0.0);
+        write_segments(longest);
     }
     mark_released();
     if (getenv("DBG")) { printf("solve t %.17g noise %g\n", now_, noise_);

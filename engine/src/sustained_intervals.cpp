@@ -138,8 +138,9 @@ double HeldSolver::opening_interval(const Link& link) const {
     return std::max(4.0 * noise_ / opening, tick);
 }
 
-void HeldSolver::write_segments() {
-    double interval = turning_interval();
+// @return how long they last, at most `longest`
+double HeldSolver::write_segments(double longest) {
+    double interval = std::min(longest, turning_interval());
     std::vector<double> ends(bodies_.size(), kNever);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         const Body& b = bodies_[k];
@@ -175,6 +176,7 @@ void HeldSolver::write_segments() {
         group_.balls[k].segment.duration = interval;
         group_.balls[k].segment.ends = ends[k] <= interval;
     }
+    return interval;
 }
 
 }  // namespace carom

@@ -89,7 +89,7 @@ class HeldSolver {
     double friction_flip(const Link& link) const;
     double opening_interval(const Link& link) const;
     Vec2 spin_rate(std::size_t body) const;
-    void write_segments();
+    double write_segments(double longest);
 
     HeldGroup& group_;
     const Plan& plan_;
