@@ -24,6 +24,7 @@ void HeldSolver::run() {
     capture();
     make_directions();
     solve_forces(0.0);
+    if (hold_returning()) solve_forces(0.0);
     for (Link& link : links_) link.pressed = link.N > 0.0;
     // The normal turns while the balls move across each other; a margin keeps the third order from
     // penetrating.

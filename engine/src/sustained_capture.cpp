@@ -18,6 +18,7 @@ void HeldSolver::capture() {
     settle();
     for (Link& link : links_) {
         link.open = gap_rate(link) > noise_;
+        link.returning = 0.0;
         link.N = 0.0;
     }
 }

@@ -72,7 +72,7 @@ void HeldSolver::sum_forces() {
 // Acceleration of the gap with the present forces.
 double HeldSolver::gap_acceleration(const Link& link) const {
     const Vec2 other = link.j >= 0 ? body(link.j).a : Vec2::Zero();
-    return dot(link.n, other - body(link.i).a) + link.curving;
+    return dot(link.n, other - body(link.i).a) + link.curving + link.returning;
 }
 
 // Acceleration of a body by a force of 1 in the contact.
@@ -232,6 +232,21 @@ void HeldSolver::curve(double interval) {
                                 interval * interval * t.y() * t.y() / distance
                           : 0.0;
     }
+}
+
+// A contact that opens, but is pressed together so that it would be closed again within the shortest interval,
+// does not end: its rate goes within that interval instead.
+bool HeldSolver::hold_returning() {
+    bool any = false;
+    for (Link& link : links_) {
+        if (!link.open) continue;
+        const double rate = gap_rate(link);
+        if (!(rate < -gap_acceleration(link) * kHoldShortest)) continue;
+        link.open = false;
+        link.returning = rate / kHoldShortest;
+        any = true;
+    }
+    return any;
 }
 
 void HeldSolver::solve_forces(double interval) {

@@ -135,7 +135,7 @@ double HeldSolver::opening_interval(const Link& link) const {
     const double opening = gap_acceleration(link);
     if (!(opening > kHoldOpening * motion_.slide)) return kNever;
     const double tick = 8.0 * std::numeric_limits<double>::epsilon() * now_;
-    return std::max(4.0 * noise_ / opening, tick);
+    return std::max((4.0 * noise_ + std::max(0.0, -gap_rate(link))) / opening, tick);
 }
 
 // @return how long they last, at most `longest`
@@ -171,6 +171,7 @@ double HeldSolver::write_segments(double longest) {
                                                     group_.balls[static_cast<std::size_t>(link.i)].segment));
         if (link.j >= 0) interval = std::min(interval, friction_flip(link));
         interval = std::min(interval, opening_interval(link));
+        if (link.returning > 0.0) interval = std::min(interval, kHoldShortest);
     }
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         group_.balls[k].segment.duration = interval;

@@ -40,6 +40,7 @@ class HeldSolver {
         double friction_z = 0.0;  // f_z / N, on ball i
         double curving = 0.0;     // what turning normals add to the acceleration of the gap
         double margin = 0.0;      // what they may take away again within the interval
+        double returning = 0.0;   // opening rate / h of a contact that would be closed again within h
         double diagonal = 0.0;
         double N = 0.0;
         bool open = false;     // the gap is opening by more than rounding
@@ -66,6 +67,7 @@ class HeldSolver {
     void make_directions();
     void solve_forces(double interval);
     void curve(double interval);
+    bool hold_returning();
     bool solve_contacts();
     bool solve_contacts_once(bool friction, bool margins);
     Vec2 response(const Link& link, int body, bool friction) const;
