@@ -28,9 +28,9 @@ std::vector<char> HeldSolver::sticky_contacts() const {
     for (std::size_t c = 0; c < links_.size(); ++c) {
         const Link& link = links_[c];
         const double rate = gap_rate(link);
-        if (!(link.N > 0.0) || !(rate > 0.0)) continue;
+        if (!(link.N > 0.0)) continue;
         const double restitution = link.j >= 0 ? plan_.balls.e_b : plan_.balls.e_c;
-        sticky[c] = holds(rate, link.N * link.diagonal, restitution);
+        sticky[c] = rate <= 0.0 || holds(rate, link.N * link.diagonal, restitution);
     }
     return sticky;
 }
