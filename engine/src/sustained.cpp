@@ -70,16 +70,20 @@ void HeldSolver::make_bodies() {
     settle();
 }
 
-// A rolling ball whose velocity is the rounding of its group's has stopped: the direction of such a velocity
-// means nothing, and rolling friction along it would drive the ball.
-void HeldSolver::settle() {
+// A rolling ball that friction stops at once has stopped: the direction of such a velocity, often the rounding of
+// its group's, means nothing, and rolling friction along it would drive the ball.
+bool HeldSolver::settle() {
+    const double slowest = std::max(noise_, kHoldRest * motion_.roll);
+    bool any = false;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         HeldBall& ball = group_.balls[k];
-        if (bodies_[k].mode != Mode::kRolling || length(planar(ball.v)) > noise_) continue;
+        if (bodies_[k].mode != Mode::kRolling || length(planar(ball.v)) > slowest) continue;
+        any = any || length(planar(ball.v)) > 0.0;
         bodies_[k].mode = Mode::kResting;
         ball.v = Vec3::Zero();
         ball.w.x() = ball.w.y() = 0.0;
     }
+    return any;
 }
 
 void HeldSolver::make_links() {
@@ -137,8 +141,8 @@ bool holds(double v_n, double a_c, double restitution) {
 
 double held_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
     const double speed = length(planar(v)), spin = length(Vec2(length(planar(w)), w.z()));
-    return std::max(kHoldRest * motion.roll, 8.0 * kClosingUlp * std::numeric_limits<double>::epsilon() *
-                                                 (speed + motion.R * spin));
+    return std::max(kHoldNoise * motion.roll, 8.0 * kClosingUlp * std::numeric_limits<double>::epsilon() *
+                                                  (speed + motion.R * spin));
 }
 
 void solve_held(HeldGroup& group, const Plan& plan, const MotionParams& motion, double now) {

@@ -15,7 +15,8 @@ void HeldSolver::capture() {
     const std::vector<char> sticky = sticky_contacts();
     const bool any = std::any_of(sticky.begin(), sticky.end(), [](char s) { return s != 0; });
     if (!any || !project(sticky)) project(std::vector<char>(links_.size(), 0));
-    settle();
+    // What stops now is a wall to the others.
+    if (settle()) project(std::vector<char>(links_.size(), 0));
     for (Link& link : links_) {
         link.open = gap_rate(link) > noise_;
         link.returning = 0.0;

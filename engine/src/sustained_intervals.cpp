@@ -134,8 +134,7 @@ double HeldSolver::opening_interval(const Link& link) const {
     if (link.open || link.pressed || link.N > 0.0) return kNever;
     const double opening = gap_acceleration(link);
     if (!(opening > kHoldOpening * motion_.slide)) return kNever;
-    const double tick = 8.0 * std::numeric_limits<double>::epsilon() * now_;
-    return std::max((4.0 * noise_ + std::max(0.0, -gap_rate(link))) / opening, tick);
+    return (4.0 * noise_ + std::max(0.0, -gap_rate(link))) / opening;
 }
 
 // @return how long they last, at most `longest`
@@ -173,6 +172,7 @@ double HeldSolver::write_segments(double longest) {
         interval = std::min(interval, opening_interval(link));
         if (link.returning > 0.0) interval = std::min(interval, kHoldShortest);
     }
+    interval = std::max(interval, kHoldTicks * std::numeric_limits<double>::epsilon() * now_);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         group_.balls[k].segment.duration = interval;
         group_.balls[k].segment.ends = ends[k] <= interval;

@@ -49,7 +49,7 @@ class HeldSolver {
 
     // sustained.cpp
     void make_bodies();
-    void settle();
+    bool settle();
     void make_links();
     void mark_released();
     Vec2 velocity(int body) const;

@@ -88,9 +88,12 @@ inline constexpr double kStickyShare = 10.0;
 inline constexpr double kRestGives = 1e-4;
 /// [-] Times that a ball may change between rest, rolling and sliding in one solution.
 inline constexpr int kModeChanges = 8;
-/// [s] A held ball that its own rolling friction would stop within this time rests: it would stop again and
-/// again.
-inline constexpr double kHoldRest = 1e-12;
+/// [s] A held ball that its own rolling friction would stop within this time rests, or it would stop again and
+/// again; a speed that it would stop within the second counts as none at all.
+inline constexpr double kHoldRest = 1e-8;
+inline constexpr double kHoldNoise = 1e-12;
+/// [ulp of the time] No interval is shorter: the clock has to go on.
+inline constexpr double kHoldTicks = 8.0;
 /// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the
 /// straight line.
 inline constexpr double kHoldStraight = 1e-9;
