@@ -103,7 +103,7 @@ double HeldSolver::time_of(std::size_t k, bool& gone) const {
     const double accurate = longest(kHoldError, [&](double h) { return strength * w * h * h * h / 12.0; });
     const double limit = std::max(kHoldShortest, std::min(accurate, 0.25 * size / rate));
     const double nearest = toward / rate;
-    gone = nearest > 0.0 && nearest <= limit;
+    gone = nearest > 0.0 && nearest <= limit && turning <= kHoldEnds * size * rate;
     return gone ? nearest : limit;
 }
 
@@ -134,7 +134,9 @@ double HeldSolver::opening_interval(const Link& link) const {
     if (link.open || link.pressed || link.N > 0.0) return kNever;
     const double opening = gap_acceleration(link);
     if (!(opening > kHoldOpening * motion_.slide)) return kNever;
-    return (4.0 * noise_ + std::max(0.0, -gap_rate(link))) / opening;
+    // A ball that starts has to get beyond what settle() takes for rest.
+    const double clear = 4.0 * std::max(noise_, kHoldRest * motion_.roll);
+    return (clear + std::max(0.0, -gap_rate(link))) / opening;
 }
 
 // @return how long they last, at most `longest`

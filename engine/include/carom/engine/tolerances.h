@@ -94,6 +94,9 @@ inline constexpr double kHoldRest = 1e-8;
 inline constexpr double kHoldNoise = 1e-12;
 /// [ulp of the time] No interval is shorter: the clock has to go on.
 inline constexpr double kHoldTicks = 8.0;
+/// [-] A slip or velocity that turns ends where it is nearest to nothing, if it comes as near as this share of
+/// itself; else it only turns.
+inline constexpr double kHoldEnds = 0.5;
 /// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the
 /// straight line.
 inline constexpr double kHoldStraight = 1e-9;
