@@ -32,9 +32,10 @@ void HeldSolver::run() {
     if (turning < kNever) solve_forces(turning);
     const double interval = write_segments(kNever);
     // Directions that turn are taken at the middle of the interval: second order. The interval may grow by
-    // that, but not beyond what the margin is made for.
+    // that, but not beyond what the margin is made for. What rounding has pressed into each other is led out.
     const bool turned = take_middle_directions();
-    if (turned || (turning < kNever && interval < 0.5 * turning)) {
+    const bool deep = interval < kNever && any_deep();
+    if (turned || deep || (turning < kNever && interval < 0.5 * turning)) {
         const double longest = std::min(1.25 * interval, turning_interval());
         solve_forces(longest < kNever ? longest : 0.0);
         write_segments(longest);
@@ -97,8 +98,26 @@ void HeldSolver::make_links() {
         link.i = body_of(c.i);
         link.j = c.j >= 0 ? body_of(c.j) : -1;
         link.n = c.n;
+        link.depth = std::max(0.0, overlap(c, link));
         links_.push_back(link);
     }
+}
+
+double HeldSolver::overlap(const HeldContact& c, const Link& link) const {
+    const Vec2 here = planar(group_.balls[static_cast<std::size_t>(link.i)].r);
+    if (link.j >= 0)
+        return 2.0 * motion_.R - length(planar(group_.balls[static_cast<std::size_t>(link.j)].r) - here);
+    if (c.cushion >= 0) {
+        const CushionLine& line = plan_.cushions[static_cast<std::size_t>(c.cushion)];
+        return motion_.R - std::abs(cross(line.direction, here - line.from));
+    }
+    const Nose& nose = plan_.noses[static_cast<std::size_t>(c.nose)];
+    return motion_.R + nose.radius - length(nose.center - here);
+}
+
+bool HeldSolver::any_deep() const {
+    return std::any_of(links_.begin(), links_.end(),
+                       [](const Link& l) { return !l.open && l.depth > kHoldDepth; });
 }
 
 // A contact ends once its gap opens by more than rounding: never at the same instant as it began, so that no

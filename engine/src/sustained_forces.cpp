@@ -227,10 +227,13 @@ void HeldSolver::curve(double interval) {
         Vec2 t;
         const double distance = across(c, t);
         link.curving = distance > 0.0 ? t.x() * t.x() / distance : 0.0;
-        link.margin = distance > 0.0 && interval > 0.0
-                          ? 1.5 * interval * std::abs(t.x() * t.y()) / distance +
-                                interval * interval * t.y() * t.y() / distance
-                          : 0.0;
+        link.margin = 0.0;
+        if (!(interval > 0.0)) continue;
+        if (distance > 0.0)
+            link.margin = (1.5 * interval * std::abs(t.x() * t.y()) + interval * interval * t.y() * t.y()) /
+                          distance;
+        const double h = std::max(interval, kHoldLeadOut);
+        if (link.depth > kHoldDepth) link.margin += 2.0 * link.depth / (h * h);
     }
 }
 

@@ -39,7 +39,8 @@ class HeldSolver {
         Vec2 n;
         double friction_z = 0.0;  // f_z / N, on ball i
         double curving = 0.0;     // what turning normals add to the acceleration of the gap
-        double margin = 0.0;      // what they may take away again within the interval
+        double depth = 0.0;       // m, by which the bodies overlap
+        double margin = 0.0;      // what the gap needs besides to end the interval at 0 or above
         double returning = 0.0;   // opening rate / h of a contact that would be closed again within h
         double diagonal = 0.0;
         double N = 0.0;
@@ -51,6 +52,8 @@ class HeldSolver {
     void make_bodies();
     bool settle();
     void make_links();
+    double overlap(const HeldContact& contact, const Link& link) const;
+    bool any_deep() const;
     void mark_released();
     Vec2 velocity(int body) const;
     double gap_rate(const Link& link) const;

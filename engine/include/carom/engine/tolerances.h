@@ -72,6 +72,10 @@ inline constexpr double kHoldError = 2e-8;
 /// [rad] and [m] How far a normal may turn within one, and what gap its turning may leave.
 inline constexpr double kHoldTurn = 0.03;
 inline constexpr double kHoldGap = 1e-8;
+/// [m] and [s] An overlap deeper than this is led out within the interval, but in no less time than this: what
+/// rounding adds up in a long push would come near to 1e-12 m.
+inline constexpr double kHoldDepth = 2e-14;
+inline constexpr double kHoldLeadOut = 1e-3;
 /// [of the sliding acceleration] A gap that opens by less does not open: the rounding of the forces.
 inline constexpr double kHoldOpening = 1e-10;
 /// [-] Rounding of the forces, relative.
