@@ -69,6 +69,9 @@ class HeldSolver {
     // sustained_forces.cpp
     void make_directions();
     void solve_forces(double interval);
+    void solve_forces_once(double interval);
+    static double margin_for(const Link& link, const Vec2& across, double distance, double interval);
+    bool margin_falls_short(double interval) const;
     void curve(double interval);
     bool hold_returning();
     bool solve_contacts();
