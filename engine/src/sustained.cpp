@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 
 #include "carom/engine/tolerances.h"
@@ -41,10 +39,6 @@ void HeldSolver::run() {
         write_segments(longest);
     }
     mark_released();
-    if (getenv("DBG")) { printf("solve t %.17g noise %g\n", now_, noise_);
-      for (size_t k=0;k<bodies_.size();++k){auto&b=bodies_[k];auto&h=group_.balls[k];printf("  ball %d mode %d starts %d ch %d lifted %d v %.6g %.6g w %.6g %.6g %.6g a %.6g %.6g dir %.6g %.6g push %.6g %.6g dur %.6g ends %d\n",h.ball,(int)b.mode,b.starts,b.changes,b.lifted,h.v.x(),h.v.y(),h.w.x(),h.w.y(),h.w.z(),b.a.x(),b.a.y(),b.direction.x(),b.direction.y(),b.push.x(),b.push.y(),h.segment.duration,h.segment.ends);}
-      for (size_t c=0;c<links_.size();++c){auto&l=links_[c];auto&h=group_.contacts[c];printf("  link %d-%d cu %d nose %d n %.9g %.9g N %.6g rate %.6g gacc %.6g open %d margin %.3g curv %.3g fz %.3g\n",h.i,h.j,h.cushion,h.nose,l.n.x(),l.n.y(),l.N,gap_rate(l),gap_acceleration(l),l.open,l.margin,l.curving,l.friction_z);}
-    }
 }
 
 Vec2 HeldSolver::velocity(int index) const {

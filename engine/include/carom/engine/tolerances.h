@@ -86,7 +86,7 @@ inline constexpr double kContactSoftness = 1e-12;
 /// [of what drives a group] Forces beyond this have no answer: what asks for them is left out. The second: a
 /// wedge that has no room for margins.
 inline constexpr double kLargestHold = 1e6;
-inline constexpr double kLargestLeadOut = 100.0;
+inline constexpr double kLargestLeadOut = 1e4;
 /// [-] A held contact that opens at some rate is closed only if no ball changes by more than this many times
 /// the rate.
 inline constexpr double kStickyShare = 10.0;
