@@ -7,13 +7,34 @@ target_compile_features(carom_flags INTERFACE cxx_std_20)
 target_compile_options(carom_flags INTERFACE
   -ffp-contract=off
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
-if(CAROM_SANITIZE)
-  target_compile_options(carom_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
-  target_link_options(carom_flags INTERFACE -fsanitize=address,undefined)
+if(CAROM_SANITIZE STREQUAL "address")
+  set(carom_sanitizers address,undefined)
+elseif(CAROM_SANITIZE STREQUAL "thread")
+  set(carom_sanitizers thread)
+elseif(CAROM_SANITIZE STREQUAL "fuzz")
+  set(carom_sanitizers fuzzer-no-link,address,undefined)
+elseif(CAROM_SANITIZE)
+  message(FATAL_ERROR "CAROM_SANITIZE=${CAROM_SANITIZE}: expected OFF, address, thread or fuzz")
+endif()
+if(carom_sanitizers)
+  target_compile_options(carom_flags INTERFACE
+    -fsanitize=${carom_sanitizers} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(carom_flags INTERFACE -fsanitize=${carom_sanitizers})
+  # For tests of what a sanitizer changes: memory, mostly.
+  target_compile_definitions(carom_flags INTERFACE CAROM_SANITIZED)
 endif()
 
 # Compiles SOURCE for one x86-64 level. Such files include no Eigen and no std templates with code: a weak symbol
 # built for the higher level could win at link time and crash an older machine.
 function(carom_compile_for_level source level)
   set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-march=x86-64-${level}")
+endfunction()
+
+# What every library of the project is: hidden symbols, so that a program that embeds it shows none of ours, and headers
+# that are installed. TARGET carom_NAME has its headers in include/.
+function(carom_library target)
+  set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  if(CAROM_INSTALL)
+    install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  endif()
 endfunction()

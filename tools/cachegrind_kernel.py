@@ -15,7 +15,7 @@ import tempfile
 
 RUNGS = ["baseline", "fewer square roots", "rsqrt newton", "branch hints", "branch order", "unconditional roots", "masks",
          "two stages", "precomputed", "fma", "packed blocks", "simd loop", "simd ssa", "combined", "reduced state", "packed",
-         "carried roots", "summed"]
+         "carried roots", "decoupled roots", "summed"]
 
 
 def cachegrind(program, rung, isa, calls):

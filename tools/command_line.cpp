@@ -1,5 +1,5 @@
 // The program: reads the command line, runs one sub-command, turns what it throws into an exit status.
-// The only file that includes CLI11, which takes seconds to compile.
+// Only this file and describe.cpp include CLI11, which takes seconds to compile.
 #include <CLI/CLI.hpp>
 
 #include <cstdlib>
@@ -8,11 +8,14 @@
 #include <memory>
 #include <new>
 
+#include "accuracy_kernel.h"
+#include "accuracy_scene.h"
 #include "bench_kernel.h"
 #include "carom/engine/scene.h"
 #include "carom/kernel/tolerance.h"
 #include "commands.h"
 #include "console.h"
+#include "describe.h"
 
 namespace carom::tools {
 namespace {
@@ -53,6 +56,12 @@ void add_gl(CLI::App& sub, std::string& gl) {
         ->type_name("NAME")
         ->check(CLI::IsMember({"osmesa", "egl"}))
         ->capture_default_str();
+}
+
+void add_reports(CLI::App& sub, std::string& csv, std::string& plot, bool& json) {
+    sub.add_option("--csv", csv, "Write the table (default: not written)")->type_name("FILE.csv");
+    sub.add_option("--plot", plot, "Draw it (default: not drawn)")->type_name("FILE.svg");
+    sub.add_flag("--json", json, "Print JSON (default: off)");
 }
 
 void add_render(CLI::App& app, Action& action) {
@@ -126,12 +135,47 @@ void add_margin(CLI::App& app, Action& action) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     sub->add_flag("--no-render", args->no_render, "Measure the simulation only (default: off)");
+    sub->add_flag("--sweep", args->sweep,
+                  "Every accuracy at every frame rate from 30 to 1000: where the scene stops being real time "
+                  "(default: off)");
     add_gl(*sub, args->gl);
-    sub->add_option("--csv", args->csv, "Write the costs of every frame (default: not written)")
-        ->type_name("FILE.csv");
-    sub->add_flag("--json", args->json, "Print JSON (default: off)");
-    sub->footer("kernel is a part of simulate. A frame costs simulate + draw + readback + encode.");
+    sub->add_option("--trace", args->trace,
+                    "Write the frames as Chrome trace events, for chrome://tracing or Perfetto (default: not "
+                    "written)")
+        ->type_name("FILE.json");
+    add_reports(*sub, args->csv, args->plot, args->json);
+    sub->footer(
+        "simulate = detect + resolve + kernel + cluster. A frame costs simulate + draw + readback + encode + "
+        "write,\nmeasured one after the other on one thread; frames go to a temporary folder and are "
+        "removed.");
     sub->callback([args, &action] { action = [args] { return run_margin(*args); }; });
+}
+
+void add_sweep(CLI::App& app, Action& action) {
+    auto args = std::make_shared<SweepArgs>();
+    CLI::App* sub =
+        app.add_subcommand("sweep", "Many shots of one scene with values that vary: a row a shot");
+    sub->add_option("SCENE", args->scene, "Scene file (TOML)")->required();
+    sub->add_option("--vary", args->vary,
+                    "What varies and how, once per key: uniform(a,b), normal(sd) around the scene's value, "
+                    "normal(mean,sd), integer(a,b) or list(v,...)")
+        ->type_name("KEY=DISTRIBUTION")
+        ->allow_extra_args(false)
+        ->required();
+    sub->add_option("--count", args->count, "Number of shots")->type_name("N")->required();
+    sub->add_option("--seed", args->seed, "Seed of all draws")->type_name("S")->capture_default_str();
+    sub->add_option("--jobs", args->jobs, "Threads; 0: one per core; the rows do not depend on it")
+        ->type_name("J")
+        ->check(CLI::Range(0, 256))
+        ->capture_default_str();
+    sub->add_option("--shard", args->shard,
+                    "Only the I-th of N parts; the files of all parts, one behind the other, are the whole "
+                    "(default: all)")
+        ->type_name("I/N");
+    sub->add_option("-o,--output", args->output, "Table to write")->type_name("FILE.csv")->required();
+    sub->footer(
+        "A sweep that was stopped or killed goes on when the same command is given again (docs/sweep.md).");
+    sub->callback([args, &action] { action = [args] { return run_sweep(*args); }; });
 }
 
 void add_check(CLI::App& app, Action& action) {
@@ -201,21 +245,105 @@ void add_bench_render(CLI::App& app, Action& action) {
     sub->add_option("SCENE", args->scene, "Scene file (TOML)")->capture_default_str();
     sub->add_option("--frames", args->frames, "Frames at each size, spread over the shot")
         ->type_name("N")
-        ->check(CLI::Range(2, 100000))
+        ->check(CLI::Range(3, 100000))
         ->capture_default_str();
     add_gl(*sub, args->gl);
     sub->add_flag("--json", args->json, "Print JSON (default: off)");
     sub->callback([args, &action] { action = [args] { return run_bench_render(*args); }; });
 }
 
+void add_accuracy_kernel(CLI::App& accuracy, Action& action) {
+    auto args = std::make_shared<AccuracyKernelArgs>();
+    CLI::App* sub = accuracy.add_subcommand(
+        "kernel", "One impact: time and error of the march, of the tolerance kernel, of closed forms");
+    sub->add_option("--count", args->count, "Seeded random impacts")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
+    sub->add_option("--seed", args->seed, "Seed of the random impacts")
+        ->type_name("S")
+        ->capture_default_str();
+    sub->add_option("--repeat", args->repeat, "Interleaved rounds; minimum, median and maximum are over them")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    sub->add_option("--most-substeps", args->most_substeps, "Largest N of the march")
+        ->type_name("N")
+        ->check(CLI::Range(10, 100000))
+        ->capture_default_str();
+    add_reports(*sub, args->csv, args->plot, args->json);
+    sub->footer("Errors are shares of the approach speed, from a solution on which two methods agree.");
+    sub->callback([args, &action] { action = [args] { return run_accuracy_kernel(*args); }; });
+}
+
+void add_accuracy(CLI::App& app, Action& action) {
+    auto args = std::make_shared<AccuracySceneArgs>();
+    CLI::App* sub = app.add_subcommand(
+        "accuracy", "What accuracy costs in time: of a shot (SCENE), or of one impact (kernel)");
+    sub->add_option("SCENE", args->scene, "Scene file (TOML)");
+    sub->add_option("--target", args->target, "Final error allowed, in m: what the recommendation aims at")
+        ->type_name("M")
+        ->capture_default_str();
+    sub->add_option("--march", args->march, "Settings of the march to compare, N")
+        ->type_name("N,...")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(1, 100000000))
+        ->capture_default_str();
+    sub->add_option("--tolerance", args->tolerances, "Tolerances to compare")
+        ->type_name("E,...")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(kernel::kTightestTolerance, kernel::kLoosestTolerance))
+        ->capture_default_str();
+    sub->add_option("--repeat", args->repeat, "Interleaved rounds; minimum, median and maximum are over them")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    sub->add_flag("--box2d", args->box2d,
+                  "Also the same shot in a Box2D world stepped at 60 Hz to 10 kHz (default: off)");
+    add_reports(*sub, args->csv, args->plot, args->json);
+    sub->require_subcommand(0, 1);
+    sub->callback([args, sub, &action] {
+        if (!sub->get_subcommands().empty()) return;
+        action = [args] {
+            if (args->scene.empty())
+                throw UsageError(
+                    "accuracy: a scene file or the word kernel is required; see carom accuracy --help");
+            return run_accuracy_scene(*args);
+        };
+    });
+    add_accuracy_kernel(*sub, action);
+}
+
+void add_describe(CLI::App& app, Action& action) {
+    auto format = std::make_shared<std::string>();
+    CLI::App* sub = app.add_subcommand("describe", "This program as a man page, or as completions for a shell");
+    sub->add_option("FORMAT", *format, "What to print")
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"man", "bash", "zsh"}))
+        ->required();
+    sub->callback([format, &app, &action] {
+        action = [format, &app] {
+            print(*format == "man"    ? man_page(app, CAROM_VERSION)
+                  : *format == "bash" ? bash_completion(app)
+                                      : zsh_completion(app));
+            return kOk;
+        };
+    });
+}
+
 void add_commands(CLI::App& app, Action& action) {
     add_simulate(app, action);
     add_render(app, action);
     add_margin(app, action);
+    add_accuracy(app, action);
+    add_sweep(app, action);
     add_check(app, action);
     add_impact(app, action);
     add_bench(app, action);
     add_bench_render(app, action);
+    add_describe(app, action);
 }
 
 int run(int argc, char** argv) {
@@ -243,7 +371,8 @@ int run(int argc, char** argv) {
     }
     if (!action)
         throw UsageError(
-            "a command is missing: simulate, render, margin, check, impact or bench; see carom --help");
+            "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or describe; see carom "
+            "--help");
     return action();
 }
 
@@ -254,7 +383,7 @@ int guarded(int argc, char** argv) {
         flush_output();
         return status;
     } catch (const Interrupted&) {
-        return kInterrupted;
+        return interrupted_status();
     } catch (const OutputClosed&) {
         return kFailed;
     } catch (const UsageError& error) {

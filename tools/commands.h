@@ -5,8 +5,10 @@
 // command_line.cpp.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace carom::tools {
 
@@ -53,11 +55,23 @@ struct MarginArgs {
     std::string size;
     int repeat = 1;
     bool no_render = false;
+    bool sweep = false;  ///< accuracy x frame rate
     std::string gl = "osmesa";
-    std::string csv;
+    std::string csv, plot, trace;  ///< file names; empty: not asked for
     bool json = false;
 };
 int run_margin(const MarginArgs& args);
+
+struct SweepArgs {
+    std::string scene;
+    std::vector<std::string> vary;  ///< "KEY=DISTRIBUTION"
+    std::uint64_t count = 0;
+    std::uint64_t seed = 1;
+    int jobs = 0;
+    std::string shard;  ///< "2/4"; empty: all
+    std::string output;
+};
+int run_sweep(const SweepArgs& args);
 
 struct CheckArgs {
     std::string scene;

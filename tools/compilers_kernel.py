@@ -9,7 +9,7 @@ import pathlib
 import subprocess
 
 RUNGS = ["baseline", "rsqrt newton", "branch hints", "masks", "precomputed", "fma", "packed blocks", "simd loop", "simd ssa",
-         "combined", "paper flags", "reduced state", "packed", "carried roots", "summed"]
+         "combined", "paper flags", "reduced state", "packed", "carried roots", "decoupled roots", "summed"]
 
 
 def main():

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -17,12 +18,27 @@ namespace {
 /// What is done sooner than this shows no progress: a line that flashes by is noise.
 constexpr std::chrono::milliseconds kPatience(300);
 
-volatile std::sig_atomic_t g_interrupts = 0;
+/// Written by the handler, read by every thread that works.
+std::atomic<int> g_interrupts = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not wait");
+volatile std::sig_atomic_t g_signal = SIGINT;
 
-void on_interrupt(int) {
-    g_interrupts = g_interrupts + 1;
+void on_interrupt(int signal) {
+    g_signal = signal;
+    ++g_interrupts;
     // Whoever presses Ctrl-C a third time wants out now, whatever it leaves behind.
-    if (g_interrupts >= 3) ::_exit(kInterrupted);
+    if (g_interrupts >= 3) ::_exit(128 + signal);
+}
+
+void catch_interrupt(int signal) {
+    // A shell starts background jobs with SIGINT ignored: so it stays.
+    struct sigaction before {};
+    ::sigaction(signal, nullptr, &before);
+    if (before.sa_handler == SIG_IGN) return;
+    // No SA_RESTART: a read that waits for input must return.
+    struct sigaction action {};
+    action.sa_handler = on_interrupt;
+    ::sigaction(signal, &action, nullptr);
 }
 
 [[noreturn]] void output_failed() {
@@ -41,14 +57,9 @@ void prepare_process() {
         if (::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY) < 0) ::_exit(kFailed);
     }
     std::signal(SIGPIPE, SIG_IGN);  // a closed pipe shows as a failed write
-    // No SA_RESTART: a read that waits for input must return. A shell starts background jobs with SIGINT
-    // ignored: so it stays.
-    struct sigaction action {};
-    struct sigaction before {};
-    ::sigaction(SIGINT, nullptr, &before);
-    if (before.sa_handler == SIG_IGN) return;
-    action.sa_handler = on_interrupt;
-    ::sigaction(SIGINT, &action, nullptr);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow, too: the half that stands is removed
+    catch_interrupt(SIGINT);
+    catch_interrupt(SIGTERM);
 }
 
 void print(std::string_view text) {
@@ -66,6 +77,10 @@ void message(std::string_view text) {
 
 bool interrupted() noexcept {
     return g_interrupts != 0;
+}
+
+int interrupted_status() noexcept {
+    return 128 + g_signal;
 }
 
 void throw_if_interrupted() {

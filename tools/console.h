@@ -13,7 +13,7 @@ namespace carom::tools {
 inline constexpr int kOk = 0;
 inline constexpr int kFailed = 1;
 inline constexpr int kBadUsage = 2;
-inline constexpr int kInterrupted = 130;
+// Interrupted by a signal: 128 + its number, interrupted_status().
 
 /// A bad option, or bad input other than a scene: exit status 2.
 class UsageError : public std::runtime_error {
@@ -21,7 +21,7 @@ class UsageError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// SIGINT came: exit status 130.
+/// SIGINT or SIGTERM came: exit status 130 or 143.
 class Interrupted : public std::exception {};
 
 /// The reader of standard output has gone (`carom ... | head -1`): exit status 1, without a word.
@@ -37,9 +37,10 @@ void flush_output();
 /// One line on standard error, with the program's name in front.
 void message(std::string_view text);
 
-/// SIGINT only sets a flag, so that nothing half-written stays; long work asks here now and then.
+/// SIGINT and SIGTERM only set a flag, so that nothing half-written stays; long work asks here now and then.
 bool interrupted() noexcept;
 void throw_if_interrupted();
+int interrupted_status() noexcept;
 
 /// A line on standard error that renews itself while work goes on; silent when that is no terminal.
 class ProgressLine {

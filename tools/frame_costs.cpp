@@ -22,14 +22,16 @@ long frame_of(double t, double from, double fps, long frames) {
 std::vector<FrameCost> costs_by_frame(const Record& record, double from, double fps, long frames) {
     std::vector<FrameCost> sums(static_cast<std::size_t>(std::max(frames, 1L)));
     constexpr double kMsPerNs = 1e-6;
-    sums[0].simulate_ms = record.setup_detect_ns * kMsPerNs;
+    sums[0].detect_ms = record.setup_detect_ns * kMsPerNs;
     for (std::size_t i = 0; i < record.events.size(); ++i) {
         FrameCost& sum = sums[static_cast<std::size_t>(frame_of(record.events[i].time, from, fps, frames))];
         sum.events.push_back(i);
         if (i >= record.costs.size()) continue;
         const EventCost& cost = record.costs[i];
-        sum.simulate_ms += (cost.detect_ns + cost.resolve_ns) * kMsPerNs;
-        sum.kernel_ms += cost.kernel_ns * kMsPerNs;
+        const bool cluster = record.events[i].type == EventType::kBallCluster;
+        sum.detect_ms += cost.detect_ns * kMsPerNs;
+        sum.resolve_ms += (cost.resolve_ns - cost.kernel_ns) * kMsPerNs;
+        (cluster ? sum.cluster_ms : sum.kernel_ms) += cost.kernel_ns * kMsPerNs;
     }
     return sums;
 }

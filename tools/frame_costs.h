@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "carom/engine/record.h"
@@ -13,11 +15,14 @@ namespace carom::tools {
 /// to the first or last.
 long frame_of(double t, double from, double fps, long frames);
 
-/// What the simulation cost during one frame.
+/// What the simulation cost during one frame [ms].
 struct FrameCost {
-    double simulate_ms = 0.0;         ///< detect and resolve of its events
-    double kernel_ms = 0.0;           ///< the part of simulate_ms inside impact kernels
+    double detect_ms = 0.0;           ///< finding its events, and looking for new ones after each
+    double resolve_ms = 0.0;          ///< advancing and resolving, without the two below
+    double kernel_ms = 0.0;           ///< inside the kernel of ball-ball impacts
+    double cluster_ms = 0.0;          ///< inside the map of impacts of three balls and more
     std::vector<std::size_t> events;  ///< indices into Record::events
+    double simulate_ms() const { return detect_ms + resolve_ms + kernel_ms + cluster_ms; }
 };
 
 /// Sums the costs of a profiled record by frame. The first detection of all pairs, made before any event,
@@ -31,5 +36,29 @@ double percentile(const std::vector<double>& sorted, double p);
 
 /// Middle value; the mean of the two middle ones for an even count. @param values not empty
 double median(std::vector<double> values);
+
+/// Wall time of frames that are made one after the other, from the moments at which each was done. What the
+/// caller does in between (a progress bar, removing files) does not count. The clock is the caller's, so that
+/// the bookkeeping can be tested without one.
+class FrameWalls {
+  public:
+    explicit FrameWalls(std::function<double()> now_ms) : now_ms_(std::move(now_ms)) {}
+    void frame_done() {
+        const double now = now_ms_();
+        if (started_) walls_.push_back(now - mark_);
+    }
+    void next_starts() {
+        mark_ = now_ms_();
+        started_ = true;
+    }
+    /// One for every frame but the first, whose start nobody saw.
+    const std::vector<double>& walls() const { return walls_; }
+
+  private:
+    std::function<double()> now_ms_;
+    bool started_ = false;
+    double mark_ = 0.0;
+    std::vector<double> walls_;
+};
 
 }  // namespace carom::tools

@@ -1,219 +1,222 @@
-// carom margin: how much of 1/fps every frame leaves over.
-//
-// Stages: simulate (detect and resolve of the events in the frame's interval), kernel (the part of simulate
-// inside impact kernels, not counted twice), draw, readback, encode. A frame costs simulate + draw + readback
-// + encode.
+// carom margin: measures. Stages: margin.h.
+#include "margin.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
-#include <nlohmann/json.hpp>
+#include <cstdio>
 
+#include "bench/clock.h"
+#include "bench/rounds.h"
 #include "carom/engine/output_file.h"
-#include "carom/render/sequence.h"
-#include "commands.h"
 #include "console.h"
-#include "csv.h"
-#include "frame_costs.h"
+#include "plot.h"
 #include "setup.h"
+#include "temporary_folder.h"
 
 namespace carom::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
 
-enum Stage : std::size_t { kSimulate, kKernel, kDraw, kReadback, kEncode, kStages };
-constexpr const char* kStageNames[kStages] = {"simulate", "kernel", "draw", "readback", "encode"};
-
-/// Costs of every frame in ms, one list per stage; and of the whole frame.
-struct Margin {
-    double fps = 60.0;
-    double budget_ms = 0.0;
-    bool rendered = true;
-    std::vector<double> stage[kStages];
-    std::vector<double> total;
-    std::vector<FrameCost> frames;  ///< of the last run: its events
-    long missed = 0;
-    std::size_t worst = 0;
-
-    bool has(std::size_t s) const { return rendered || s <= kKernel; }
-};
-
-/// One run's costs, frame by frame, into column `run` of samples[stage][frame].
-using Samples = std::vector<std::vector<double>>;
-
-void add_run(const std::vector<FrameCost>& simulated, const std::vector<render::FrameTiming>& drawn,
-             Samples* samples) {
-    for (std::size_t k = 0; k < simulated.size(); ++k) {
-        samples[kSimulate][k].push_back(simulated[k].simulate_ms);
-        samples[kKernel][k].push_back(simulated[k].kernel_ms);
-        if (k >= drawn.size()) continue;
-        samples[kDraw][k].push_back(drawn[k].draw_ms);
-        samples[kReadback][k].push_back(drawn[k].readback_ms);
-        samples[kEncode][k].push_back(drawn[k].encode_ms);
-    }
+double wall_ms() {
+    return std::chrono::duration<double, std::milli>(Clock::now().time_since_epoch()).count();
 }
 
-std::vector<render::FrameTiming> draw(const Record& record, const MarginArgs& args, double fps,
-                                      const std::string& title) {
+render::SequenceOptions draw_options(const Record& record, const MarginArgs& args, double fps) {
     const RenderSettings& settings = record.render;
     render::SequenceOptions options;
-    options.pattern.clear();  // encoded and thrown away: a disk is not what is measured
     options.fps = fps;
+    options.jobs = 1;  // one thread: the parts of a frame do not overlap, and do not disturb each other
     options.size =
         args.size.empty() ? render::FrameSize{settings.width, settings.height} : parse_size(args.size);
     options.camera = settings.camera;
+    options.view.eye = settings.eye;
+    options.view.target = settings.target;
     options.backend = render::backend_from_name(args.gl);
+    return options;
+}
+
+void draw(MarginRun& run, const MarginArgs& args, double fps, const std::string& title) {
+    const TemporaryFolder folder;
+    render::SequenceOptions options = draw_options(run.record, args, fps);
+    options.pattern = folder.file("%d.png");
+    FrameWalls walls(wall_ms);
     ProgressLine line(title);
-    options.progress = [&line](long done, long total) {
+    options.progress = [&](long done, long total) {
+        walls.frame_done();
         throw_if_interrupted();
+        std::remove(render::frame_path(options.pattern, done - 1).c_str());
         line.show_bar(done, total);
+        walls.next_starts();
     };
-    return render::render_sequence(record, options);
+    const std::vector<render::FrameTiming> drawn = render::render_sequence(run.record, options);
+    run.frame_walls = walls.walls();
+    for (const render::FrameTiming& t : drawn) {
+        run.stage[kDraw].push_back(t.draw_ms);
+        run.stage[kReadback].push_back(t.readback_ms);
+        run.stage[kEncode].push_back(t.encode_ms);
+        run.stage[kWrite].push_back(t.write_ms);
+    }
 }
 
-Margin measure(const Plan& plan, const MarginArgs& args, Record& record) {
-    Margin margin;
-    margin.rendered = !args.no_render;
-    Samples samples[kStages];
-    for (int run = 0; run < args.repeat; ++run) {
-        SimulateOptions options;
-        options.profile = true;
-        record = simulate_plan(plan, options);
-        margin.fps = chosen_fps(args.fps, record.render);
-        const long frames = checked_frame_count(0.0, record.duration, margin.fps);
-        margin.frames = costs_by_frame(record, 0.0, margin.fps, frames);
-        for (Samples& s : samples) s.resize(margin.frames.size());
-        std::vector<render::FrameTiming> drawn;
-        if (margin.rendered)
-            drawn = draw(record, args, margin.fps, fmt::format("run {} of {}:", run + 1, args.repeat));
-        throw_if_interrupted();
-        add_run(margin.frames, drawn, samples);
-    }
-    margin.budget_ms = 1000.0 / margin.fps;
-    for (std::size_t s = 0; s < kStages; ++s) {
-        for (const std::vector<double>& runs : samples[s])
-            margin.stage[s].push_back(runs.empty() ? 0.0 : median(runs));
-    }
-    for (std::size_t k = 0; k < margin.frames.size(); ++k) {
-        const double ms = margin.stage[kSimulate][k] + margin.stage[kDraw][k] + margin.stage[kReadback][k] +
-                          margin.stage[kEncode][k];
-        margin.total.push_back(ms);
-        if (ms > margin.budget_ms) ++margin.missed;
-        if (ms > margin.total[margin.worst]) margin.worst = k;
-    }
-    return margin;
+/// A frame without what only makes files of it.
+double shown_ms(const Margin& margin, std::size_t frame) {
+    return margin.total[frame] - margin.stage[kEncode][frame] - margin.stage[kWrite][frame];
 }
 
-struct Spread {
-    double p50, p95, p99, max;
-};
+void widen(Range& range, double value, bool first) {
+    range.low = first ? value : std::min(range.low, value);
+    range.high = first ? value : std::max(range.high, value);
+}
+
+}  // namespace
+
+const char* name(MarginStage stage) {
+    constexpr const char* kNames[kMarginStages] = {"simulate", "detect",   "resolve", "kernel", "cluster",
+                                                   "draw",     "readback", "encode",  "write"};
+    return kNames[stage];
+}
+
+bool is_part_of_simulate(std::size_t stage) {
+    return stage > kSimulate && stage <= kCluster;
+}
+
+double MarginRun::total(std::size_t frame) const {
+    double ms = stage[kSimulate][frame];
+    for (std::size_t s = kDraw; s < kMarginStages; ++s)
+        if (frame < stage[s].size()) ms += stage[s][frame];
+    return ms;
+}
+
+MarginRun one_run(const Plan& plan, const MarginArgs& args, double fps, const std::string& title) {
+    MarginRun run;
+    SimulateOptions options;
+    options.profile = true;
+    const double start = wall_ms();
+    run.record = simulate_plan(plan, options);
+    run.simulate_wall_ms = wall_ms() - start;
+    const long frames = checked_frame_count(0.0, run.record.duration, fps);
+    run.frames = costs_by_frame(run.record, 0.0, fps, frames);
+    for (const FrameCost& frame : run.frames) {
+        run.stage[kSimulate].push_back(frame.simulate_ms());
+        run.stage[kDetect].push_back(frame.detect_ms);
+        run.stage[kResolve].push_back(frame.resolve_ms);
+        run.stage[kKernel].push_back(frame.kernel_ms);
+        run.stage[kCluster].push_back(frame.cluster_ms);
+    }
+    if (!args.no_render) draw(run, args, fps, title);
+    throw_if_interrupted();
+    return run;
+}
+
+Accounting account(const MarginRun& run) {
+    Accounting sum;
+    sum.wall_ms = run.simulate_wall_ms;
+    for (const double ms : run.stage[kSimulate]) sum.parts_ms += ms;
+    for (const double ms : run.frame_walls) sum.wall_ms += ms;
+    for (std::size_t s = kDraw; s < kMarginStages; ++s)
+        for (std::size_t k = 1; k < run.stage[s].size(); ++k) sum.parts_ms += run.stage[s][k];
+    return sum;
+}
 
 Spread spread(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     return {percentile(values, 50.0), percentile(values, 95.0), percentile(values, 99.0), values.back()};
 }
 
-Json event_json(const Record& record, std::size_t i) {
-    const Event& event = record.events[i];
-    const EventCost& cost = record.costs.at(i);
-    return {{"time", event.time},
-            {"type", name(event.type)},
-            {"a", record.tracks.at(static_cast<std::size_t>(event.a)).id},
-            {"b", record.partner_id(event)},
-            {"detect_ns", cost.detect_ns},
-            {"resolve_ns", cost.resolve_ns},
-            {"kernel_ns", cost.kernel_ns}};
-}
-
-std::string margin_json(const Margin& margin, const Record& record) {
-    Json stages = Json::object();
-    for (std::size_t s = 0; s < kStages; ++s) {
-        if (!margin.has(s)) {
-            stages[kStageNames[s]] = nullptr;  // not measured is not 0
-            continue;
+Margin combine(const std::vector<MarginRun>& runs, double fps, bool rendered) {
+    Margin margin;
+    margin.fps = fps;
+    margin.budget_ms = 1000.0 / fps;
+    margin.rendered = rendered;
+    margin.runs = static_cast<int>(runs.size());
+    const std::size_t frames = runs.front().frames.size();
+    std::vector<double> spreads;
+    for (std::size_t k = 0; k < frames; ++k) {
+        for (std::size_t s = 0; s < kMarginStages; ++s) {
+            std::vector<double> samples;
+            for (const MarginRun& run : runs)
+                if (k < run.stage[s].size()) samples.push_back(run.stage[s][k]);
+            margin.stage[s].push_back(samples.empty() ? 0.0 : median(samples));
         }
-        const Spread v = spread(margin.stage[s]);
-        stages[kStageNames[s]] = {{"p50", v.p50}, {"p95", v.p95}, {"p99", v.p99}, {"max", v.max}};
+        double ms = margin.stage[kSimulate][k];
+        for (std::size_t s = kDraw; s < kMarginStages; ++s) ms += margin.stage[s][k];
+        margin.total.push_back(ms);
+        if (ms > margin.budget_ms) ++margin.missed;
+        if (shown_ms(margin, k) > margin.budget_ms) ++margin.missed_shown;
+        if (ms > margin.total[margin.worst]) margin.worst = k;
+        Range range;
+        for (std::size_t r = 0; r < runs.size(); ++r) widen(range, runs[r].total(k), r == 0);
+        spreads.push_back(ms > 0.0 ? (range.high - range.low) / ms : 0.0);
     }
-    Json events = Json::array();
-    for (const std::size_t i : margin.frames[margin.worst].events) events.push_back(event_json(record, i));
-    const Json all = {{"fps", margin.fps},
-                      {"budget_ms", margin.budget_ms},
-                      {"frames", margin.total.size()},
-                      {"missed", margin.missed},
-                      {"stages", stages},
-                      {"worst",
-                       {{"frame", margin.worst},
-                        {"time", render::frame_time(0.0, static_cast<long>(margin.worst), margin.fps)},
-                        {"ms", margin.total[margin.worst]},
-                        {"events", events}}}};
-    return all.dump() + "\n";
+    margin.frame_spread = median(spreads);
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+        std::vector<double> totals;
+        for (std::size_t k = 0; k < frames; ++k) totals.push_back(runs[r].total(k));
+        const auto missed = std::count_if(totals.begin(), totals.end(),
+                                          [&margin](double ms) { return ms > margin.budget_ms; });
+        const Spread s = spread(totals);
+        widen(margin.p50_runs, s.p50, r == 0);
+        widen(margin.p99_runs, s.p99, r == 0);
+        widen(margin.missed_runs, static_cast<double>(missed), r == 0);
+        const Accounting part = account(runs[r]);
+        margin.accounting.wall_ms += part.wall_ms;
+        margin.accounting.parts_ms += part.parts_ms;
+    }
+    return margin;
 }
 
-std::string margin_text(const Margin& margin, const Record& record, const MarginArgs& args) {
-    fmt::memory_buffer out;
-    const auto line = std::back_inserter(out);
-    fmt::format_to(line, "{}: {} frames of {:.3f} ms ({} fps), {} missed\n\n", args.scene,
-                   margin.total.size(), margin.budget_ms, margin.fps, margin.missed);
-    fmt::format_to(line, "  {:<10}{:>10}{:>10}{:>10}{:>10}   ms per frame\n", "", "p50", "p95", "p99", "max");
-    const auto row = [&line](const char* title, const std::vector<double>& values) {
-        const Spread v = spread(values);
-        fmt::format_to(line, "  {:<10}{:>10.4f}{:>10.4f}{:>10.4f}{:>10.4f}\n", title, v.p50, v.p95, v.p99,
-                       v.max);
-    };
-    for (std::size_t s = 0; s < kStages; ++s) {
-        if (margin.has(s)) row(kStageNames[s], margin.stage[s]);
+TimingCost cost_of_timing(const Plan& plan) {
+    constexpr int kRounds = 9, kLooks = 1000;
+    TimingCost cost;
+    const auto samples = interleaved("margin, cost of timing:", 2, kRounds, [&plan](std::size_t i) {
+        SimulateOptions options;
+        options.profile = i == 1;
+        const double start = thread_ns();
+        const Record record = simulate(plan, options);
+        return (thread_ns() - start) * 1e-6;
+    });
+    cost.plain_ms = minimum(samples[0]);
+    cost.profiled_ms = minimum(samples[1]);
+    cost.clock_ns = INFINITY;
+    for (int round = 0; round < kRounds; ++round) {
+        const Clock::time_point start = Clock::now();
+        for (int i = 1; i < kLooks; ++i) static_cast<void>(Clock::now());
+        const double ns = std::chrono::duration<double, std::nano>(Clock::now() - start).count();
+        cost.clock_ns = std::min(cost.clock_ns, ns / kLooks);
     }
-    row("all", margin.total);
-    std::vector<double> sorted = margin.total;
-    std::sort(sorted.begin(), sorted.end());
-    const double p99 = percentile(sorted, 99.0);
-    fmt::format_to(
-        line,
-        "\nkernel is a part of simulate. At p99 a frame takes {:.1f} % of its time: margin {:.3f} ms.\n",
-        100.0 * p99 / margin.budget_ms, margin.budget_ms - p99);
-    const std::vector<std::size_t>& events = margin.frames[margin.worst].events;
-    fmt::format_to(line, "worst frame: {} at {:.4f} s, {:.3f} ms, {} events\n", margin.worst,
-                   render::frame_time(0.0, static_cast<long>(margin.worst), margin.fps),
-                   margin.total[margin.worst], events.size());
-    for (const std::size_t i : events) {
-        const Event& event = record.events[i];
-        fmt::format_to(line, "  {:.6f} s  {:<21} {} {}\n", event.time, name(event.type),
-                       record.tracks.at(static_cast<std::size_t>(event.a)).id, record.partner_id(event));
-    }
-    return fmt::to_string(out);
+    return cost;
 }
-
-void write_margin_csv(const Margin& margin, const std::string& path) {
-    OutputFile file(path);
-    file.write(margin.rendered
-                   ? "frame,time,events,simulate_ms,kernel_ms,draw_ms,readback_ms,encode_ms,total_ms,missed\n"
-                   : "frame,time,events,simulate_ms,kernel_ms,total_ms,missed\n");
-    for (std::size_t k = 0; k < margin.total.size(); ++k) {
-        std::string row =
-            fmt::format("{},{},{}", k, render::frame_time(0.0, static_cast<long>(k), margin.fps),
-                        margin.frames[k].events.size());
-        for (std::size_t s = 0; s < kStages; ++s) {
-            if (margin.has(s)) row += fmt::format(",{}", margin.stage[s][k]);
-        }
-        file.write(
-            fmt::format("{},{},{}\n", row, margin.total[k], margin.total[k] > margin.budget_ms ? 1 : 0));
-    }
-    file.commit();
-}
-
-}  // namespace
 
 int run_margin(const MarginArgs& args) {
     if (args.repeat < 1) throw UsageError("--repeat: expected at least 1");
     if (!args.size.empty()) parse_size(args.size);
+    check_plot_path(args.plot);
+    if (args.sweep && !args.trace.empty())
+        throw UsageError("--trace is of one setting: it cannot be combined with --sweep");
+    if (args.sweep && args.fps)
+        throw UsageError("--sweep goes through the frame rates: it cannot be combined with --fps");
     const Plan plan = plan_scene(args.scene);
-    chosen_fps(args.fps, plan.scene.render);
-    Record record;
-    const Margin margin = measure(plan, args, record);
-    if (!args.csv.empty()) write_margin_csv(margin, args.csv);
-    print(args.json ? margin_json(margin, record) : margin_text(margin, record, args));
+    const double fps = chosen_fps(args.fps, plan.scene.render);
+    if (args.sweep) return run_margin_sweep(plan, args);
+    std::vector<MarginRun> runs;
+    for (int run = 0; run < args.repeat; ++run) {
+        runs.push_back(one_run(plan, args, fps, fmt::format("run {} of {}:", run + 1, args.repeat)));
+        if (run > 0) runs[static_cast<std::size_t>(run) - 1].record = {};  // only the last one is read
+    }
+    const MarginRun& last = runs.back();
+    Margin margin = combine(runs, fps, !args.no_render);
+    if (margin.rendered) margin.size = draw_options(last.record, args, fps).size;
+    margin.timing = cost_of_timing(plan);
+    if (!args.csv.empty()) write_margin_csv(margin, last, args.csv);
+    if (!args.plot.empty()) plot_margin(margin, last, args.scene, args.plot);
+    if (!args.trace.empty()) {
+        OutputFile file(args.trace);
+        file.write(margin_trace(last, fps));
+        file.commit();
+    }
+    print(args.json ? margin_json(margin, last) : margin_text(margin, last, args.scene));
     return kOk;
 }
 

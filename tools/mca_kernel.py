@@ -41,6 +41,7 @@ LOOPS = [
     ("extrapolated seed", SINGLE.format(header="packed_march.h", loop="ExtrapolatedSeed"), "v3", 1),
     ("pipelined", SINGLE.format(header="packed_march.h", loop="Pipelined"), "v3", 1),
     ("carried roots", SINGLE.format(header="packed_march.h", loop="CarriedRoots"), "v3", 1),
+    ("decoupled roots", SINGLE.format(header="decoupled.h", loop="Decoupled"), "v3", 3),
     ("summed, one sweep", SINGLE.format(header="summed.h", loop="Summed"), "v3", 1),
     ("four lanes", BATCH.format(arguments="4, 1, LaneExactRoots, SeparateArithmetic"), "v3", 4),
     ("four lanes carried", BATCH.format(arguments="4, 1, LaneCarriedRoots, FusedArithmetic"), "v3", 4),

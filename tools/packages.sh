@@ -3,10 +3,17 @@
 
 carom_packages=(
     cmake g++ ninja-build
-    libeigen3-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev libcli11-dev
-    libosmesa6-dev libosmesa6 libgl-dev libpng-dev
+    libeigen3-dev libbox2d-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev libcli11-dev
+    libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri libpng-dev
     libgtest-dev libbenchmark-dev
+    pkg-config python3 python3-numpy
 )
+# What continuous integration needs in addition: a second compiler with its sanitizers, the static checks, valgrind, and what reads
+# the completions and the man page.
+carom_check_packages=(clang clang-format clang-tidy valgrind zsh groff-base)
+# Mesa dropped OSMesa with 25.1: later releases do not have it, and what it does there EGL does.
+carom_osmesa=libosmesa6
+
 carom_say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
 carom_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
@@ -27,6 +34,9 @@ carom_apt() {
     fi
 }
 
+# Whether OSMesa is installed, or this release has it.
+carom_has_osmesa() { carom_installed "$carom_osmesa" || [ -n "$(apt-cache show "$carom_osmesa" 2>/dev/null)" ]; }
+
 # Whether root can be had; with a terminal, sudo may ask for a password.
 carom_can_install() {
     carom_sudo_flags=
@@ -37,14 +47,19 @@ carom_can_install() {
     sudo -n true 2>/dev/null
 }
 
-carom_ensure_packages() {
+# carom_ensure NAME ...: installs those of the packages that are missing.
+carom_ensure() {
     local missing
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
         carom_say "this is no Debian or Ubuntu; install what these packages hold, then follow CONTRIBUTING.md:"
-        carom_say "${carom_packages[*]}"
+        carom_say "$*"
         exit 2
     fi
-    missing=$(carom_missing "${carom_packages[@]}")
+    missing=$(carom_missing "$@")
+    # Package lists that do not know OSMesa say that there is none; no lists say nothing.
+    if compgen -G '/var/lib/apt/lists/*Packages*' >/dev/null && ! carom_has_osmesa; then
+        missing=${missing/$carom_osmesa /}
+    fi
     [ -n "$missing" ] || return 0
     if ! carom_can_install; then
         carom_say "packages are missing, and installing them needs root or sudo. As root:"
@@ -53,11 +68,21 @@ carom_ensure_packages() {
     fi
     carom_say "installing: $missing"
     carom_apt update || carom_say "apt-get update failed; going on with the package lists that are there"
+    carom_has_osmesa || missing=${missing/$carom_osmesa /}
+    [ -n "$missing" ] || return 0
     # The list is split into words on purpose.
     # shellcheck disable=SC2086
     carom_apt install -y --no-install-recommends $missing && return 0
     carom_say "apt-get could not install: $missing"
-    # Mesa dropped OSMesa with 25.1; the releases named above have it.
-    [ -n "$(apt-cache show libosmesa6-dev 2>/dev/null)" ] || carom_say "this release has no libosmesa6-dev"
     exit 2
+}
+
+# What building and testing need.
+carom_ensure_packages() { carom_ensure "${carom_packages[@]}" "$carom_osmesa"; }
+
+# What tools/fuzz, tools/sanitize and tools/lint need in addition.
+carom_ensure_check_packages() {
+    carom_ensure "${carom_check_packages[@]}"
+    # The sanitizers' library is of clang's version: libclang-rt-14-dev in Debian 12.
+    carom_ensure "libclang-rt-$(clang -dumpversion | cut -d. -f1)-dev"
 }

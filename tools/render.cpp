@@ -4,10 +4,12 @@
 #include <charconv>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "carom/render/sequence.h"
 #include "commands.h"
 #include "console.h"
+#include "frame_costs.h"
 #include "setup.h"
 
 namespace carom::tools {
@@ -34,7 +36,7 @@ void check_args(const RenderArgs& args) {
     }
     if (args.frame && *args.frame < 0) throw UsageError("--frame: frames are numbered from 0");
     if (!args.sheet.empty()) {
-        parse_size(args.sheet);
+        parse_sheet(args.sheet);
         return;
     }
     try {
@@ -59,6 +61,16 @@ Vec3 parse_point(const char* option, const std::string& text) {
     return {x[0], x[1], x[2]};
 }
 
+render::Overlay overlay_of(const RenderArgs& args) {
+    try {
+        render::Overlay overlay = render::parse_overlay(args.overlay);
+        overlay.trails = overlay.trails || args.trails;
+        return overlay;
+    } catch (const render::RenderError& error) {
+        throw UsageError(fmt::format("--overlay: {}", error.what()));
+    }
+}
+
 void set_view(const RenderArgs& args, const RenderSettings& settings, render::SequenceOptions& options) {
     if (!args.eye.empty() && args.target.empty()) throw UsageError("--eye needs --target X,Y,Z");
     if (!args.eye.empty() && !args.camera.empty()) throw UsageError("--camera and --eye exclude each other");
@@ -72,12 +84,7 @@ void set_view(const RenderArgs& args, const RenderSettings& settings, render::Se
         options.view.eye = settings.eye;
         options.view.target = settings.target;
     }
-    try {
-        options.overlay = render::parse_overlay(args.overlay);
-    } catch (const render::RenderError& error) {
-        throw UsageError(fmt::format("--overlay: {}", error.what()));
-    }
-    options.overlay.trails = options.overlay.trails || args.trails;
+    options.overlay = overlay_of(args);
 }
 
 render::SequenceOptions sequence_options(const RenderArgs& args, const Record& record) {
@@ -113,8 +120,23 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
 
 }  // namespace
 
+// The margin bar's share of the simulation: what the events cost that fall between a frame and the next one.
+// A record that was not profiled has no costs: then the bar shows drawing, reading back and encoding alone.
+void set_simulation_costs(const Record& record, render::SequenceOptions& options) {
+    if (record.costs.empty()) return;
+    // Frames before the first and after the last take the events there, which are none of those that are
+    // shown.
+    const double before = std::ceil(options.from * options.fps);
+    const auto first = static_cast<long>(before);
+    const long frames = render::frame_count(options.from, options.to.value_or(record.duration), options.fps);
+    auto costs = costs_by_frame(record, options.from - before / options.fps, options.fps, first + frames + 1);
+    options.simulate_ms = [costs = std::move(costs), first](long k) {
+        return costs[static_cast<std::size_t>(first + k)].simulate_ms();
+    };
+}
+
 int write_sheet(const RenderArgs& args, const Record& record, const render::SequenceOptions& options) {
-    const render::FrameSize grid = parse_size(args.sheet);
+    const render::FrameSize grid = parse_sheet(args.sheet);
     const std::string path = args.pattern.find('%') == std::string::npos ? args.pattern : "sheet.png";
     render::render_sheet(record, options, grid.width, grid.height, path);
     print(fmt::format("{} pictures: {}\n", grid.width * grid.height, path));
@@ -126,9 +148,12 @@ int run_render(const RenderArgs& args) {
     if (args.raw && (args.resume || !args.sheet.empty()))
         throw UsageError("--raw goes with neither --resume nor --sheet");
     if (!args.size.empty()) parse_size(args.size);
-    const Record record =
-        is_record_file(args.input) ? read_record(args.input) : simulate_plan(plan_scene(args.input), {});
+    SimulateOptions simulation;
+    simulation.profile = overlay_of(args).margin;
+    const Record record = is_record_file(args.input) ? read_record(args.input)
+                                                     : simulate_plan(plan_scene(args.input), simulation);
     render::SequenceOptions options = sequence_options(args, record);
+    if (options.overlay.margin) set_simulation_costs(record, options);
     if (!args.sheet.empty()) return write_sheet(args, record, options);
     ProgressLine line("rendering:");
     options.progress = [&line](long done, long total) {

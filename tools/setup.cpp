@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
 #include "console.h"
 
@@ -65,18 +66,32 @@ Record simulate_plan(const Plan& plan, SimulateOptions options) {
     return record;
 }
 
-render::FrameSize parse_size(const std::string& text) {
+namespace {
+
+/// "16x9", both 1 to kLargestSide.
+std::optional<render::FrameSize> two_numbers(const std::string& text) {
     render::FrameSize size{};
     const char* const end = text.data() + text.size();
     const auto [middle, bad_width] = std::from_chars(text.data(), end, size.width);
-    if (bad_width == std::errc() && middle != end && *middle == 'x') {
-        const auto [last, bad_height] = std::from_chars(middle + 1, end, size.height);
-        const bool fits =
-            size.width >= 1 && size.width <= kLargestSide && size.height >= 1 && size.height <= kLargestSide;
-        if (bad_height == std::errc() && last == end && fits) return size;
-    }
+    if (bad_width != std::errc() || middle == end || *middle != 'x') return std::nullopt;
+    const auto [last, bad_height] = std::from_chars(middle + 1, end, size.height);
+    const bool fits =
+        size.width >= 1 && size.width <= kLargestSide && size.height >= 1 && size.height <= kLargestSide;
+    if (bad_height != std::errc() || last != end || !fits) return std::nullopt;
+    return size;
+}
+
+}  // namespace
+
+render::FrameSize parse_size(const std::string& text) {
+    if (const auto size = two_numbers(text)) return *size;
     throw UsageError(fmt::format("--size {}: expected WIDTHxHEIGHT in pixels, 1 to {} each, as in 1280x720",
                                  text, kLargestSide));
+}
+
+render::FrameSize parse_sheet(const std::string& text) {
+    if (const auto grid = two_numbers(text)) return *grid;
+    throw UsageError(fmt::format("--sheet {}: expected COLUMNSxROWS of pictures, as in 4x3", text));
 }
 
 double chosen_fps(std::optional<double> asked, const RenderSettings& settings) {

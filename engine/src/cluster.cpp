@@ -50,156 +50,34 @@ int law_exponent(double e_b) {
     return p;
 }
 
-double power(double x, int p) {  // p a power of 2
-    for (; p > 1; p /= 2) x *= x;
-    return x;
+kernel::HertzLaw law_of(const ClusterSettings& s) {
+    const int p = law_exponent(s.e_b);
+    const double b = std::min(1.0, (1.0 - s.e_b * s.e_b) * 0.4 / (0.4 - 1.0 / (2.5 + p)));
+    return {1.0 - b, b, p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip};
 }
 
 }  // namespace
 
 void ClusterMap::load(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                      double R, double V, double L) {
-    balls_ = balls.size();
-    contacts_ = contacts.size();
-    y_.resize(kPerBall * balls_);
-    y_stage_.resize(y_.size());
-    lift_.resize(balls_);
-    for (std::vector<double>* a : {&d_, &memory_, &rate_before_, &d_stage_, &nx_, &ny_}) a->resize(contacts_);
-    i_.resize(contacts_);
-    j_.resize(contacts_);
-    for (int k = 0; k < 4; ++k) {
-        ky_[k].resize(y_.size());
-        kd_[k].resize(contacts_);
+                      double R, double V) {
+    motion_.clear();
+    contacts_.clear();
+    for (const ClusterBall& ball : balls) {
+        motion_.push_back(ball.v.x() / V);
+        motion_.push_back(ball.v.y() / V);
+        for (int k = 0; k < 3; ++k) motion_.push_back(R * ball.w[k] / V);
     }
-    for (std::size_t b = 0; b < balls_; ++b) {
-        double* y = &y_[kPerBall * b];
-        y[0] = balls[b].v.x() / V;
-        y[1] = balls[b].v.y() / V;
-        for (int k = 0; k < 3; ++k) y[2 + k] = R * balls[b].w[k] / V;
-    }
-    for (std::size_t c = 0; c < contacts_; ++c) {
-        i_[c] = contacts[c].i;
-        j_[c] = contacts[c].j;
-        nx_[c] = contacts[c].n.x();
-        ny_[c] = contacts[c].n.y();
-        d_[c] = -contacts[c].gap / L;
-        memory_[c] = 0.0;
-    }
-}
-
-// Equations 1 to 4, in units of V and L: forces d^1.5, mass 1.
-void ClusterMap::derivative(const std::vector<double>& y, const std::vector<double>& d,
-                            const ClusterSettings& s, const Law& law, std::vector<double>& dy,
-                            std::vector<double>& dd) {
-    std::fill(dy.begin(), dy.end(), 0.0);
-    std::fill(lift_.begin(), lift_.end(), 0.0);
-    const double eps2 = s.epsilon * s.epsilon;
-    for (std::size_t c = 0; c < contacts_; ++c) {
-        const double *yi = &y[kPerBall * static_cast<std::size_t>(i_[c])],
-                     *yj = &y[kPerBall * static_cast<std::size_t>(j_[c])];
-        const double nx = nx_[c], ny = ny_[c];
-        const double dvx = yi[0] - yj[0], dvy = yi[1] - yj[1];
-        dd[c] = dvx * nx + dvy * ny;
-        if (!(d[c] > 0.0)) continue;
-        double F = d[c] * std::sqrt(d[c]);
-        if (d[c] < memory_[c]) F *= law.a + law.b * power(d[c] / memory_[c], law.p);
-        // t = n x z = (n_y, -n_x); s_x = (v_i - v_j) . t - R (w_iz + w_jz), s_z = R (w_i + w_j) . t.
-        const double s_x = dvx * ny - dvy * nx - (yi[4] + yj[4]);
-        const double s_z = (yi[2] + yj[2]) * ny - (yi[3] + yj[3]) * nx;
-        const double k = -s.mu_b * F / std::sqrt(s_x * s_x + s_z * s_z + eps2);
-        const double f_x = k * s_x, f_z = k * s_z;
-        double *ai = &dy[kPerBall * static_cast<std::size_t>(i_[c])],
-               *aj = &dy[kPerBall * static_cast<std::size_t>(j_[c])];
-        const double fx = -F * nx + f_x * ny, fy = -F * ny - f_x * nx;
-        const double tx = 2.5 * f_z * ny, ty = -2.5 * f_z * nx, tz = -2.5 * f_x;
-        ai[0] += fx;
-        ai[1] += fy;
-        aj[0] -= fx;
-        aj[1] -= fy;
-        ai[2] += tx;
-        ai[3] += ty;
-        ai[4] += tz;
-        aj[2] += tx;
-        aj[3] += ty;
-        aj[4] += tz;
-        lift_[static_cast<std::size_t>(i_[c])] += f_z;
-        lift_[static_cast<std::size_t>(j_[c])] -= f_z;
-    }
-    const double sign = s.published_cloth_slip ? 1.0 : -1.0;
-    for (std::size_t b = 0; b < balls_; ++b) {
-        if (!(lift_[b] < 0.0)) continue;
-        const double* v = &y[kPerBall * b];
-        double* a = &dy[kPerBall * b];
-        const double ux = v[0] + sign * v[3], uy = v[1] - sign * v[2];
-        const double k = s.mu_s * lift_[b] / std::sqrt(ux * ux + uy * uy + eps2);
-        a[0] += k * ux;
-        a[1] += k * uy;
-        a[2] += 2.5 * k * uy;
-        a[3] -= 2.5 * k * ux;
-    }
-}
-
-void ClusterMap::step(const ClusterSettings& s, const Law& law, double h) {
-    const double share[4] = {0.0, 0.5 * h, 0.5 * h, h};
-    for (int k = 0; k < 4; ++k) {
-        if (k == 0) {
-            derivative(y_, d_, s, law, ky_[0], kd_[0]);
-            continue;
-        }
-        for (std::size_t n = 0; n < y_.size(); ++n) y_stage_[n] = y_[n] + share[k] * ky_[k - 1][n];
-        for (std::size_t c = 0; c < contacts_; ++c) d_stage_[c] = d_[c] + share[k] * kd_[k - 1][c];
-        derivative(y_stage_, d_stage_, s, law, ky_[k], kd_[k]);
-    }
-    const double sixth = h / 6.0;
-    for (std::size_t n = 0; n < y_.size(); ++n)
-        y_[n] += sixth * ((ky_[0][n] + ky_[3][n]) + 2.0 * (ky_[1][n] + ky_[2][n]));
-    for (std::size_t c = 0; c < contacts_; ++c) {
-        d_stage_[c] = d_[c];  // overlap before the step, for remember()
-        rate_before_[c] = kd_[0][c];
-        d_[c] += sixth * ((kd_[0][c] + kd_[3][c]) + 2.0 * (kd_[1][c] + kd_[2][c]));
-    }
-}
-
-// Largest overlap since a contact opened, with the peak inside a step from the cubic Hermite interpolant:
-// without it the energy of each contact carries an error of order h^2.
-void ClusterMap::remember(double h) {
-    for (std::size_t c = 0; c < contacts_; ++c) {
-        if (!(d_[c] > 0.0)) {
-            memory_[c] = 0.0;
-            continue;
-        }
-        const double *yi = &y_[kPerBall * static_cast<std::size_t>(i_[c])],
-                     *yj = &y_[kPerBall * static_cast<std::size_t>(j_[c])];
-        const double rate = (yi[0] - yj[0]) * nx_[c] + (yi[1] - yj[1]) * ny_[c];
-        double most = std::max(memory_[c], d_[c]);
-        if (rate_before_[c] > 0.0 && rate < 0.0) {
-            const double d0 = d_stage_[c], m0 = h * rate_before_[c], m1 = h * rate, rise = d_[c] - d0;
-            // d(s) = d0 + m0 s + (3 rise - 2 m0 - m1) s^2 + (m0 + m1 - 2 rise) s^3; its slope falls from m0 >
-            // 0 to m1 < 0.
-            const double q2 = 3.0 * rise - 2.0 * m0 - m1, q3 = m0 + m1 - 2.0 * rise;
-            const double root = std::sqrt(std::max(0.0, q2 * q2 - 3.0 * q3 * m0));
-            const double s = m0 / (root - q2);
-            if (s > 0.0 && s < 1.0) most = std::max(most, d0 + s * (m0 + s * (q2 + s * q3)));
-        }
-        memory_[c] = most;
-    }
-}
-
-bool ClusterMap::finished() const {
-    for (std::size_t c = 0; c < contacts_; ++c) {
-        if (d_[c] > 0.0) return false;
-        const double *yi = &y_[kPerBall * static_cast<std::size_t>(i_[c])],
-                     *yj = &y_[kPerBall * static_cast<std::size_t>(j_[c])];
-        const double rate = (yi[0] - yj[0]) * nx_[c] + (yi[1] - yj[1]) * ny_[c];
-        if (rate > 0.0 && -d_[c] < kClusterLookAhead * rate) return false;
-    }
-    return true;
+    const double L = contact_length(V);
+    for (const ClusterContact& c : contacts) contacts_.push_back({c.i, c.j, c.n.x(), c.n.y(), -c.gap / L});
+    const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
+    numbers_.resize(std::max(numbers_.size(), kernel::contact_phase_numbers(m, n)));
+    places_.resize(std::max(places_.size(), kernel::contact_phase_places(n)));
 }
 
 double ClusterMap::energy() const {
     double e = 0.0;
-    for (std::size_t b = 0; b < balls_; ++b) {
-        const double* y = &y_[kPerBall * b];
+    for (std::size_t n = 0; n < motion_.size(); n += kPerBall) {
+        const double* y = &motion_[n];
         e += 0.5 * (y[0] * y[0] + y[1] * y[1]) + 0.2 * (y[2] * y[2] + y[3] * y[3] + y[4] * y[4]);
     }
     return e;
@@ -211,48 +89,51 @@ void ClusterMap::keep_energy(double before) {
     const double after = energy();
     if (!(after > before)) return;
     double mx = 0.0, my = 0.0, relative = 0.0;
-    for (std::size_t b = 0; b < balls_; ++b) {
-        mx += y_[kPerBall * b];
-        my += y_[kPerBall * b + 1];
+    for (std::size_t n = 0; n < motion_.size(); n += kPerBall) {
+        mx += motion_[n];
+        my += motion_[n + 1];
     }
-    mx /= static_cast<double>(balls_);
-    my /= static_cast<double>(balls_);
-    for (std::size_t b = 0; b < balls_; ++b) {
-        const double x = y_[kPerBall * b] - mx, y = y_[kPerBall * b + 1] - my;
+    const double balls = static_cast<double>(motion_.size() / kPerBall);
+    mx /= balls;
+    my /= balls;
+    for (std::size_t n = 0; n < motion_.size(); n += kPerBall) {
+        const double x = motion_[n] - mx, y = motion_[n + 1] - my;
         relative += 0.5 * (x * x + y * y);
     }
     const double wanted = relative - (after - before);
     if (!(relative > 0.0) || !(wanted > 0.0)) return;
     const double factor = std::sqrt(wanted / relative);
-    for (std::size_t b = 0; b < balls_; ++b) {
-        y_[kPerBall * b] = mx + factor * (y_[kPerBall * b] - mx);
-        y_[kPerBall * b + 1] = my + factor * (y_[kPerBall * b + 1] - my);
+    for (std::size_t n = 0; n < motion_.size(); n += kPerBall) {
+        motion_[n] = mx + factor * (motion_[n] - mx);
+        motion_[n + 1] = my + factor * (motion_[n + 1] - my);
     }
 }
 
 long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                            const ClusterSettings& settings, double V) {
-    load(balls, contacts, settings.R, V, contact_length(V));
-    Law law{};
-    law.p = law_exponent(settings.e_b);
-    law.b = std::min(1.0, (1.0 - settings.e_b * settings.e_b) * 0.4 / (0.4 - 1.0 / (2.5 + law.p)));
-    law.a = 1.0 - law.b;
-    // The second limit is the stiffness of the regularised friction (equation 6).
-    const double h = settings.mu_b > 0.0 ? std::min(settings.step, 0.31 * settings.epsilon / settings.mu_b)
-                                         : settings.step;
+    // A slow pair can be the first to touch where faster ones are about to: these set the scale, or their
+    // forces would need a million steps.
+    for (const ClusterContact& c : contacts) {
+        const Vec3 closing = balls[static_cast<std::size_t>(c.i)].v - balls[static_cast<std::size_t>(c.j)].v;
+        V = std::max(V, closing.x() * c.n.x() + closing.y() * c.n.y());
+    }
+    load(balls, contacts, settings.R, V);
     const double before = energy();
-    const long limit = static_cast<long>(kClusterTimeLimit / h);
-    long steps = 0;
-    do {
-        if (++steps > limit) return -1;
-        step(settings, law, h);
-        remember(h);
-    } while (!finished());
+    const kernel::ContactPhase phase{static_cast<int>(balls.size()),
+                                     static_cast<int>(contacts.size()),
+                                     motion_.data(),
+                                     contacts_.data(),
+                                     numbers_.data(),
+                                     places_.data()};
+    const long steps = settings.integrate(phase, law_of(settings), settings.longest_step, kClusterLookAhead,
+                                          kClusterTimeLimit);
+    if (steps < 0) return steps;
     keep_energy(before);
-    for (std::size_t b = 0; b < balls_; ++b) {
-        const double* y = &y_[kPerBall * b];
-        balls[b].v = Vec3(y[0] * V, y[1] * V, 0.0);
-        for (int k = 0; k < 3; ++k) balls[b].w[k] = y[2 + k] * V / settings.R;
+    const double* y = motion_.data();
+    for (ClusterBall& ball : balls) {
+        ball.v = Vec3(y[0] * V, y[1] * V, 0.0);
+        for (int k = 0; k < 3; ++k) ball.w[k] = y[2 + k] * V / settings.R;
+        y += kPerBall;
     }
     return steps;
 }

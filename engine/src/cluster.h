@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "carom/engine/vec.h"
+#include "carom/kernel/contact_phase.h"
 
 namespace carom {
 
@@ -24,8 +25,9 @@ struct ClusterSettings {
     double R;  ///< [m]
     double mu_s, mu_b, e_b;
     bool published_cloth_slip = false;
-    double epsilon;  ///< regularisation of the friction directions, in units of V
-    double step;     ///< largest step, in units of L / V
+    double epsilon;       ///< regularisation of the friction directions, in units of V
+    double longest_step;  ///< in units of L / V
+    kernel::ContactPhaseFunction integrate;
 };
 
 /// Duration of a Hertz contact at the approach speed V, t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation
@@ -41,9 +43,9 @@ double fifth_root(double x);
 /// The two maps. Scratch memory is kept between calls.
 class ClusterMap {
   public:
-    /// Compliant: integrates the contact phase by RK4 in its own time, scaled by the approach speed V [m/s]
-    /// of the triggering pair. Gives back velocities and spins. Returns the number of steps, or -1 if the
-    /// contacts did not part within kClusterTimeLimit.
+    /// Compliant: integrates the contact phase in its own time, scaled by the approach speed V [m/s] of the
+    /// triggering pair or of the fastest one. Gives back velocities and spins. Returns the number of steps,
+    /// or -1 if the contacts did not part within kClusterTimeLimit.
     long compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                    const ClusterSettings& settings, double V);
 
@@ -52,28 +54,16 @@ class ClusterMap {
     long rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double e_b);
 
   private:
-    struct Law {
-        double a, b;
-        int p;
-    };
     void load(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double R,
-              double V, double L);
-    void derivative(const std::vector<double>& y, const std::vector<double>& d, const ClusterSettings& s,
-                    const Law& law, std::vector<double>& dy, std::vector<double>& dd);
-    void step(const ClusterSettings& s, const Law& law, double h);
-    void remember(double h);
-    bool finished() const;
+              double V);
     void keep_energy(double before);
     double energy() const;
 
-    std::size_t balls_ = 0, contacts_ = 0;
-    // Per ball five numbers: v_x, v_y, R w_x, R w_y, R w_z in units of V. Per contact: overlap d and memory
-    // d_m in units of L.
-    std::vector<double> y_, d_, memory_, rate_before_;
-    std::vector<int> i_, j_;
-    std::vector<double> nx_, ny_;
-    std::vector<double> y_stage_, d_stage_, lift_;
-    std::vector<double> ky_[4], kd_[4];
+    // Per ball five numbers: v_x, v_y, R w_x, R w_y, R w_z in units of V.
+    std::vector<double> motion_;
+    std::vector<kernel::HertzContact> contacts_;
+    std::vector<double> numbers_;
+    std::vector<int> places_;
 };
 
 }  // namespace carom

@@ -8,19 +8,20 @@
 namespace carom {
 namespace detail {
 
-void cushion_smooth(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3&) {
+bool cushion_smooth(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3&) {
     const double approach = approach_speed(normal, v);
-    if (!(approach > 0.0)) return;
+    if (!(approach > 0.0)) return true;
     const double change = (1.0 + p.e_c) * approach;
     v = Vec3(v.x() + change * normal.x(), v.y() + change * normal.y(), 0.0);
+    return true;
 }
 
 // Han, "Dynamics in carom and three cushion billiards", J. Mech. Sci. Tech. 19 (2005), 976, with the
 // misprints of equations 14c and 21a mended. Frame: X into the cushion, Z up, Y = Z x X. s, c: sine and
 // cosine of the nose's height angle. S: slip at the nose (S_x along the slope, S_y along the cushion); N:
 // normal impulse; P: tangential impulse (per mass).
-void cushion_han_2005(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w) {
-    if (!(approach_speed(normal, v) > 0.0)) return;
+bool cushion_han_2005(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w) {
+    if (!(approach_speed(normal, v) > 0.0)) return true;
     const Vec2 X = -normal, Y(-X.y(), X.x());
     const double R = p.R;
     const double s = (p.height - R) / R, c = std::sqrt((1.0 - s) * (1.0 + s));
@@ -40,16 +41,18 @@ void cushion_han_2005(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3
                  new_w_Z = w_Z + turn * P_y * c;
     v = Vec3(new_v_X * X.x() + new_v_Y * Y.x(), new_v_X * X.y() + new_v_Y * Y.y(), 0.0);
     w = Vec3(new_w_X * X.x() + new_w_Y * Y.x(), new_w_X * X.y() + new_w_Y * Y.y(), new_w_Z);
+    return true;
 }
 
 // One frictional impulse along the inclined normal, as for two rough spheres: Coulomb's f J_n, or what ends
 // the slip (2/7 of it). Equations: docs/physics.md, "Cushion impact", impulse.
-void cushion_impulse(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w) {
-    if (!(approach_speed(normal, v) > 0.0)) return;
+bool cushion_impulse(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w) {
+    if (!(approach_speed(normal, v) > 0.0)) return true;
     const NoseContact c = nose_contact(p, normal, v, w);
     const double J_n = -(1.0 + p.e_c) * c.u_n;
     const double J_t = std::min(p.f_c * J_n, 2.0 / 7.0 * c.speed_t);
     apply_at_nose(p, c, J_n, J_t, v, w);
+    return true;
 }
 
 }  // namespace detail
@@ -71,9 +74,9 @@ const CushionModelInfo& cushion_model(CushionModel model) {
     return kModels[0];
 }
 
-void resolve_cushion(CushionModel model, const CushionContact& contact, const Vec2& normal, Vec3& v,
+bool resolve_cushion(CushionModel model, const CushionContact& contact, const Vec2& normal, Vec3& v,
                      Vec3& w) {
-    cushion_model(model).resolve(contact, normal, v, w);
+    return cushion_model(model).resolve(contact, normal, v, w);
 }
 
 }  // namespace carom

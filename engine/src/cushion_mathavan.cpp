@@ -15,7 +15,8 @@
 //
 // The independent variable is the fall of v_y, from the approach speed (1, all velocities are relative to it)
 // to 0 and on until the work of restitution is e^2 times that of compression. Method: Dormand and Prince
-// 5(4), steps halved and doubled; they end where a slip vanishes or a stuck contact lets go.
+// 5(4) with the step that the last error asks for; steps end where a slip vanishes or a stuck contact lets
+// go.
 #include <algorithm>
 #include <cmath>
 
@@ -38,10 +39,23 @@ double norm(const Vec2& a) {
     return std::sqrt(a.x() * a.x() + a.y() * a.y());
 }
 
+// All relative to the approach speed.
+constexpr double kWorkShare = 1e-10;     // of the work of restitution, that may be left at the end
+constexpr double kStill = 1e-15;         // v_y at the end of compression
+constexpr double kFirstStep = 0.35;      // fall of v_y
+constexpr double kSmallestStep = 1e-13;  // taken whatever its error
+constexpr double kNoSlip = 1e-9;         // slip without a direction
+constexpr double kLateStick = 1e-6;      // slip at which a contact sticks whose sticking is of first order
+constexpr double kLetGo = 1e-9;          // share of static friction by which a stuck contact lets go early
+constexpr double kTurned = 1e-26;        // squared turn at which the fixed point of a direction has settled
+constexpr int kTurns = 40;               // its most turns
+constexpr int kLateSteps = 100;          // after so many a slip is taken as lost earlier
+
 class Impact {
   public:
-    Impact(const CushionContact& p, const State& start)
-        : f_(p.f_c),
+    Impact(const CushionContact& p, const State& start, double tolerance)
+        : tolerance_(tolerance),
+          f_(p.f_c),
           mu_(p.mu_s),
           e_(p.e_c),
           s_((p.height - p.R) / p.R),
@@ -50,14 +64,18 @@ class Impact {
         noise_ = 0x1p-48 * (1.0 + std::abs(y_.v_x) + std::abs(y_.a_x) + std::abs(y_.a_y) + std::abs(y_.a_z));
     }
 
-    State run() {
+    /// False where the bound on steps was met: then `end` is not the end.
+    bool run(State& end) {
         settle();
-        while (y_.v_y > 1e-15 && !spent()) advance(y_.v_y, 0.0);
+        while (y_.v_y > kStill && !spent()) advance(y_.v_y, 0.0);
         const double target = e_ * e_ * y_.work;
         y_.work = 0.0;
         y_.v_y = 0.0;
-        while (target - y_.work > 1e-14 * target && !spent()) advance(0.0, target);
-        return y_;
+        known_ = false;
+        restoring_ = true;
+        while (target - y_.work > kWorkShare * target && !spent()) advance(0.0, target);
+        end = y_;
+        return !spent();
     }
 
   private:
@@ -68,8 +86,9 @@ class Impact {
 
     Vec2 nose_slip(const State& y) const { return {y.v_x + s_ * y.a_y - c_ * y.a_z, -s_ * y.v_y + y.a_x}; }
     static Vec2 cloth_slip(const State& y) { return {y.v_x - y.a_y, y.v_y + y.a_x}; }
-    bool none(const Vec2& slip) const { return norm(slip) <= kCushionStick + noise_; }
-    double floor() const { return 1e-4 * kCushionStick + noise_; }
+    bool none(double slip) const { return slip <= kNoSlip + noise_; }
+    double floor() const { return kNoSlip + noise_; }
+    bool no_cloth_slip(double slip) const { return slip <= (steps_ < kLateSteps ? floor() : late_stick()); }
     bool spent() const { return steps_ >= kCushionSteps; }
 
     // Static friction at the nose for a given friction coefficient vector mu_s C/|C| of the cloth.
@@ -98,7 +117,7 @@ class Impact {
         const Vec2 nose = nose_slip(y), cloth = cloth_slip(y);
         // A slip of rounding size has no direction; the contact goes where settle() found that it is driven.
         const double nose_size = norm(nose), cloth_size = norm(cloth);
-        const Vec2 cloth_direction = cloth_size <= floor() ? cloth_direction_ : Vec2(cloth / cloth_size);
+        const Vec2 cloth_direction = no_cloth_slip(cloth_size) ? cloth_direction_ : Vec2(cloth / cloth_size);
         if (nose_creeps_) return forces(driven_nose(cloth_direction), cloth_direction);
         return forces(nose_size <= floor() ? nose_direction_ : Vec2(nose / nose_size), cloth_direction);
     }
@@ -108,9 +127,9 @@ class Impact {
     Vec2 driven_nose(const Vec2& cloth_direction) const {
         Vec2 direction = nose_direction_;
         turn(direction, nose_hold(mu_ * cloth_direction));
-        for (int i = 0; i < 12; ++i) {
+        for (int i = 0; i < kTurns; ++i) {
             const Forces f = forces(direction, cloth_direction);
-            turn(direction, nose_slip(change(f)) + 3.5 * f.q);
+            if (turn(direction, nose_slip(change(f)) + 3.5 * f.q) < kTurned) break;
         }
         return direction;
     }
@@ -124,47 +143,102 @@ class Impact {
 
     // Change per unit of fall of v_y.
     State slope(const State& y) const {
-        State k = change(forces(y));
-        const double fall = -k.v_y;
-        k.work = std::abs(y.v_y);
-        return {k.v_x / fall, -1.0, k.a_x / fall, k.a_y / fall, k.a_z / fall, k.work / fall};
+        const State k = change(forces(y));
+        const double scale = -1.0 / k.v_y;
+        return {k.v_x * scale, -1.0, k.a_x * scale, k.a_y * scale, k.a_z * scale, std::abs(y.v_y) * scale};
     }
 
-    // Decides for both contacts whether they stick, and where a vanished slip goes.
+    // What static friction would need, over what it can give: above 1 the contact slips.
+    double nose_strain() const { return norm(nose_hold(mu_ * cloth_direction_)) / f_; }
+    double cloth_strain(const Forces& f) const { return norm(cloth_hold(f.q)) / (mu_ * f.load); }
+
+    // Decides for both contacts whether they stick, and where a vanished slip goes. A contact that stuck lets
+    // go a little early: the steps come no closer to that point.
     void settle() {
         // A direction that the slip itself has; a vanished one keeps its last (at first: none).
         const Vec2 nose = nose_slip(y_), cloth = cloth_slip(y_);
-        const bool nose_gone = none(nose), cloth_gone = none(cloth);
-        if (!nose_gone) nose_direction_ = nose / norm(nose);
-        if (!cloth_gone) cloth_direction_ = cloth / norm(cloth);
+        const double nose_size = norm(nose), cloth_size = norm(cloth);
+        const bool nose_gone = none(nose_size), cloth_gone = no_cloth_slip(cloth_size);
+        if (!nose_gone) nose_direction_ = nose / nose_size;
+        if (!cloth_gone) cloth_direction_ = cloth / cloth_size;
         const bool was_stuck = nose_stuck_;
-        nose_stuck_ = nose_gone && f_ > 0.0 && norm(nose_hold(mu_ * cloth_direction_)) <= f_;
+        const double strain = f_ > 0.0 ? nose_strain() : 2.0;
+        const bool near = nose_gone || nose_size <= ends_below(nose_direction_.y(), cloth_size, strain);
+        nose_stuck_ = near && strain <= (was_stuck ? 1.0 - 2.0 * kLetGo : 1.0);
+        const bool cloth_was_stuck = cloth_stuck_;
         cloth_stuck_ = false;
-        if (cloth_gone && mu_ > 0.0 && !nose_stuck_) {
+        if (cloth_size <= late_stick() && mu_ > 0.0 && !nose_stuck_) {
             const Forces f = forces(nose_direction_, cloth_direction_);
-            cloth_stuck_ = norm(cloth_hold(f.q)) <= mu_ * f.load;
+            cloth_stuck_ = cloth_strain(f) <= (cloth_was_stuck ? 1.0 - 2.0 * kLetGo : 1.0);
         }
         // The same as in driven_nose(), for both.
-        for (int i = 0; i < 40; ++i) {
+        const bool nose_turns = nose_gone && !nose_stuck_, cloth_turns = cloth_gone && !cloth_stuck_;
+        for (int i = 0; i < kTurns && (nose_turns || cloth_turns); ++i) {
             const Forces f = forces(nose_direction_, cloth_direction_);
             const State k = change(f);
-            if (nose_gone && !nose_stuck_) turn(nose_direction_, nose_slip(k) + 3.5 * f.q);
-            if (cloth_gone && !cloth_stuck_) turn(cloth_direction_, cloth_slip(k) + 3.5 * f.p);
+            double turned = 0.0;
+            if (nose_turns) turned = turn(nose_direction_, nose_slip(k) + 3.5 * f.q);
+            if (cloth_turns) turned = std::max(turned, turn(cloth_direction_, cloth_slip(k) + 3.5 * f.p));
+            if (turned < kTurned) break;
         }
-        nose_creeps_ = !nose_stuck_ && f_ > 0.0 &&
-                       (was_stuck || nose_gone || (nose_creeps_ && norm(nose) < kCushionCreep)) &&
-                       norm(nose_hold(mu_ * cloth_direction_)) > f_;
-        if (nose_stuck_) {  // what is left of the slip
-            y_.a_x -= nose.y();
-            y_.a_z += nose.x() / c_;
-        } else if (cloth_stuck_) {
-            y_.a_x -= cloth.y();
-            y_.a_y += cloth.x();
-        }
+        nose_creeps_ = !nose_stuck_ && f_ > 0.0 && nose_strain() > 1.0 - 2.0 * kLetGo &&
+                       (was_stuck || nose_gone || (near && steps_ >= kLateSteps) ||
+                        (nose_creeps_ && nose_size < kCushionCreep));
+        if (nose_stuck_ && !was_stuck) end_slip(nose);
+        if (cloth_stuck_ && !cloth_was_stuck) end_cloth_slip(cloth);
+        if (nose_stuck_ != was_stuck || cloth_stuck_ != cloth_was_stuck) step_ = kFirstStep;
     }
-    static void turn(Vec2& direction, const Vec2& towards) {
+
+    // Slip below which a nose that can stick does so. Where that takes its time, or turns the cloth's load
+    // off or on, end_slip() is of first order only, and the slip has to be smaller.
+    double ends_below(double nose_y, double cloth, double strain) const {
+        const bool clamped = !(s_ + c_ * f_ * nose_y > 0.0);
+        const bool soon = strain < 0.9 && clamped == nose_hold_clamped();
+        return soon ? std::max(late_stick(), kCushionStick * std::min(1.0, cloth)) : late_stick();
+    }
+
+    // Where friction and drive nearly balance, a slip can linger: the longer the impact takes, the larger a
+    // slip is taken as none. So every impact ends.
+    double late_stick() const {
+        return steps_ < kLateSteps ? kLateStick : kLateStick * (1 << std::min(10, steps_ / kLateSteps));
+    }
+
+    // Takes away what is left of the slip at a nose that sticks from now on, by the friction that would do
+    // it: when it does makes no difference to first order, because a stuck nose takes up the drive in
+    // between.
+    void end_slip(const Vec2& slip) {
+        const Vec2 mu = nose_hold_clamped() ? Vec2(0.0, 0.0) : Vec2(mu_ * c_ * cloth_direction_);
+        const double q_y = slip.y() / (s_ * s_ + 2.5 + (2.5 - s_) * mu.y());
+        const double q_x = (slip.x() - (1.0 - 2.5 * s_) * mu.x() * q_y) / 3.5;
+        const Vec2 q(q_x, q_y), p = q_y * mu;
+        y_.v_x -= q.x() + p.x();
+        move_v_y(s_ * q.y() - p.y());
+        y_.a_x -= 2.5 * (q.y() + p.y());
+        y_.a_y -= 2.5 * (s_ * q.x() - p.x());
+        y_.a_z += 2.5 * c_ * q.x();
+    }
+    // The same for the cloth.
+    void end_cloth_slip(const Vec2& slip) {
+        const Vec2 p = slip / 3.5;
+        y_.v_x -= p.x();
+        move_v_y(-p.y());
+        y_.a_x -= 2.5 * p.y();
+        y_.a_y += 2.5 * p.x();
+    }
+    // Compression stays compression.
+    void move_v_y(double change) {
+        const double v_y = y_.v_y + change;
+        y_.v_y = restoring_ ? std::min(v_y, 0.0) : std::max(v_y, 0.0);
+    }
+    bool nose_hold_clamped() const { return !(s_ + c_ * nose_hold(mu_ * cloth_direction_).y() > 0.0); }
+
+    // By how much it turned (the square of it).
+    static double turn(Vec2& direction, const Vec2& towards) {
         const double size = norm(towards);
-        if (size > 0.0) direction = towards / size;
+        if (!(size > 0.0)) return 0.0;
+        const Vec2 was = direction;
+        direction = towards / size;
+        return (direction - was).squaredNorm();
     }
 
     // Most that v_y may fall before a slip vanishes; a little less, so that its direction is still one at the
@@ -178,61 +252,87 @@ class Impact {
     // One accepted step: v_y falls by at most `most` (0: no limit), the work stays at or below `target` (0:
     // no limit).
     void advance(double most, double target) {
-        const State k1 = slope(y_);
+        if (!known_) slope_ = slope(y_);
         double h = std::min(step_, 1.0);
         if (most > 0.0) h = std::min(h, most);
-        if (!nose_stuck_ && f_ > 0.0) h = std::min(h, until_gone(nose_slip(y_), nose_slip(k1)));
-        if (!cloth_stuck_ && mu_ > 0.0) h = std::min(h, until_gone(cloth_slip(y_), cloth_slip(k1)));
-        double force = -change(forces(y_)).v_y;  // fall per impulse
+        if (!nose_stuck_ && f_ > 0.0) h = std::min(h, until_gone(nose_slip(y_), nose_slip(slope_)));
+        if (!cloth_stuck_ && mu_ > 0.0) h = std::min(h, until_gone(cloth_slip(y_), cloth_slip(slope_)));
+        double force = target > 0.0 ? -change(forces(y_)).v_y : 0.0;  // fall per impulse
+        const double allowed = tolerance_ + noise_;
+        const bool stuck = nose_stuck_ || cloth_stuck_;
+        const double before = stuck ? strain(y_) : 0.0;
         for (;;) {
             if (target > 0.0)
                 h = std::min(h, std::sqrt(y_.v_y * y_.v_y + 2.0 * force * (target - y_.work)) + y_.v_y);
             double error;
-            const State next = step(k1, h, error);
+            State k7;
+            const State next = step(slope_, h, error, k7);
             if (++steps_ > kCushionSteps) return;
-            const bool smallest = h < 1e-13;
-            const bool rough = error > kCushionTolerance + noise_;
-            if ((rough || lets_go(next, h)) && !smallest) {
-                h *= 0.5;
+            const bool smallest = h < kSmallestStep;
+            if (stuck && !smallest) {
+                const double after = strain(next);
+                if (after > 1.0 - kLetGo && before < 1.0 - kLetGo) {
+                    h *= (1.0 - kLetGo - before) / (after - before);
+                    continue;
+                }
+            }
+            if (error > allowed && !smallest) {
+                h *= scaled(error / allowed);
                 step_ = h;
                 continue;
             }
-            if (target > 0.0 && next.work > target * (1.0 + 1e-14) && !smallest) {
+            if (target > 0.0 && next.work > target * (1.0 + kWorkShare) && !smallest) {
                 // Too far: again with the force that this step has met.
                 const double fell = h * (h - 2.0 * y_.v_y) / 2.0;
                 force = fell / (next.work - y_.work);
                 continue;
             }
             const bool ends = most > 0.0 && h == most;
+            // Near a vanishing slip the steps shrink with it.
+            double shrinking = 1.0;
+            if (!nose_stuck_ && f_ > 0.0) shrinking = shrunk(nose_slip(y_), nose_slip(next));
+            if (!cloth_stuck_ && mu_ > 0.0)
+                shrinking = std::min(shrinking, shrunk(cloth_slip(y_), cloth_slip(next)));
             y_ = next;
             if (ends) y_.v_y = 0.0;
-            if (40.0 * error < kCushionTolerance + noise_) step_ = std::max(step_, 2.0 * h);
-            settle_after(h);
+            slope_ = k7;
+            known_ = true;
+            const double wish = h * scaled(error / allowed) * shrinking;
+            step_ = h < step_ ? std::min(step_, wish) : wish;
+            settle_after();
             return;
         }
     }
 
-    // Whether a stuck contact needs more than static friction can give at the end of a step; steps of this
-    // length find it.
-    bool lets_go(const State& next, double h) const {
-        if (h < 1e-9) return false;
-        if (nose_stuck_) return norm(forces(next).q) > f_ * (1.0 + 1e-12);
-        if (!cloth_stuck_) return false;
-        const Forces f = forces(next);
-        return norm(f.p) > mu_ * f.load * (1.0 + 1e-12);
+    double shrunk(const Vec2& before, const Vec2& after) const {
+        const double size = norm(before);
+        return size > floor() ? std::min(1.0, norm(after) / size) : 1.0;
     }
 
-    void settle_after(double h) {
-        const bool nose_gone = none(nose_slip(y_)) && f_ > 0.0,
-                   cloth_gone = none(cloth_slip(y_)) && mu_ > 0.0;
-        const bool was_stuck = nose_stuck_ || cloth_stuck_;
-        if (nose_gone || cloth_gone || was_stuck || nose_creeps_) settle();
-        // A contact that has just let go starts a layer of its own.
-        if (was_stuck && !(nose_stuck_ || cloth_stuck_)) step_ = std::max(h, 1e-6);
+    // By how much a step may change for an error of `x` times what is allowed: x^(-1/5) with some margin,
+    // from square roots (no libm), within [1/5, 4].
+    static double scaled(double x) {
+        const double root = std::sqrt(std::sqrt(x));  // x^(1/4), and x^(1/5) = x^(1/4) x^(-1/20)
+        return root > 4.0 ? 0.2 : (root > 0.2 ? 0.8 / root : 4.0);
+    }
+
+    double strain(const State& y) const {
+        const Forces f = forces(y);
+        return nose_stuck_ ? norm(f.q) / f_ : norm(f.p) / (mu_ * f.load);
+    }
+
+    void settle_after() {
+        const double nose = norm(nose_slip(y_)), cloth = norm(cloth_slip(y_));
+        const bool nose_ends =
+            f_ > 0.0 && (none(nose) || nose <= ends_below(nose_slip(y_).y() / nose, cloth, nose_strain()));
+        const bool cloth_ends = mu_ > 0.0 && cloth <= late_stick();
+        if (!(nose_ends || cloth_ends || nose_stuck_ || cloth_stuck_ || nose_creeps_)) return;
+        settle();
+        known_ = false;
     }
 
     // Dormand and Prince, J. Comp. Appl. Math. 6 (1980), RK5(4)7M.
-    State step(const State& k1, double h, double& error) const {
+    State step(const State& k1, double h, double& error, State& k7) const {
         const State k2 = slope(plus(y_, h / 5.0, k1));
         const State k3 = slope(plus(plus(y_, h * 3.0 / 40.0, k1), h * 9.0 / 40.0, k2));
         const State k4 =
@@ -248,7 +348,7 @@ class Impact {
             plus(plus(plus(plus(y_, h * 35.0 / 384.0, k1), h * 500.0 / 1113.0, k3), h * 125.0 / 192.0, k4),
                  h * -2187.0 / 6784.0, k5),
             h * 11.0 / 84.0, k6);
-        const State k7 = slope(next);
+        k7 = slope(next);
         const State zero{};
         const State off =
             plus(plus(plus(plus(plus(plus(zero, h * 71.0 / 57600.0, k1), h * -71.0 / 16695.0, k3),
@@ -261,29 +361,40 @@ class Impact {
         return next;
     }
 
+    double tolerance_;
     double f_, mu_, e_, s_, c_;
     State y_;
     double noise_ = 0.0;
-    double step_ = 0.25;
+    double step_ = kFirstStep;
     int steps_ = 0;
+    State slope_{};  // at y_, where it is known
+    bool known_ = false;
+    bool restoring_ = false;
     bool nose_stuck_ = false, cloth_stuck_ = false, nose_creeps_ = false;
     Vec2 nose_direction_ = Vec2::Zero(), cloth_direction_ = Vec2::Zero();
 };
 
 }  // namespace
 
-void cushion_mathavan_2010(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w) {
+bool cushion_mathavan_2010(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w) {
+    return cushion_mathavan_2010_to(p, normal, v, w, kCushionTolerance);
+}
+
+bool cushion_mathavan_2010_to(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w,
+                              double tolerance) {
     const double approach = approach_speed(normal, v);
-    if (!(approach > 0.0)) return;
+    if (!(approach > 0.0)) return true;
     const Vec2 y = -normal, x(y.y(), -y.x());
     const auto along = [](const Vec3& a, const Vec2& axis) { return a.x() * axis.x() + a.y() * axis.y(); };
     const double spin = p.R / approach;
     const State start{along(v, x) / approach, 1.0, along(w, x) * spin, along(w, y) * spin, w.z() * spin, 0.0};
-    const State end = Impact(p, start).run();
+    State end{};
+    if (!Impact(p, start, tolerance).run(end)) return false;
     const double v_x = end.v_x * approach, v_y = end.v_y * approach, w_x = end.a_x / spin,
                  w_y = end.a_y / spin;
     v = Vec3(v_x * x.x() + v_y * y.x(), v_x * x.y() + v_y * y.y(), 0.0);
     w = Vec3(w_x * x.x() + w_y * y.x(), w_x * x.y() + w_y * y.y(), end.a_z / spin);
+    return true;
 }
 
 }  // namespace carom::detail
@@ -291,8 +402,13 @@ void cushion_mathavan_2010(const CushionContact& p, const Vec2& normal, Vec3& v,
 namespace carom {
 
 bool mathavan_2010_ends(const CushionContact& p) {
-    const double s = std::abs(p.height - p.R) / p.R, c = std::sqrt((1.0 - s) * (1.0 + s));
-    return p.f_c * s + p.mu_s * (s + p.f_c * c) < c;
+    const double s = (p.height - p.R) / p.R, c = std::sqrt((1.0 - s) * (1.0 + s)), f = p.f_c;
+    if (!(f * std::abs(s) + p.mu_s * (std::abs(s) + f * c) < c)) return false;
+    // What the cloth would need to hold the ball, less what it can give, is linear in the nose's friction q_y
+    // wherever there is a load N = s + c q_y: the ends of that interval tell.
+    const auto slips = [&](double q_y) { return (c + (2.5 - s) * q_y) / 3.5 > p.mu_s * (s + c * q_y); };
+    const double low = std::max(-f, -s / c);
+    return low > f || (slips(low) && slips(f));
 }
 
 }  // namespace carom

@@ -7,11 +7,15 @@
 
 namespace carom::detail {
 
-void cushion_smooth(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
-void cushion_han_2005(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
-void cushion_impulse(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
-void cushion_stronge(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
-void cushion_mathavan_2010(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
+bool cushion_smooth(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
+bool cushion_han_2005(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
+bool cushion_impulse(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
+bool cushion_stronge(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
+bool cushion_mathavan_2010(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
+
+/// The same to a tolerance of one's own, of the approach speed and per step.
+bool cushion_mathavan_2010_to(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w,
+                              double tolerance);
 
 /// Speed at which the ball comes towards the cushion.
 inline double approach_speed(const Vec2& normal, const Vec3& v) {

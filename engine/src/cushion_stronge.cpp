@@ -105,8 +105,8 @@ double velocity_after(double r, double e, double f) {
 
 }  // namespace
 
-void cushion_stronge(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w) {
-    if (!(approach_speed(normal, v) > 0.0)) return;
+bool cushion_stronge(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w) {
+    if (!(approach_speed(normal, v) > 0.0)) return true;
     const NoseContact c = nose_contact(p, normal, v, w);
     const double approach = -c.u_n;
     double J_t = 0.0;
@@ -115,6 +115,7 @@ void cushion_stronge(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3&
         J_t = (r - velocity_after(r, p.e_c, p.f_c)) / kBeta * approach;
     }
     apply_at_nose(p, c, (1.0 + p.e_c) * approach, J_t, v, w);
+    return true;
 }
 
 }  // namespace carom::detail

@@ -25,6 +25,7 @@ Vec2 at(const Relative& m, double t) {
 Vec2 rate(const Relative& m, double t) {
     return {m.v.x() + t * m.a.x(), m.v.y() + t * m.a.y()};
 }
+
 double dot(const Vec2& a, const Vec2& b) {
     return a.x() * b.x() + a.y() * b.y();
 }
@@ -236,6 +237,14 @@ double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, d
         if (closing < best && closing <= ball.horizon && foot_inside(closing)) best = closing;
     }
     return best;
+}
+
+bool stays_off_line(const Path& ball, const Vec2& from, const Vec2& direction, double R, double window) {
+    const Vec2 normal(-direction.y(), direction.x());
+    const double height = dot(normal, ball.r - from);
+    const double sign = height < 0.0 ? -1.0 : 1.0;
+    return least(sign * height, sign * dot(normal, ball.v), 0.5 * sign * dot(normal, ball.a), window) >
+           R * (1.0 + kApartShare);
 }
 
 double time_to_pocket(const Path& ball, const Vec2& center, double radius) {

@@ -28,16 +28,6 @@ double decayed(double w_z, double decay, double tau) {
 }
 }  // namespace
 
-double length(const Vec2& a) {
-    const double largest = std::max(std::abs(a.x()), std::abs(a.y()));
-    if (largest == 0.0) return 0.0;
-    // Squares stay normal numbers in this range; outside it, scale by a power of two (exact).
-    if (largest > 0x1p-500 && largest < 0x1p500) return std::sqrt(a.x() * a.x() + a.y() * a.y());
-    const double scale = largest < 1.0 ? 0x1p600 : 0x1p-600;
-    const double x = a.x() * scale, y = a.y() * scale;
-    return std::sqrt(x * x + y * y) / scale;
-}
-
 Vec2 cloth_slip(const Vec3& v, const Vec3& w, double R) {
     return {v.x() - R * w.y(), v.y() + R * w.x()};
 }
@@ -122,20 +112,6 @@ Segment pocketed_segment(double t, const Pocket& pocket) {
     s.duration = kInfinity;
     s.state = MotionState::kPocketed;
     return s;
-}
-
-Vec3 position_at(const Segment& s, double tau) {
-    return {s.r.x() + tau * (s.v.x() + 0.5 * tau * s.a.x()), s.r.y() + tau * (s.v.y() + 0.5 * tau * s.a.y()),
-            s.r.z()};
-}
-
-Vec3 velocity_at(const Segment& s, double tau) {
-    if (s.state == MotionState::kRolling && s.duration < kInfinity && !s.held) {
-        // v + a tau, written so that the direction stays and the end is exactly 0.
-        const double left = std::max(0.0, 1.0 - tau / s.duration);
-        return {s.v.x() * left, s.v.y() * left, 0.0};
-    }
-    return {s.v.x() + tau * s.a.x(), s.v.y() + tau * s.a.y(), 0.0};
 }
 
 Vec3 spin_at(const Segment& s, double tau, double R) {

@@ -2,6 +2,9 @@
 // (Leckie and Greenspan, "An event-based pool physics simulator", 2005).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
 #include "carom/engine/scene.h"
@@ -9,7 +12,15 @@
 namespace carom {
 
 /// Length of a planar vector; no overflow, no underflow, no libm.
-double length(const Vec2& a);
+inline double length(const Vec2& a) {
+    const double largest = std::max(std::abs(a.x()), std::abs(a.y()));
+    if (largest == 0.0) return 0.0;
+    // Squares stay normal numbers in this range; outside it, scale by a power of two (exact).
+    if (largest > 0x1p-500 && largest < 0x1p500) return std::sqrt(a.x() * a.x() + a.y() * a.y());
+    const double scale = largest < 1.0 ? 0x1p600 : 0x1p-600;
+    const double x = a.x() * scale, y = a.y() * scale;
+    return std::sqrt(x * x + y * y) / scale;
+}
 
 /// Slip at the cloth, u = v + w x (-R z) = (v_x - R w_y, v_y + R w_x) [m/s].
 Vec2 cloth_slip(const Vec3& v, const Vec3& w, double R);

@@ -43,7 +43,20 @@ void add_geometry(const Table& table, Plan& plan) {
     plan.pockets = table.pockets;
 }
 
+// Where a tree beats the loop through all boxes.
+void choose_search(Plan& plan) {
+    const std::size_t parts = plan.cushions.size() + plan.noses.size() + plan.pockets.size();
+    if (parts >= kTreeFromParts) plan.table_search = Search::kTree;
+    const std::size_t balls = plan.scene.ball.size();
+    if (balls >= kTreeFromBalls) plan.ball_search = Search::kTree;
+    if (balls >= kShortBoxesFromBalls) plan.box_travel = kBoxTravel;
+}
+
 }  // namespace
+
+const char* name(Search search) {
+    return search == Search::kTree ? "tree" : "direct";
+}
 
 Plan make_plan(const Scene& scene, kernel::Isa isa) {
     Plan plan;
@@ -54,7 +67,9 @@ Plan make_plan(const Scene& scene, kernel::Isa isa) {
     plan.cushion = &cushion_model(scene.physics.cushion);
     plan.jaw = &cushion_model(scene.physics.jaw_model());
     decide_effects(scene, plan);
+    choose_search(plan);
     plan.isa = isa;
+    plan.contact_phase = kernel::contact_phase_function(isa);
     if (scene.physics.substeps)
         plan.march = kernel::march_function(isa);
     else

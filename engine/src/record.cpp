@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <mutex>
 
 #include "carom/engine/math.h"
+#include "fnv.h"
 #include "motion.h"
 
 namespace carom {
@@ -128,21 +128,6 @@ Eigen::Quaterniond segment_turn(const Segment& s, double tau) {
     const Vec3 w_then(s.w.x() + spin_end * s.dw.x(), s.w.y() + spin_end * s.dw.y(), 0.0);
     return turned(w_then, Vec3(s.dw.x(), s.dw.y(), 0.0), tau - spin_end) * turned(s.w, dw, spin_end);
 }
-
-class Fnv {
-  public:
-    void add(double x) { add_bytes(&x, sizeof x); }
-    void add(std::uint64_t x) { add_bytes(&x, sizeof x); }
-    std::uint64_t value() const { return hash_; }
-
-  private:
-    void add_bytes(const void* data, std::size_t size) {
-        unsigned char bytes[8];
-        std::memcpy(bytes, data, size);
-        for (std::size_t i = 0; i < size; ++i) hash_ = (hash_ ^ bytes[i]) * 0x100000001B3ull;
-    }
-    std::uint64_t hash_ = 0xCBF29CE484222325ull;
-};
 
 }  // namespace
 

@@ -10,8 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "carom/engine/record.h"
+#include "carom/engine/tolerances.h"
 #include "record_format.h"
 
 namespace carom {
@@ -292,7 +294,7 @@ void read_events(const Node& node, bool profiled, Record& record) {
 
 /// Where in the text a byte stands. A NUL or a newline more or less does not matter: this is for a person's
 /// editor.
-SourceLocation location(const std::string& text, std::size_t byte) {
+SourceLocation location(std::string_view text, std::size_t byte) {
     SourceLocation where{1, 1};
     for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {
         if (text[i] == '\n') {
@@ -311,13 +313,19 @@ std::string read_text(const std::string& path) {
     // A device or a pipe might never end.
     if (!std::filesystem::is_regular_file(path, error))
         throw SceneError(path, {}, "this is not a regular file");
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (!error && size > kMaxRecordSize) {
+        throw SceneError(path, {},
+                         "is larger than " + std::to_string(kMaxRecordSize >> 20) +
+                             " MiB; stop the shot earlier ([stop]) and write it in parts");
+    }
     std::ifstream stream(path, std::ios::binary);
     std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
     if (!stream) throw SceneError(path, {}, "cannot be read");
     return text;
 }
 
-Json parse(const std::string& text, const std::string& path) {
+Json parse(std::string_view text, const std::string& path) {
     try {
         return Json::parse(text);
     } catch (const Json::parse_error& error) {
@@ -330,8 +338,12 @@ Json parse(const std::string& text, const std::string& path) {
 }  // namespace
 
 Record read_record(const std::string& path) {
-    const Json json = parse(read_text(path), path);
-    const Node root(json, path, "");
+    return parse_record(read_text(path), path);
+}
+
+Record parse_record(std::string_view text, const std::string& name) {
+    const Json json = parse(text, name);
+    const Node root(json, name, "");
     if (!json.is_object() || !root.has("format") || root.at("format").text() != kRecordFormat) {
         root.fail("this is no record of carom; carom simulate SCENE -o shot.json writes one");
     }

@@ -9,7 +9,8 @@ namespace carom {
 
 SceneError::SceneError(const std::string& file, SourceLocation where, const std::string& message)
     : std::runtime_error(where.line > 0 ? fmt::format("{}:{}:{}: {}", file, where.line, where.column, message)
-                                        : fmt::format("{}: {}", file, message)) {}
+                                        : fmt::format("{}: {}", file, message)),
+      message_(message) {}
 
 double ball_friction(const BallParams& balls, double slip) {
     if (balls.mu_b_more == 0.0) return balls.mu_b;

@@ -46,29 +46,45 @@ std::string read_text(const std::string& path) {
     return text;
 }
 
+void check_size(std::string_view text, const std::string& name) {
+    if (text.size() <= kMaxFileSize) return;
+    throw SceneError(name, {},
+                     fmt::format("is larger than {} MiB; a scene file is a few lines", kMaxFileSize >> 20));
+}
+
 }  // namespace
 
-Scene parse_scene(std::string_view text, const std::string& name) {
-    if (text.size() > kMaxFileSize) {
-        throw SceneError(
-            name, {}, fmt::format("is larger than {} MiB; a scene file is a few lines", kMaxFileSize >> 20));
-    }
-    const toml::table file = parse_toml(text, name);
-    const detail::Section top(
-        file, name, "", {"table", "balls", "rack", "ball", "cue", "physics", "stop", "render", "effects"});
+namespace detail {
+
+toml::table read_toml(const std::string& path) {
+    const std::string text = read_text(path);
+    check_size(text, path);
+    return parse_toml(text, path);
+}
+
+Scene scene_from(const toml::table& file, const std::string& name) {
+    const Section top(file, name, "",
+                      {"table", "balls", "rack", "ball", "cue", "physics", "stop", "render", "effects"});
     Scene scene;
     scene.file = name;
-    detail::read_physics(top, scene);
-    detail::read_balls(top, scene);
-    detail::read_table(top, scene);
-    detail::read_ball_list(top, scene);
-    detail::read_rack(top, scene);
-    detail::read_cue(top, scene);
-    detail::read_effects(top, scene);
-    detail::read_stop(top, scene);
-    detail::read_render(top, scene);
-    detail::check_scene(top, scene);
+    read_physics(top, scene);
+    read_balls(top, scene);
+    read_table(top, scene);
+    read_ball_list(top, scene);
+    read_rack(top, scene);
+    read_cue(top, scene);
+    read_effects(top, scene);
+    read_stop(top, scene);
+    read_render(top, scene);
+    check_scene(top, scene);
     return scene;
+}
+
+}  // namespace detail
+
+Scene parse_scene(std::string_view text, const std::string& name) {
+    check_size(text, name);
+    return detail::scene_from(parse_toml(text, name), name);
 }
 
 Scene read_scene(const std::string& path) {

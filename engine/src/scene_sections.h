@@ -24,4 +24,9 @@ void read_render(const Section& top, Scene& scene);
 /// no ball can meet, a run that would never end. @throws SceneError
 void check_scene(const Section& top, const Scene& scene);
 
+/// A file as toml++ reads it. @throws SceneError where it cannot be read or is no TOML
+toml::table read_toml(const std::string& path);
+/// From there to a validated scene; `name` stands for the file in messages. @throws SceneError
+Scene scene_from(const toml::table& file, const std::string& name);
+
 }  // namespace carom::detail

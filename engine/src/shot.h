@@ -1,15 +1,18 @@
-// The state of one run, and the steps of its loop. Split over shot_detect.cpp (what comes next),
-// shot_resolve.cpp (what an event does) and shot_held.cpp (sustained contacts); the loop itself is
-// simulate.cpp.
+// The state of one run, and the steps of its loop. Split over shot_queue.cpp (what comes next),
+// shot_detect.cpp (contacts of balls), shot_table.cpp (contacts with the table), shot_resolve.cpp (what an
+// event does), shot_cluster.cpp and shot_held.cpp (sustained contacts); the loop itself is simulate.cpp.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "box_search.h"
 #include "carom/engine/simulate.h"
 #include "cluster.h"
 #include "detect.h"
+#include "event_queue.h"
 #include "motion.h"
 #include "roots.h"
 #include "sustained.h"
@@ -21,12 +24,20 @@ struct Candidate {
     double time = kNever;
     EventType type = EventType::kCueStrike;
     int a = -1, b = -1;
-    int nose = -1;  ///< kBallCushion, kBallJaw: index into Plan::noses, or -1 for the straight part
+    int nose = -1;            ///< kBallCushion, kBallJaw: index into Plan::noses, or -1 for the straight part
+    std::uint32_t stamp = 0;  ///< of a pair: Mover::stamp of the partner when this was found
 };
 
-/// A rectangle on the table.
-struct Box {
-    double low_x, low_y, high_x, high_y;
+/// What detection keeps for a ball beside its segment.
+struct Mover {
+    double surface = 0.0;   ///< R |w| at the start of the segment [m/s]
+    double until = kNever;  ///< its box holds until then; later contacts are not looked for yet
+    double refresh =
+        kNever;           ///< then the box is renewed; kNever where an event of the ball's own comes first
+    double travel = 0.0;  ///< [m] the way that the next box is to cover
+    std::uint32_t stamp = 0;  ///< changes with the segment
+    std::uint32_t round = 0;  ///< last search in which the ball was new
+    bool straight = false, queued = false;
 };
 
 class Shot {
@@ -37,6 +48,8 @@ class Shot {
 
     /// Balls, cue strike, first candidates.
     void set_up(bool profile);
+    /// Moves the segments of this run into the record.
+    void finish();
     /// Goes on from where a record stopped; its bits are those of a run that did not stop.
     void take_up(const Record& record);
     /// The loop. kProfile = false has no clock in it.
@@ -44,20 +57,43 @@ class Shot {
     Record run(const Record* so_far);
 
   private:
+    void reserve_log();
     void first_candidates();
 
-    // shot_detect.cpp
-    Candidate next() const;
-    bool before(const Candidate& x, const Candidate& y) const;
+    // shot_queue.cpp
+    template <bool kProfile>
+    Candidate next();
+    bool before(const Candidate& x, const Candidate& y) const {
+        return x.time != y.time ? x.time < y.time : x.time != kNever && before_at_once(x, y);
+    }
+    void take_first(const Candidate& c, Candidate& first) const {
+        if (before(c, first)) first = c;
+    }
+    bool before_at_once(const Candidate& x, const Candidate& y) const;
     double closing(const Candidate& c) const;
     Vec2 place(const Candidate& c) const;
-    Candidate pair(int a, int b) const;
-    void rescan(int ball);
-    void detect_features(int ball);
-    void bound(int ball);
+    void changed(int ball);
+    void requeue();
+
+    // shot_detect.cpp
     void redetect();
-    Box swept(int ball, double duration) const;
+    void renew(int ball);
+    Box swept(int ball, double from, double duration) const;
     Path path(int ball, double from) const;
+    void bound(int ball, double from);
+    bool search_pairs(int ball);
+    Candidate pair(int a, const Path& mine, int b, double latest) const;
+    void offer(int ball, int partner, Candidate c);
+    void look_again(int ball);
+
+    // shot_table.cpp
+    void set_up_table();
+    void find_parts(int ball);
+    void detect_features(int ball);
+    void offer_rest(int ball, int pocket, Candidate& first) const;
+    void offer_line(int ball, const Path& p, int line, Candidate& first) const;
+    void offer_nose(int ball, const Path& p, int nose, Candidate& first) const;
+    void offer_pocket(int ball, const Path& p, int pocket, Candidate& first) const;
 
     // shot_resolve.cpp
     template <bool kProfile>
@@ -70,7 +106,12 @@ class Shot {
     void resolve_pocket(const Candidate& c);
     void resolve_transition(const Candidate& c);
     void record_event(EventType type, int a, int b, int detail = -1);
-    void begin(int ball, const Segment& segment);
+    void begin(int ball, const Segment& segment) {
+        current_[static_cast<std::size_t>(ball)] = segment;
+        log_.push_back(segment);
+        log_ball_.push_back(ball);
+        touched_.push_back(ball);
+    }
     void guard_cap() const;
     [[noreturn]] void fail(const std::string& why) const;
 
@@ -95,12 +136,12 @@ class Shot {
     void sort_by_place(std::vector<HeldContact>& contacts) const;
     void restore_held();
 
-    const Segment& now_of(int ball) const {
-        return record_.tracks[static_cast<std::size_t>(ball)].segments.back();
-    }
+    const Segment& now_of(int ball) const { return current_[static_cast<std::size_t>(ball)]; }
     Vec3 position_now(int ball) const { return position_at(now_of(ball), now_ - now_of(ball).start); }
     Vec3 velocity_now(int ball) const { return velocity_at(now_of(ball), now_ - now_of(ball).start); }
     Vec3 spin_now(int ball) const { return spin_at(now_of(ball), now_ - now_of(ball).start, plan_.balls.R); }
+    /// From one time to another, on the long side of its rounding.
+    static double span(double from, double to) { return (to - from) + 0x1p-50 * to; }
     static double nanoseconds(Clock::time_point from, Clock::time_point to) {
         return std::chrono::duration<double, std::nano>(to - from).count();
     }
@@ -113,15 +154,37 @@ class Shot {
     int balls_ = 0;
     int quiet_ = 0;  // rounds of the loop in a row without an event
     EventCost cost_;
+    std::vector<Segment> current_;  // per ball
+    std::vector<Segment> log_;      // every segment begun in this run, in order; the record's at the end
+    std::vector<int> log_ball_;
     std::vector<int> touched_;  // balls whose motion the present event changed
     std::vector<HeldContact> held_;
     ClusterMap cluster_map_;
     std::vector<ClusterBall> cluster_balls_;
     std::vector<ClusterContact> cluster_contacts_;
-    // Per ball: its transition, its first contact with the table, its first contact with another ball.
-    std::vector<Candidate> own_, feature_, pair_;
-    std::vector<Box> box_;         // per ball: where it can be until its own next event
-    std::vector<Box> line_boxes_;  // per straight cushion
+    // Per ball: its transition, its first contact with the table, its first contact with another ball, and
+    // the first of these. A pair is kept until it comes up, even if the partner has changed meanwhile: it is
+    // then not later than the ball's true next contact.
+    std::vector<Candidate> own_, feature_, pair_, first_;
+    std::vector<double> key_;  // per ball: when the loop has to look at it
+    std::vector<Mover> mover_;
+    std::vector<int> changed_;  // balls whose place in the queue is to be found anew
+    EventQueue queue_;
+    BoxSearch ball_boxes_, table_boxes_;  // where balls can be until their own next event; parts of the table
+    std::vector<int> parts_;              // of the table: cushions, then noses, then pockets
+    std::uint32_t round_ = 0;
+    double search_ns_ = 0.0;  // profiled: of look_again()
 };
+
+// Motion of a ball from the time `from` on. Contacts are sought from the start of the segments concerned, not
+// from now: the answer is then a function of the segments alone, whenever it is computed.
+inline Path Shot::path(int ball, double from) const {
+    const Segment& s = now_of(ball);
+    const Mover& mover = mover_[static_cast<std::size_t>(ball)];
+    const double tau = from - s.start;
+    const Vec3 r = position_at(s, tau), v = velocity_at(s, tau);
+    return {Vec2(r.x(), r.y()), Vec2(v.x(), v.y()),  s.a,          std::max(0.0, s.duration - tau),
+            mover.straight,     translates(s.state), mover.surface};
+}
 
 }  // namespace carom

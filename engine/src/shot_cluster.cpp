@@ -1,5 +1,7 @@
 // Ball-ball impacts with a third ball within reach: one event for the whole cluster.
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "carom/engine/tolerances.h"
 #include "shot.h"
@@ -8,8 +10,14 @@ namespace carom {
 
 namespace {
 
-bool left_of(const Vec2& p, const Vec2& q) {
-    return p.x() < q.x() || (p.x() == q.x() && p.y() < q.y());
+// An order of places that mirrors in the axes and quarter turns keep, up to the order of mirror images among
+// themselves: so do the sums of a cluster, to the last bit.
+bool before_place(const Vec2& p, const Vec2& q) {
+    const auto key = [](const Vec2& a) {
+        const double x = std::abs(a.x()), y = std::abs(a.y());
+        return std::array<double, 4>{std::max(x, y), std::min(x, y), a.y(), a.x()};
+    };
+    return key(p) < key(q);
 }
 
 Vec2 planar(const Vec3& a) {
@@ -74,8 +82,9 @@ void Shot::collect_cluster_at(int a, int b, double v_n) {
         }
     }
     if (cluster_balls_.size() < 3) return;
-    std::sort(cluster_balls_.begin(), cluster_balls_.end(),
-              [](const ClusterBall& p, const ClusterBall& q) { return left_of(planar(p.r), planar(q.r)); });
+    std::sort(cluster_balls_.begin(), cluster_balls_.end(), [](const ClusterBall& p, const ClusterBall& q) {
+        return before_place(planar(p.r), planar(q.r));
+    });
     for (std::size_t i = 0; i < cluster_balls_.size(); ++i) {
         for (std::size_t j = i + 1; j < cluster_balls_.size(); ++j) {
             const Nearness near = nearness(cluster_balls_[i], cluster_balls_[j], R);
@@ -89,7 +98,7 @@ void Shot::collect_cluster_at(int a, int b, double v_n) {
                              return Vec2(planar(cluster_balls_[static_cast<std::size_t>(c.i)].r) +
                                          planar(cluster_balls_[static_cast<std::size_t>(c.j)].r));
                          };
-                         return left_of(place(p), place(q));
+                         return before_place(place(p), place(q));
                      });
 }
 
@@ -105,14 +114,16 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
         steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
     } else {
         const bool frictionless = plan_.scene.physics.ball_ball == BallBallModel::kElastic;
+        const double mu_b = frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b);
         const ClusterSettings settings{
             p.R,
             plan_.scene.physics.ball_ball == BallBallModel::kMathavan ? p.mu_s : 0.0,
-            frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b),
+            mu_b,
             frictionless ? 1.0 : p.e_b,
             plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
             kClusterEpsilon,
-            kClusterStep};
+            mu_b > 0.0 ? kClusterFrictionStep : kClusterStep,
+            plan_.contact_phase};
         steps = cluster_map_.compliant(cluster_balls_, cluster_contacts_, settings, v_n);
         // Friction and a wedge can keep balls pressed together without end: then as if they were rigid.
         if (steps < 0) steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
@@ -134,6 +145,8 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
 }
 
 template bool Shot::resolve_cluster<false>(const Candidate&, double);
+#ifndef CAROM_WITHOUT_PROFILE
 template bool Shot::resolve_cluster<true>(const Candidate&, double);
+#endif
 
 }  // namespace carom

@@ -1,4 +1,4 @@
-// What comes next: candidates per ball, their order, and re-detection of what an event touched.
+// Contacts of balls: what an event touched is looked at anew.
 #include <algorithm>
 #include <cmath>
 
@@ -8,22 +8,6 @@
 namespace carom {
 
 namespace {
-
-// Written order of events at one and the same time: pocket, own transition, ball-ball, cushion.
-int rank(EventType type) {
-    switch (type) {
-        case EventType::kBallPocket:
-            return 0;
-        case EventType::kBallBall:
-        case EventType::kBallCluster:
-            return 2;
-        case EventType::kBallCushion:
-        case EventType::kBallJaw:
-            return 3;
-        default:
-            return 1;
-    }
-}
 
 bool in_play(const Segment& segment) {
     return segment.state != MotionState::kPocketed;
@@ -51,195 +35,129 @@ void extend(double r, double v, double a, double T, double margin, double& low, 
     high += margin;
 }
 
-bool apart(const Box& a, const Box& b) {
-    return a.low_x > b.high_x || b.low_x > a.high_x || a.low_y > b.high_y || b.low_y > a.high_y;
-}
-
-Box around(const Vec2& center, double reach) {
-    return {center.x() - reach, center.y() - reach, center.x() + reach, center.y() + reach};
-}
-
 }  // namespace
 
-// Motion of a ball from the time `from` on. Contacts are sought from the start of the segments concerned, not
-// from now: the answer is then a function of the segments alone, whenever it is computed.
-Path Shot::path(int ball, double from) const {
-    const Segment& s = now_of(ball);
-    const double tau = from - s.start;
-    const Vec3 r = position_at(s, tau), v = velocity_at(s, tau);
-    const bool moves = translates(s.state);
-    // A free ball rolls straight ahead; a held one is pushed aside.
-    const bool straight =
-        (s.state == MotionState::kRolling && !s.held) || s.v.x() * s.a.y() - s.v.y() * s.a.x() == 0.0;
-    return {Vec2(r.x(), r.y()),
-            Vec2(v.x(), v.y()),
-            s.a,
-            std::max(0.0, s.duration - tau),
-            straight,
-            moves,
-            plan_.balls.R * std::sqrt(s.w.x() * s.w.x() + s.w.y() * s.w.y() + s.w.z() * s.w.z())};
-}
-
-// Closing speed of a contact at its time: at one instant the deepest closing goes first.
-double Shot::closing(const Candidate& c) const {
-    if (c.type != EventType::kBallBall) return 0.0;
-    const Segment &s = now_of(c.a), &q = now_of(c.b);
-    const Vec3 r = position_at(q, c.time - q.start) - position_at(s, c.time - s.start);
-    const Vec3 v = velocity_at(q, c.time - q.start) - velocity_at(s, c.time - s.start);
-    return -(r.x() * v.x() + r.y() * v.y());
-}
-
-Vec2 Shot::place(const Candidate& c) const {
-    const Vec3 r = position_at(now_of(c.a), c.time - now_of(c.a).start);
-    const Vec2 here(r.x(), r.y());
-    switch (c.type) {
-        case EventType::kBallBall: {
-            const Vec3 q = position_at(now_of(c.b), c.time - now_of(c.b).start);
-            return 0.5 * (here + Vec2(q.x(), q.y()));
-        }
-        case EventType::kBallPocket:
-            return plan_.pockets[static_cast<std::size_t>(c.b)].center;
-        case EventType::kBallCushion:
-        case EventType::kBallJaw: {
-            if (c.nose >= 0) return plan_.noses[static_cast<std::size_t>(c.nose)].center;
-            const CushionLine& line = plan_.cushions[static_cast<std::size_t>(c.b)];
-            return line.from + line.direction * line.direction.dot(here - line.from);
-        }
-        default:
-            return here;
-    }
-}
-
-// Order of candidates: time, then kind, then the deeper closing, then the place (x, then y). Never an id.
-bool Shot::before(const Candidate& x, const Candidate& y) const {
-    if (x.time != y.time) return x.time < y.time;
-    if (x.time == kNever) return false;
-    if (rank(x.type) != rank(y.type)) return rank(x.type) < rank(y.type);
-    const double closing_x = closing(x), closing_y = closing(y);
-    if (closing_x != closing_y) return closing_x > closing_y;
-    const Vec2 place_x = place(x), place_y = place(y);
-    if (place_x.x() != place_y.x()) return place_x.x() < place_y.x();
-    return place_x.y() < place_y.y();
-}
-
-Candidate Shot::next() const {
-    Candidate first;
-    for (std::size_t i = 0; i < own_.size(); ++i) {
-        for (const Candidate* c : {&own_[i], &feature_[i], &pair_[i]}) {
-            if (c->time <= first.time && before(*c, first)) first = *c;
-        }
-    }
-    return first;
-}
-
-// Where the ball's surface can be from its segment's start until `duration` later; the share keeps rounding
+// Where the ball's surface can be from the time `from` until `duration` later; the share keeps rounding
 // inside.
-Box Shot::swept(int ball, double duration) const {
+Box Shot::swept(int ball, double from, double duration) const {
     const Segment& s = now_of(ball);
+    const Vec3 r = position_at(s, from - s.start), v = velocity_at(s, from - s.start);
     const double R = plan_.balls.R,
-                 margin = R * (1.0 + kBoxShare) + kBoxShare * (std::abs(s.r.x()) + std::abs(s.r.y()));
+                 margin = R * (1.0 + kBoxShare) + kBoxShare * (std::abs(r.x()) + std::abs(r.y()));
     Box box{};
-    extend(s.r.x(), s.v.x(), s.a.x(), duration, margin, box.low_x, box.high_x);
-    extend(s.r.y(), s.v.y(), s.a.y(), duration, margin, box.low_y, box.high_y);
+    extend(r.x(), v.x(), s.a.x(), duration, margin, box.low_x, box.high_x);
+    extend(r.y(), v.y(), s.a.y(), duration, margin, box.low_y, box.high_y);
     return box;
 }
 
-Candidate Shot::pair(int a, int b) const {
-    // Beyond what either does next there is nothing to know: both will be looked at again then.
-    if (apart(box_[static_cast<std::size_t>(a)], box_[static_cast<std::size_t>(b)])) return {};
-    const double from = std::max(now_of(a).start, now_of(b).start);
-    const double t = time_to_ball(path(a, from), path(b, from), 2.0 * plan_.balls.R);
+// The box of a ball from the time `from` until its own next event with itself or the table, or until it has
+// gone as far as its box is to cover.
+void Shot::bound(int ball, double from) {
+    const auto i = static_cast<std::size_t>(ball);
+    Mover& mover = mover_[i];
+    const Segment& s = now_of(ball);
+    mover.until = std::min(own_[i].time, feature_[i].time);
+    mover.refresh = kNever;
+    if (mover.travel < kNever && translates(s.state)) {
+        const Vec3 v = velocity_at(s, from - s.start);
+        const double speed = length(Vec2(v.x(), v.y())), pull = length(s.a);
+        const double end =
+            std::max(from, now_) +
+            2.0 * mover.travel / (speed + std::sqrt(speed * speed + 2.0 * pull * mover.travel));
+        if (end < mover.until) mover.until = mover.refresh = end;
+    }
+    ball_boxes_.place(ball, swept(ball, from, mover.until - from));
+}
+
+// First contact of two balls, unless it comes later than `latest` or than what either does next: both will be
+// looked at again then. `mine` is the path of ball a from the start of its segment.
+Candidate Shot::pair(int a, const Path& mine, int b, double latest) const {
+    const Segment &s = now_of(a), &q = now_of(b);
+    if (!mine.moves && !translates(q.state)) return {};
+    const double from = std::max(s.start, q.start);
+    const double until = std::min(
+        std::min(mover_[static_cast<std::size_t>(a)].until, mover_[static_cast<std::size_t>(b)].until),
+        latest);
+    const Path one = from == s.start ? mine : path(a, from), two = path(b, from);
+    if (stays_apart(two.r - one.r, two.v - one.v, two.a - one.a, 2.0 * plan_.balls.R, span(from, until)))
+        return {};
+    const double t = time_to_ball(one, two, 2.0 * plan_.balls.R);
     return {from + t, EventType::kBallBall, std::min(a, b), std::max(a, b), -1};
 }
 
-void Shot::rescan(int ball) {
-    Candidate first;
-    for (int j = 0; plan_.pairs && j < balls_ && in_play(now_of(ball)); ++j) {
-        if (j == ball || !in_play(now_of(j)) || held_together(ball, j)) continue;
-        const Candidate c = pair(ball, j);
-        if (before(c, first)) first = c;
-    }
-    pair_[static_cast<std::size_t>(ball)] = first;
+void Shot::offer(int ball, int partner, Candidate c) {
+    Candidate& mine = pair_[static_cast<std::size_t>(ball)];
+    if (!before(c, mine)) return;
+    mine = c;
+    mine.stamp = mover_[static_cast<std::size_t>(partner)].stamp;
+    changed(ball);
 }
 
-void Shot::detect_features(int ball) {
-    Candidate first;
-    if (translates(now_of(ball).state)) {
-        const double from = now_of(ball).start;
-        const Path p = path(ball, from);
-        const double R = plan_.balls.R;
-        const auto offer = [&](double t, EventType type, int index, int nose) {
-            if (t == kNever) return;
-            const Candidate c{from + t, type, ball, index, nose};
-            if (before(c, first)) first = c;
-        };
-        const Box whole = swept(ball, now_of(ball).duration);
-        for (std::size_t i = 0; i < plan_.cushions.size(); ++i) {
-            const CushionLine& line = plan_.cushions[i];
-            if (apart(whole, line_boxes_[i]) || held_to(ball, static_cast<int>(i), -1)) continue;
-            offer(time_to_line(p, line.from, line.direction, line.length, R), EventType::kBallCushion,
-                  static_cast<int>(i), -1);
-        }
-        // What lies beyond the first straight cushion cannot come before it.
-        const Box near = first.time < kNever ? swept(ball, first.time - from) : whole;
-        for (std::size_t i = 0; i < plan_.noses.size(); ++i) {
-            const Nose& nose = plan_.noses[i];
-            if (apart(near, around(nose.center, nose.radius)) || held_to(ball, -1, static_cast<int>(i)))
-                continue;
-            offer(time_to_circle(p, nose.center, R + nose.radius), nose.type, nose.index,
-                  static_cast<int>(i));
-        }
-        for (std::size_t i = 0; i < plan_.pockets.size(); ++i) {
-            if (apart(near, around(plan_.pockets[i].center, plan_.pockets[i].radius))) continue;
-            offer(time_to_pocket(p, plan_.pockets[i].center, plan_.pockets[i].radius), EventType::kBallPocket,
-                  static_cast<int>(i), -1);
-        }
-    } else if (now_of(ball).state != MotionState::kPocketed) {
-        // A ball that rests inside a pocket's circle falls.
-        const Vec3& r = now_of(ball).r;
-        for (std::size_t i = 0; i < plan_.pockets.size(); ++i) {
-            if (length(Vec2(r.x(), r.y()) - plan_.pockets[i].center) < plan_.pockets[i].radius)
-                first = {now_of(ball).start, EventType::kBallPocket, ball, static_cast<int>(i), -1};
-        }
-    }
-    feature_[static_cast<std::size_t>(ball)] = first;
+// All contacts of one ball, each offered to both. Returns whether any other ball's box is near.
+bool Shot::search_pairs(int ball) {
+    bool any = false;
+    ball_boxes_.settle();
+    const Path mine = path(ball, now_of(ball).start);
+    ball_boxes_.neighbours(ball, [this, ball, &mine, &any](int other) {
+        any = true;
+        // Of two new balls the first one has done it.
+        if (mover_[static_cast<std::size_t>(other)].round == round_ && other < ball) return;
+        if (held_together(ball, other)) return;
+        const double latest =
+            std::max(pair_[static_cast<std::size_t>(ball)].time, pair_[static_cast<std::size_t>(other)].time);
+        const Candidate c = pair(ball, mine, other, latest);
+        if (c.time == kNever) return;
+        offer(ball, other, c);
+        offer(other, ball, c);
+    });
+    return any;
 }
 
-// The box of a ball until its own next event with itself or the table.
-void Shot::bound(int ball) {
+// A ball's own part after an event that touched it: its transition, the table, its box.
+void Shot::renew(int ball) {
     const auto i = static_cast<std::size_t>(ball);
-    box_[i] = swept(ball, std::min(own_[i].time, feature_[i].time) - now_of(ball).start);
+    const Segment& s = now_of(ball);
+    const double R = plan_.balls.R;
+    Mover& mover = mover_[i];
+    mover.surface = R * std::sqrt(s.w.x() * s.w.x() + s.w.y() * s.w.y() + s.w.z() * s.w.z());
+    // A free ball rolls straight ahead; a held one is pushed aside.
+    mover.straight =
+        (s.state == MotionState::kRolling && !s.held) || s.v.x() * s.a.y() - s.v.y() * s.a.x() == 0.0;
+    mover.travel = plan_.box_travel * R;
+    mover.until = mover.refresh = kNever;
+    mover.round = round_;
+    ++mover.stamp;
+    own_[i] = {s.start + s.duration, EventType::kSlideRoll, ball, -1, -1};
+    pair_[i] = {};
+    detect_features(ball);
+    if (plan_.pairs && in_play(s))
+        bound(ball, s.start);
+    else if (plan_.pairs)
+        ball_boxes_.remove(ball);
+    changed(ball);
 }
 
-// After an event: the candidates of the balls that it touched anew, and those of balls whose next contact was
-// with them.
 void Shot::redetect() {
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-    const auto is_touched = [this](int ball) {
-        return std::binary_search(touched_.begin(), touched_.end(), ball);
-    };
-    for (const int i : touched_) {
-        const Segment& s = now_of(i);
-        own_[static_cast<std::size_t>(i)] = {s.start + s.duration, EventType::kSlideRoll, i, -1, -1};
-        detect_features(i);
-        bound(i);
-    }
-    for (const int i : touched_) rescan(i);
-    for (int j = 0; plan_.pairs && j < balls_; ++j) {
-        if (is_touched(j) || !in_play(now_of(j))) continue;
-        Candidate& mine = pair_[static_cast<std::size_t>(j)];
-        if (mine.time != kNever && (is_touched(mine.a) || is_touched(mine.b))) {
-            rescan(j);
-            continue;
-        }
-        for (const int i : touched_) {
-            if (!in_play(now_of(i)) || held_together(i, j)) continue;
-            const Candidate c = pair(i, j);
-            if (before(c, mine)) mine = c;
-        }
-    }
+    ++round_;
+    for (const int i : touched_) renew(i);
+    if (plan_.pairs)
+        for (const int i : touched_) search_pairs(i);
     touched_.clear();
+}
+
+// Without an event: the ball's box has ended, or the contact that it was waiting for does not come.
+void Shot::look_again(int ball) {
+    const auto i = static_cast<std::size_t>(ball);
+    ++round_;
+    pair_[i] = {};
+    const double refresh = mover_[i].refresh;
+    const bool ended = refresh <= first_[i].time;
+    if (ended) bound(ball, refresh);
+    // Where nobody is near, the next box covers twice the way.
+    if (!search_pairs(ball) && ended) mover_[i].travel *= 2.0;
+    changed(ball);
 }
 
 }  // namespace carom

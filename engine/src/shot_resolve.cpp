@@ -9,11 +9,6 @@
 
 namespace carom {
 
-void Shot::begin(int ball, const Segment& segment) {
-    record_.tracks[static_cast<std::size_t>(ball)].segments.push_back(segment);
-    touched_.push_back(ball);
-}
-
 void Shot::record_event(EventType type, int a, int b, int detail) {
     record_.events.push_back({now_, type, a, b, detail});
     quiet_ = 0;
@@ -138,7 +133,9 @@ void Shot::resolve_nose(const Candidate& c) {
 
     const BallParams& p = plan_.balls;
     const CushionModelInfo& model = contact.jaw ? *plan_.jaw : *plan_.cushion;
-    model.resolve({p.R, p.m, p.mu_s, p.e_c, p.f_c, height}, normal, v, w);
+    if (!model.resolve({p.R, p.m, p.mu_s, p.e_c, p.f_c, height}, normal, v, w))
+        fail(fmt::format("the cushion model {} found no solution for the impact of ball {}; use another one",
+                         model.name, record_.tracks[static_cast<std::size_t>(c.a)].id));
     if constexpr (kProfile) cost_.method = model.name;
     free_ball(c.a);
     begin(c.a, start_segment(now_, r, v, w, motion_));
@@ -184,7 +181,9 @@ void Shot::apply(const Candidate& c) {
 }
 
 template void Shot::apply<false>(const Candidate&);
+#ifndef CAROM_WITHOUT_PROFILE
 template void Shot::apply<true>(const Candidate&);
+#endif
 
 void Shot::guard_cap() const {
     const std::size_t count = record_.events.size(), cap = static_cast<std::size_t>(kEventCap);

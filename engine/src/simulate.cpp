@@ -18,11 +18,17 @@ void Shot::set_up(bool profile) {
     record_.gravity = plan_.gravity;
     record_.render = scene.render;
     balls_ = static_cast<int>(scene.ball.size());
+    record_.tracks.reserve(scene.ball.size());
+    current_.reserve(scene.ball.size());
+    touched_.reserve(scene.ball.size() + 1);
+    reserve_log();
     for (const BallStart& ball : scene.ball) {
         BallTrack track;
         track.id = ball.id;
-        track.segments.push_back(start_segment(0.0, ball.position, ball.velocity, ball.spin, motion_));
         record_.tracks.push_back(std::move(track));
+        current_.emplace_back();
+        begin(static_cast<int>(current_.size()) - 1,
+              start_segment(0.0, ball.position, ball.velocity, ball.spin, motion_));
     }
     if (scene.cue) {
         for (int i = 0; i < balls_; ++i) {
@@ -36,29 +42,56 @@ void Shot::set_up(bool profile) {
     first_candidates();
 }
 
+// The log starts with room for what a break takes, and doubles.
+void Shot::reserve_log() {
+    constexpr std::size_t kRoom = 256;
+    const std::size_t segments = static_cast<std::size_t>(balls_) + kRoom;
+    log_.reserve(segments);
+    log_ball_.reserve(segments);
+    record_.events.reserve(record_.events.size() + kRoom);
+}
+
+// All other memory of the loop is taken here.
 void Shot::first_candidates() {
-    for (std::vector<Candidate>* list : {&own_, &feature_, &pair_}) list->resize(record_.tracks.size());
-    box_.resize(record_.tracks.size());
-    for (const CushionLine& line : plan_.cushions) {
-        const Vec2 to = line.from + line.length * line.direction;
-        line_boxes_.push_back({std::min(line.from.x(), to.x()), std::min(line.from.y(), to.y()),
-                               std::max(line.from.x(), to.x()), std::max(line.from.y(), to.y())});
-    }
+    const auto count = static_cast<std::size_t>(balls_);
+    for (std::vector<Candidate>* list : {&own_, &feature_, &pair_, &first_}) list->resize(count);
+    key_.assign(count, kNever);
+    mover_.resize(count);
+    changed_.reserve(count);
+    touched_.reserve(count);
+    queue_.set_up(balls_);
+    ball_boxes_.set_up(plan_.pairs ? balls_ : 0, plan_.ball_search);
+    set_up_table();
+    touched_.clear();
     for (int i = 0; i < balls_; ++i) touched_.push_back(i);
     redetect();
+    requeue();
 }
 
 void Shot::take_up(const Record& record) {
     record_ = record;
     record_.costs.clear();
     balls_ = static_cast<int>(record_.tracks.size());
+    for (const BallTrack& track : record_.tracks) current_.push_back(track.segments.back());
     now_ = record_.duration;
+    reserve_log();
     restore_held();
     first_candidates();
 }
 
+void Shot::finish() {
+    std::vector<std::size_t> count(record_.tracks.size());
+    for (std::size_t i = 0; i < count.size(); ++i) count[i] = record_.tracks[i].segments.size();
+    for (const int ball : log_ball_) ++count[static_cast<std::size_t>(ball)];
+    for (std::size_t i = 0; i < count.size(); ++i) record_.tracks[i].segments.reserve(count[i]);
+    for (std::size_t k = 0; k < log_.size(); ++k)
+        record_.tracks[static_cast<std::size_t>(log_ball_[k])].segments.push_back(log_[k]);
+    record_.duration = now_;
+}
+
+// Kept a function of its own, so that tools/profile_cost finds it by name.
 template <bool kProfile>
-Record Shot::run(const Record* so_far) {
+[[gnu::noinline]] Record Shot::run(const Record* so_far) {
     const auto set_up_start = kProfile ? Clock::now() : Clock::time_point{};
     if (so_far != nullptr)
         take_up(*so_far);
@@ -76,7 +109,8 @@ Record Shot::run(const Record* so_far) {
             break;
         }
         const auto start = kProfile ? Clock::now() : Clock::time_point{};
-        const Candidate c = next();
+        search_ns_ = 0.0;
+        const Candidate c = next<kProfile>();
         if (c.time > stop || c.time == kNever) {
             record_.stopped = c.time == kNever ? StopReason::kAtRest : StopReason::kTime;
             if (c.time != kNever) now_ = stop;
@@ -84,32 +118,47 @@ Record Shot::run(const Record* so_far) {
         }
         now_ = std::max(now_, c.time);
         const std::size_t events_before = record_.events.size();
-        if constexpr (kProfile) cost_ = {};
         const auto found = kProfile ? Clock::now() : Clock::time_point{};
+        if constexpr (kProfile) cost_ = {};
         apply<kProfile>(c);
         const auto resolved = kProfile ? Clock::now() : Clock::time_point{};
         redetect();
+        const auto detected = kProfile ? Clock::now() : Clock::time_point{};
+        requeue();
         if constexpr (kProfile) {
             // A sustained contact can bring several events at once: the first one carries the cost.
+            const auto end = Clock::now();
             cost_.resolve_ns = nanoseconds(found, resolved);
-            cost_.detect_ns = nanoseconds(start, found) + nanoseconds(resolved, Clock::now());
+            cost_.detect_ns = nanoseconds(start, found) + nanoseconds(resolved, end);
+            cost_.queue_ns = nanoseconds(start, found) - search_ns_ + nanoseconds(detected, end);
             record_.costs.resize(record_.events.size());
             if (record_.events.size() > events_before) record_.costs[events_before] = cost_;
         }
         if (options_.progress) options_.progress(record_.events.size(), now_);
     }
-    record_.duration = now_;
+    finish();
     return std::move(record_);
 }
 
-Record simulate(const Plan& plan, const SimulateOptions& options) {
+namespace {
+
+/// CAROM_WITHOUT_PROFILE leaves the profiled loop out of the build: tools/profile_cost compares with that.
+Record run_shot(const Plan& plan, const SimulateOptions& options, const Record* so_far) {
     Shot shot(plan, options);
-    return options.profile ? shot.run<true>(nullptr) : shot.run<false>(nullptr);
+#ifndef CAROM_WITHOUT_PROFILE
+    if (options.profile) return shot.run<true>(so_far);
+#endif
+    return shot.run<false>(so_far);
+}
+
+}  // namespace
+
+Record simulate(const Plan& plan, const SimulateOptions& options) {
+    return run_shot(plan, options, nullptr);
 }
 
 Record resume(const Plan& plan, const Record& so_far, const SimulateOptions& options) {
-    Shot shot(plan, options);
-    return options.profile ? shot.run<true>(&so_far) : shot.run<false>(&so_far);
+    return run_shot(plan, options, &so_far);
 }
 
 }  // namespace carom

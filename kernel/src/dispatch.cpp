@@ -3,6 +3,7 @@
 #include <cstring>
 #include <initializer_list>
 
+#include "carom/kernel/contact_phase.h"
 #include "carom/kernel/isa.h"
 #include "carom/kernel/march.h"
 
@@ -11,6 +12,10 @@ namespace carom::kernel {
 void march_scalar(const Ball&, const Ball&, const ImpactParams&, int, ImpactResult&) noexcept;
 void march_v3(const Ball&, const Ball&, const ImpactParams&, int, ImpactResult&) noexcept;
 void march_v4(const Ball&, const Ball&, const ImpactParams&, int, ImpactResult&) noexcept;
+
+long contact_phase_scalar(const ContactPhase&, const HertzLaw&, double, double, double) noexcept;
+long contact_phase_v3(const ContactPhase&, const HertzLaw&, double, double, double) noexcept;
+long contact_phase_v4(const ContactPhase&, const HertzLaw&, double, double, double) noexcept;
 
 const char* describe(ImpactStatus status) noexcept {
     switch (status) {
@@ -97,6 +102,18 @@ MarchFunction march_function(Isa isa) noexcept {
             return march_v4;
     }
     return march_scalar;
+}
+
+ContactPhaseFunction contact_phase_function(Isa isa) noexcept {
+    switch (isa) {
+        case Isa::kScalar:
+            return contact_phase_scalar;
+        case Isa::kV3:
+            return contact_phase_v3;
+        case Isa::kV4:
+            return contact_phase_v4;
+    }
+    return contact_phase_scalar;
 }
 
 }  // namespace carom::kernel

@@ -49,6 +49,7 @@ CAROM_MARCH(packed)
 CAROM_MARCH(extrapolated_seed)
 CAROM_MARCH(pipelined)
 CAROM_MARCH(carried_roots)
+CAROM_MARCH(decoupled_roots)
 CAROM_MARCH(summed)
 CAROM_BATCH(four_lanes)
 CAROM_BATCH(four_lanes_fma)
@@ -79,6 +80,7 @@ CAROM_MARCH(packed)
 CAROM_MARCH(extrapolated_seed)
 CAROM_MARCH(pipelined)
 CAROM_MARCH(carried_roots)
+CAROM_MARCH(decoupled_roots)
 CAROM_MARCH(summed)
 CAROM_BATCH(four_lanes)
 CAROM_BATCH(four_lanes_fma)
@@ -209,6 +211,10 @@ constexpr Rung kLadder[] = {
      "the same from values a step older"},
     {"carried roots", "past it", Isa::kV4, v4::carried_roots, nullptr, false, 1e-12, 1e-08,
      "the same from values a step older"},
+    {"decoupled roots", "past it", Isa::kV3, v3::decoupled_roots, nullptr, false, 1e-11, 1e-07,
+     "extrapolated roots used as they are, their errors made good two steps later"},
+    {"decoupled roots", "past it", Isa::kV4, v4::decoupled_roots, nullptr, false, 1e-11, 1e-07,
+     "extrapolated roots used as they are, their errors made good two steps later"},
     {"summed", "past it", Isa::kScalar, scalar::summed, nullptr, true, 1e-11, 1e-09,
      "the Euler sequence summed exactly over blocks of up to 1024 steps"},
     {"summed", "past it", Isa::kV3, v3::summed, nullptr, true, 1e-11, 1e-09,
@@ -239,12 +245,12 @@ constexpr Rung kLadder[] = {
      "eight lanes, carried roots"},
     {"2x8 lanes", "past it", Isa::kV4, nullptr, v4::two_by_eight_lanes, false, 1e-11, 5e-09,
      "two vectors of eight, carried roots"},
-    {"summed batch", "past it", Isa::kScalar, nullptr, scalar::summed_batch, true, 1e-11, 1e-09,
-     "collide_balls_batch: each impact by the summed march"},
-    {"summed batch", "past it", Isa::kV3, nullptr, v3::summed_batch, true, 1e-11, 1e-09,
-     "collide_balls_batch: each impact by the summed march"},
-    {"summed batch", "past it", Isa::kV4, nullptr, v4::summed_batch, true, 1e-11, 1e-09,
-     "collide_balls_batch: each impact by the summed march"},
+    {"summed batch", "past it", Isa::kScalar, nullptr, scalar::summed_batch, true, 1e-11, 1e-10,
+     "collide_balls_batch: the summed march, or the published arithmetic in lanes where rounding decides"},
+    {"summed batch", "past it", Isa::kV3, nullptr, v3::summed_batch, true, 1e-11, 1e-10,
+     "collide_balls_batch: the summed march, or the published arithmetic in lanes where rounding decides"},
+    {"summed batch", "past it", Isa::kV4, nullptr, v4::summed_batch, true, 1e-11, 1e-10,
+     "collide_balls_batch: the summed march, or the published arithmetic in lanes where rounding decides"},
 };
 
 }  // namespace

@@ -15,9 +15,11 @@
 #include "ladder/rsqrt_raw.h"
 #include "ladder/simd_ssa.h"
 #include "ladder/summed.h"
+#include "ladder/summed_batch.h"
 #include "ladder/two_stage.h"
 #include "ladder/unconditional_roots.h"
 #ifdef __AVX2__
+#include "ladder/decoupled.h"
 #include "ladder/explicit_fma.h"
 #include "ladder/packed_march.h"
 #include "ladder/paper_flags.h"
@@ -54,22 +56,15 @@ CAROM_RUNG(packed, PackedExact)
 CAROM_RUNG(extrapolated_seed, ExtrapolatedSeed)
 CAROM_RUNG(pipelined, Pipelined)
 CAROM_RUNG(carried_roots, CarriedRoots)
+CAROM_RUNG(decoupled_roots, Decoupled)
 void simd_around(const Ball& b1, const Ball& b2, const ImpactParams& p, int n, ImpactResult& out) noexcept {
     simd_outside(b1, b2, p, n, out);
 }
 CAROM_RUNG(paper_flags, PaperFlags)
 #endif
 
-// A batch by the summed march, impact by impact.
 void summed_batch(const ImpactBatch& batch, int n, const ImpactBatchResult& result) noexcept {
-    for (long i = 0; i < batch.count; ++i) {
-        Ball b1, b2;
-        ImpactParams p;
-        ImpactResult out;
-        load_impact(batch, i, b1, b2, p);
-        drive<Summed>(b1, b2, p, n, out);
-        store_result(result, i, out);
-    }
+    summed_in_batch(batch, n, result);
 }
 
 #define CAROM_LANES(function, ...)                                                             \

@@ -60,9 +60,9 @@ void measure_stages(const Record& record, FrameSize size, int frames, Backend ba
     options.size = size;
     const Stage stage(record, options);
     Renderer renderer(backend);
-    Image image;
+    KeptImage image;
     std::vector<std::uint8_t> bytes;
-    std::vector<double> draw, read, encode, write;
+    std::vector<double> draw, read, both, encode, write;
     for (int i = 0; i <= frames; ++i) {
         const double t0 = cpu_ms();
         renderer.draw(stage.at(record.duration * i / frames));
@@ -71,13 +71,14 @@ void measure_stages(const Record& record, FrameSize size, int frames, Backend ba
         renderer.read(image);
         const double t2 = cpu_ms();
         if (i == 0) row.setup_ms = wall_ms(start);
-        encode_png(image, 1, bytes);
+        encode_png(image.image(), 1, bytes);
         const double t3 = cpu_ms();
         const Clock::time_point before = Clock::now();
         write_file(file, bytes);
         if (i < 2) continue;  // the second frame is the first of the other of two images
         draw.push_back(t1 - t0);
         read.push_back(t2 - t1);
+        both.push_back(t2 - t0);
         encode.push_back(t3 - t2);
         write.push_back(wall_ms(before));
     }
@@ -85,6 +86,8 @@ void measure_stages(const Record& record, FrameSize size, int frames, Backend ba
     row.readback_ms = median(read);
     row.encode_ms = median(encode);
     row.write_ms = median(write);
+    std::sort(both.begin(), both.end());
+    row.slow_ms = both[both.size() * 19 / 20];
 }
 
 double frames_per_second(const Record& record, FrameSize size, int frames, Backend backend,

@@ -1,7 +1,7 @@
-// OSMesa: Mesa's software renderer into memory. Only its header is needed to build; it pulls in <GL/gl.h>,
-// whose names collide with those of <GL/glcorearb.h>, so that nothing of it leaves this file.
-#include <GL/osmesa.h>
-
+// OSMesa: Mesa's software renderer into memory.
+//
+// The few types and numbers of it that are needed stand here, so that building needs no header of OSMesa:
+// Mesa dropped it in 25.1, and the library of an older Mesa still works.
 #include <array>
 #include <cstdint>
 
@@ -14,11 +14,21 @@ namespace {
 
 constexpr const char* kPackage = "libosmesa6";
 
+using Handle = void*;                       // OSMesaContext
+constexpr int kFormat = 0x22;               // OSMESA_FORMAT
+constexpr int kRgba = 0x1908;               // OSMESA_RGBA
+constexpr int kProfile = 0x33;              // OSMESA_PROFILE
+constexpr int kCoreProfile = 0x34;          // OSMESA_CORE_PROFILE
+constexpr int kContextMajor = 0x36;         // OSMESA_CONTEXT_MAJOR_VERSION
+constexpr int kContextMinor = 0x37;         // OSMESA_CONTEXT_MINOR_VERSION
+constexpr int kDepthBits = 0x30;            // OSMESA_DEPTH_BITS
+constexpr unsigned kUnsignedByte = 0x1401;  // GL_UNSIGNED_BYTE
+
 struct OsmesaLibrary {
-    decltype(&OSMesaCreateContextAttribs) create;
-    decltype(&OSMesaDestroyContext) destroy;
-    decltype(&OSMesaMakeCurrent) make_current;
-    decltype(&OSMesaGetProcAddress) get_proc_address;
+    Handle (*create)(const int*, Handle);
+    void (*destroy)(Handle);
+    unsigned char (*make_current)(Handle, void*, unsigned, int, int);
+    void* (*get_proc_address)(const char*);
 };
 
 const OsmesaLibrary& osmesa() {
@@ -40,30 +50,21 @@ const OsmesaLibrary& osmesa() {
 }
 
 void* lookup_osmesa(const char* function) {
-    return reinterpret_cast<void*>(osmesa().get_proc_address(function));
+    return osmesa().get_proc_address(function);
 }
 
 class OsmesaContext final : public Context {
   public:
     OsmesaContext() {
-        const std::array<int, 11> attributes{OSMESA_FORMAT,
-                                             OSMESA_RGBA,
-                                             OSMESA_PROFILE,
-                                             OSMESA_CORE_PROFILE,
-                                             OSMESA_CONTEXT_MAJOR_VERSION,
-                                             3,
-                                             OSMESA_CONTEXT_MINOR_VERSION,
-                                             3,
-                                             OSMESA_DEPTH_BITS,
-                                             0,
-                                             0};
+        const std::array<int, 11> attributes{
+            kFormat, kRgba, kProfile, kCoreProfile, kContextMajor, 3, kContextMinor, 3, kDepthBits, 0, 0};
         context_ = osmesa().create(attributes.data(), nullptr);
         if (context_ == nullptr) throw RenderError("OSMesa gives no OpenGL 3.3 core context; use --gl egl");
     }
     ~OsmesaContext() override { osmesa().destroy(context_); }
 
     void make_current() override {
-        if (!osmesa().make_current(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSide, kSide)) {
+        if (!osmesa().make_current(context_, pixels_.data(), kUnsignedByte, kSide, kSide)) {
             throw RenderError("OSMesaMakeCurrent failed; use --gl egl");
         }
     }
@@ -74,7 +75,7 @@ class OsmesaContext final : public Context {
     // The default framebuffer is never drawn to: all drawing goes to framebuffer objects, as with EGL.
     static constexpr int kSide = 16;
     std::array<std::uint8_t, std::size_t{kSide} * kSide * 4> pixels_{};
-    OSMesaContext context_ = nullptr;
+    Handle context_ = nullptr;
 };
 
 }  // namespace

@@ -61,8 +61,8 @@ DrawList Stage::at(double t, std::optional<FrameCost> cost) const {
     DrawList list;
     list.table = table_;
     list.camera = camera_.at(t);
-    // A camera that moves pays for the table in every frame.
-    list.table_samples = camera_.moves() ? std::min(options_.table_samples, 4) : options_.table_samples;
+    list.table_samples =
+        camera_.moves() ? std::min(options_.table_samples, kMovingSamples) : options_.table_samples;
     for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
         const BallState state = record_.state_at(static_cast<int>(i), t);
         if (!state.position.allFinite()) continue;

@@ -79,11 +79,12 @@ void FrameWriter::work() {
         lock.unlock();
         std::exception_ptr failure;
         try {
-            write(*task.image, *task.timing, bytes);
+            write(task.image->image(), *task.timing, bytes);
         } catch (...) {
             failure = std::current_exception();
         }
         lock.lock();
+        last_encode_ms_ = task.timing->encode_ms;
         idle_.push_back(std::move(task.image));
         --in_flight_;
         if (failure && !failure_) failure_ = failure;
@@ -91,22 +92,23 @@ void FrameWriter::work() {
     }
 }
 
-std::unique_ptr<Image> FrameWriter::acquire() {
+std::unique_ptr<KeptImage> FrameWriter::acquire() {
     std::unique_lock lock(mutex_);
     image_ready_.wait(lock, [&] { return failure_ || !idle_.empty() || images_ < limit_; });
     if (failure_) std::rethrow_exception(failure_);
     if (idle_.empty()) {
         ++images_;
-        return std::make_unique<Image>();
+        return std::make_unique<KeptImage>();
     }
-    std::unique_ptr<Image> image = std::move(idle_.back());
+    std::unique_ptr<KeptImage> image = std::move(idle_.back());
     idle_.pop_back();
     return image;
 }
 
-void FrameWriter::submit(std::unique_ptr<Image> image, FrameTiming& timing) {
+void FrameWriter::submit(std::unique_ptr<KeptImage> image, FrameTiming& timing) {
     if (threads_.empty()) {
-        write(*image, timing, bytes_);
+        write(image->image(), timing, bytes_);
+        last_encode_ms_ = timing.encode_ms;
         idle_.push_back(std::move(image));
         return;
     }
@@ -116,6 +118,11 @@ void FrameWriter::submit(std::unique_ptr<Image> image, FrameTiming& timing) {
         ++in_flight_;
     }
     task_ready_.notify_one();
+}
+
+double FrameWriter::last_encode_ms() {
+    const std::lock_guard lock(mutex_);
+    return last_encode_ms_;
 }
 
 void FrameWriter::finish() {

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "carom/render/image.h"
+#include "carom/render/kept_image.h"
 #include "carom/render/sequence.h"
 
 namespace carom::render {
@@ -26,17 +26,20 @@ class FrameWriter {
     FrameWriter& operator=(const FrameWriter&) = delete;
 
     /// An image to fill; waits while all are in flight. @throws what a thread failed with
-    std::unique_ptr<Image> acquire();
+    std::unique_ptr<KeptImage> acquire();
 
     /// Encodes and writes it as frame timing.frame; fills in the times, which must outlive the writer.
-    void submit(std::unique_ptr<Image> image, FrameTiming& timing);
+    void submit(std::unique_ptr<KeptImage> image, FrameTiming& timing);
+
+    /// What encoding took for the last frame that is done; 0 before [ms].
+    double last_encode_ms();
 
     /// Waits until everything is written. @throws what a thread failed with
     void finish();
 
   private:
     struct Task {
-        std::unique_ptr<Image> image;
+        std::unique_ptr<KeptImage> image;
         FrameTiming* timing = nullptr;
     };
     void work();
@@ -48,9 +51,10 @@ class FrameWriter {
     std::mutex mutex_;
     std::condition_variable task_ready_, image_ready_;
     std::deque<Task> tasks_;
-    std::vector<std::unique_ptr<Image>> idle_;
+    std::vector<std::unique_ptr<KeptImage>> idle_;
     std::size_t images_ = 0, in_flight_ = 0;  // made so far; submitted and not yet done
     bool stopping_ = false;
+    double last_encode_ms_ = 0.0;
     std::exception_ptr failure_;
     std::vector<std::thread> threads_;
 };

@@ -115,9 +115,20 @@ void add_arrow_head(DrawList& list, const Vec3& tip, const Vec3& along, double s
     }
 }
 
+// A dark copy under the lines from `first` on: yellow on a yellow ball is not seen otherwise.
+void add_outline(DrawList& list, std::size_t first, float wider) {
+    std::vector<DrawLine> dark(list.lines.begin() + static_cast<std::ptrdiff_t>(first), list.lines.end());
+    for (DrawLine& line : dark) {
+        line.width += wider;
+        line.color = {0.0F, 0.0F, 0.0F, 0.85F};
+    }
+    list.lines.insert(list.lines.begin() + static_cast<std::ptrdiff_t>(first), dark.begin(), dark.end());
+}
+
 void add_spin(DrawList& list, const Record& record, double t) {
     const double R = record.balls.R;
-    const float width = line_width(list, 2.0);
+    const std::size_t first = list.lines.size();
+    const float width = line_width(list, 2.6);
     const Rgba level{1.0F, 0.95F, 0.35F, 1.0F}, vertical{0.45F, 1.0F, 0.95F, 1.0F};
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         const BallState state = record.state_at(static_cast<int>(i), t);
@@ -142,6 +153,7 @@ void add_spin(DrawList& list, const Record& record, double t) {
                            vertical);
         }
     }
+    add_outline(list, first, line_width(list, 2.2));
 }
 
 void add_ghost(DrawList& list, const Record& record, double t) {

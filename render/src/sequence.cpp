@@ -104,6 +104,7 @@ class FrameLoop {
         // Compiles the shaders and draws the table, which belongs to no frame.
         renderer_.draw(list_of(0));
         renderer_.finish();
+        if (options_.overlay.margin && !options_.frame_cost_ms) measure_first();
         for (std::size_t i = 0; i < frames_.size(); ++i) {
             draw(i);
             if (threads_ == 0)
@@ -117,17 +118,41 @@ class FrameLoop {
     }
 
   private:
-    DrawList list_of(std::size_t i) const {
+    DrawList list_of(std::size_t i) {
         std::optional<FrameCost> cost;
         if (options_.overlay.margin) {
-            // The time that the frame itself takes is not known while it is drawn: that of the last one
-            // stands for it.
-            const FrameTiming& last = frames_[i > 0 ? i - 1 : 0];
-            cost = FrameCost{options_.frame_cost_ms ? options_.frame_cost_ms(frames_[i].frame)
-                                                    : last.draw_ms + last.readback_ms,
-                             1e3 / options_.fps};
+            cost =
+                FrameCost{options_.frame_cost_ms ? options_.frame_cost_ms(frames_[i].frame) : last_cost_ms(i),
+                          1e3 / options_.fps};
         }
         return stage_.at(frames_[i].time, cost);
+    }
+
+    // The time that the frame itself takes is not known while it is drawn: that of frames just before stands
+    // for it.
+    double last_cost_ms(std::size_t i) {
+        const double encode_ms = writer_.last_encode_ms();
+        // With threads, frame i - 1 is not read back yet.
+        const std::size_t back = threads_ > 0 ? 2 : 1;
+        return (options_.simulate_ms ? options_.simulate_ms(frames_[i].frame) : 0.0) +
+               (i > 0 ? frames_[i - 1].draw_ms : first_.draw_ms) +
+               (i >= back ? frames_[i - back].readback_ms : first_.readback_ms) +
+               (encode_ms > 0.0 ? encode_ms : first_.encode_ms);
+    }
+
+    // The first frames have none before them: the first is drawn once more for its times.
+    void measure_first() {
+        KeptImage image;
+        std::vector<std::uint8_t> bytes;
+        renderer_.read(image);
+        Clock::time_point mark = Clock::now();
+        renderer_.draw(list_of(0));
+        renderer_.finish();
+        first_.draw_ms = ms_since(mark);
+        renderer_.read(image);
+        first_.readback_ms = ms_since(mark);
+        options_.raw ? pack_rgb(image.image(), bytes) : encode_png(image.image(), options_.png_level, bytes);
+        first_.encode_ms = ms_since(mark);
     }
 
     void draw(std::size_t i) {
@@ -138,7 +163,7 @@ class FrameLoop {
     }
 
     void read(std::size_t i, bool previous) {
-        std::unique_ptr<Image> image = writer_.acquire();
+        std::unique_ptr<KeptImage> image = writer_.acquire();
         Clock::time_point mark = Clock::now();
         previous ? renderer_.read_previous(*image) : renderer_.read(*image);
         frames_[i].readback_ms = ms_since(mark);
@@ -151,6 +176,7 @@ class FrameLoop {
     Renderer renderer_;
     int threads_;
     FrameWriter writer_;
+    FrameTiming first_;
 };
 
 }  // namespace

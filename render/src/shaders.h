@@ -13,8 +13,11 @@ extern const char* const kTableVertex;
 extern const char* const kTableFragment;
 extern const char* const kFullscreenVertex;
 extern const char* const kAddFragment;      ///< one jittered pass added to the sum
-extern const char* const kDepthFragment;    ///< depth buffer to distance along the view
+extern const char* const kDepthFragment;    ///< four depth buffers to distances along the view
 extern const char* const kResolveFragment;  ///< sum to sRGB
+/// Corners of the strip around a ball or a shadow.
+inline constexpr int kRoundCorners = 8;
+extern const char* const kPlain;  ///< a line before the next four: nothing but cloth is near, so do not look
 extern const char* const kShadowVertex;
 extern const char* const kShadowFragment;
 extern const char* const kBallVertex;

@@ -2,6 +2,8 @@
 
 namespace carom::render::shaders {
 
+const char* const kPlain = "#define PLAIN\n";
+
 const char* const kShadowVertex = R"(
 layout(location = 0) in vec4 a_ball;      // centre, radius
 layout(location = 3) in vec3 a_pattern;   // pattern, in pocket, unused
@@ -13,7 +15,9 @@ void main() {
     vec2 corner = octagon_corner(gl_VertexID);
     v_place = corner * reach;
     vec2 from_lamp = u_lamp_endless > 0.5 ? vec2(0.0) : a_ball.xy - u_lamp.xy;
-    v_away = clamp(from_lamp / (u_lamp.z - a_ball.z), -0.9, 0.9);
+    // No further than that all of it lies within reach.
+    v_away = from_lamp / (u_lamp.z - a_ball.z);
+    v_away *= min(1.0, 0.65 * inversesqrt(max(dot(v_away, v_away), 1e-12)));
     gl_Position = u_view_projection * vec4(a_ball.xy + v_place * a_ball.w, 0.0, 1.0);
 }
 )";
@@ -24,7 +28,11 @@ flat in vec2 v_away;
 uniform sampler2D u_background;   // alpha: how much of the pixel is cloth
 out vec4 color;
 void main() {
+#ifdef PLAIN
+    float cloth = 1.0;
+#else
     float cloth = texelFetch(u_background, ivec2(gl_FragCoord.xy), 0).a;
+#endif
     // Sky hidden by a sphere that rests on a plane: (1 + d^2)^(-3/2) at d radii from the contact. The polynomial is
     // within 0.03 of it out to 2 radii and then reaches zero with the quad: a fraction of the cost, and it is most of
     // what a frame costs.
@@ -147,9 +155,11 @@ void main() {
     vec3 n = normalize(perpendicular - dir * rise);
     vec3 p = v_ball.xyz + n * R;
 
+#ifndef PLAIN
     vec4 table = texelFetch(u_occluders, ivec2(gl_FragCoord.xy), 0);
     float depth = (along - rise) * per_depth;
     cover *= dot(step(vec4(depth - 0.001), table), vec4(0.25));
+#endif
 
     float facing = max(-dot(n, dir), 0.08);
     vec3 base = albedo(to_body(n), pixel / (R * mix(1.0, facing, 0.6)));

@@ -72,13 +72,15 @@ void main() { color = texelFetch(u_pass, ivec2(gl_FragCoord.xy), 0) * u_weight; 
 )";
 
 const char* const kDepthFragment = R"(
-uniform sampler2D u_depth;
+uniform sampler2D u_depth0, u_depth1, u_depth2, u_depth3;
 uniform vec2 u_planes;   // near and far
 out vec4 color;
 void main() {
-    float z = texelFetch(u_depth, ivec2(gl_FragCoord.xy), 0).r;
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    vec4 z = vec4(texelFetch(u_depth0, at, 0).r, texelFetch(u_depth1, at, 0).r, texelFetch(u_depth2, at, 0).r,
+                  texelFetch(u_depth3, at, 0).r);
     float n = u_planes.x, f = u_planes.y;
-    color = vec4(n * f / (f - z * (f - n)));
+    color = n * f / (f - z * (f - n));
 }
 )";
 

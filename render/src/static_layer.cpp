@@ -21,27 +21,37 @@ double r2(int i, double step) {
 
 }  // namespace
 
-// Only there while the table is drawn: two images of 16-bit floats and a depth buffer.
+// Only there while the table is drawn, or between two drawings for a camera that moves: two images of 16-bit
+// floats, and the depths of the first four passes.
 struct StaticLayer::Scratch {
+    static constexpr std::size_t kDepths = 4;
     const gl::Api& api;
-    GLuint pass, depth, sum, pass_framebuffer, sum_framebuffer;
+    GLuint pass, sum, sum_framebuffer;
+    std::array<GLuint, kDepths> depth{}, pass_framebuffer{};
 
     Scratch(const gl::Api& a, int width, int height) : api(a) {
         pass = gl::make_texture(api, width, height, GL_RGBA16F, GL_RGBA, GL_FLOAT, nullptr);
         sum = gl::make_texture(api, width, height, GL_RGBA16F, GL_RGBA, GL_FLOAT, nullptr);
-        depth = gl::make_texture(api, width, height, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT,
-                                 nullptr);
-        pass_framebuffer = gl::make_framebuffer(api, pass, depth);
         sum_framebuffer = gl::make_framebuffer(api, sum, 0);
+        for (std::size_t i = 0; i < kDepths; ++i) {
+            depth[i] = gl::make_texture(api, width, height, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT,
+                                        GL_FLOAT, nullptr);
+            pass_framebuffer[i] = gl::make_framebuffer(api, pass, depth[i]);
+        }
     }
     ~Scratch() {
-        const GLuint textures[] = {pass, depth, sum}, framebuffers[] = {pass_framebuffer, sum_framebuffer};
         api.BindFramebuffer(GL_FRAMEBUFFER, 0);
-        api.DeleteFramebuffers(2, framebuffers);
-        api.DeleteTextures(3, textures);
+        api.DeleteFramebuffers(1, &sum_framebuffer);
+        api.DeleteFramebuffers(kDepths, pass_framebuffer.data());
+        api.DeleteTextures(kDepths, depth.data());
+        api.DeleteTextures(1, &pass);
+        api.DeleteTextures(1, &sum);
     }
     Scratch(const Scratch&) = delete;
     Scratch& operator=(const Scratch&) = delete;
+
+    // Passes after the fourth leave no depths: they share the fourth's buffer once it has been kept.
+    std::size_t slot(int number) const { return std::min(static_cast<std::size_t>(number), kDepths - 1); }
 };
 
 StaticLayer::StaticLayer(const gl::Api& api) : api_(api) {
@@ -59,6 +69,8 @@ StaticLayer::StaticLayer(const gl::Api& api) : api_(api) {
     api.GenVertexArrays(1, &vertex_array_);
     api.GenBuffers(1, &buffer_);
 }
+
+StaticLayer::~StaticLayer() = default;
 
 void StaticLayer::upload(const TableMesh& table) {
     const auto group_of = [](const MeshVertex& vertex) {
@@ -93,6 +105,7 @@ void StaticLayer::upload(const TableMesh& table) {
 
 void StaticLayer::resize(int width, int height) {
     if (width == width_ && height == height_) return;
+    scratch_.reset();
     if (color_ != 0) {
         const GLuint textures[] = {color_, occluders_},
                      framebuffers[] = {color_framebuffer_, occluders_framebuffer_};
@@ -120,6 +133,16 @@ void StaticLayer::set_table_uniforms(const TableMesh& table, const View& view, G
         holes.insert(holes.end(), {static_cast<float>(center.x()), static_cast<float>(center.y()),
                                    static_cast<float>(hole.radius), 0.0F});
     }
+    double clear_low = table.inner_low.x(), clear_high = table.inner_high.x();
+    for (const Hole& hole : table.holes) {
+        const bool left = hole.center.x() < 0.5 * (table.inner_low.x() + table.inner_high.x());
+        if (left)
+            clear_low = std::max(clear_low, hole.center.x() + hole.radius);
+        else
+            clear_high = std::min(clear_high, hole.center.x() - hole.radius);
+    }
+    api_.Uniform2f(at("u_clear"), static_cast<float>(clear_low - table.origin.x()),
+                   static_cast<float>(clear_high - table.origin.x()));
     const auto count = static_cast<GLsizei>(holes.size() / 4);
     if (count > 0) api_.Uniform4fv(at("u_holes"), count, holes.data());
     api_.Uniform1i(at("u_hole_count"), count);
@@ -128,9 +151,12 @@ void StaticLayer::set_table_uniforms(const TableMesh& table, const View& view, G
                    static_cast<float>(high.x()), static_cast<float>(high.y()));
 }
 
-void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, double jx,
-                            double jy) {
-    api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.pass_framebuffer);
+void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, int pass,
+                            int samples) {
+    // 1 / plastic number and its square.
+    const double jx = samples == 1 ? 0.0 : r2(pass, 0.75487766624669276),
+                 jy = samples == 1 ? 0.0 : r2(pass, 0.56984029099805327);
+    api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.pass_framebuffer[scratch.slot(pass)]);
     api_.DepthMask(GL_TRUE);
     api_.ClearColor(0.004F, 0.004F, 0.004F, 0.0F);
     api_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -150,52 +176,52 @@ void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scra
     }
 }
 
-void StaticLayer::add_pass(const View& view, const Scratch& scratch, int pass, int samples) {
+void StaticLayer::add_pass(const Scratch& scratch, int pass, int samples) {
     api_.Disable(GL_DEPTH_TEST);
     api_.BindVertexArray(empty_array_);
     api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.sum_framebuffer);
-    api_.Enable(GL_BLEND);
+    // The first one replaces what the drawing before left there.
+    pass == 0 ? api_.Disable(GL_BLEND) : api_.Enable(GL_BLEND);
     api_.BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ONE);
     api_.UseProgram(add_program_);
     gl::bind_texture(api_, add_program_, 0, "u_pass", scratch.pass);
     api_.Uniform1f(api_.GetUniformLocation(add_program_, "u_weight"), 1.0F / static_cast<float>(samples));
     api_.DrawArrays(GL_TRIANGLES, 0, 3);
     api_.Disable(GL_BLEND);
-
-    // The first four passes also leave their depths, one channel each; with fewer passes the last fills the
-    // rest.
-    if (pass >= 4) return;
-    const auto mask = [&](int channel) {
-        return static_cast<GLboolean>(channel == pass || (pass == samples - 1 && channel > pass));
-    };
-    api_.BindFramebuffer(GL_FRAMEBUFFER, occluders_framebuffer_);
-    api_.UseProgram(depth_program_);
-    gl::bind_texture(api_, depth_program_, 0, "u_depth", scratch.depth);
-    api_.Uniform2f(api_.GetUniformLocation(depth_program_, "u_planes"), view.planes[0], view.planes[1]);
-    api_.ColorMask(mask(0), mask(1), mask(2), mask(3));
-    api_.DrawArrays(GL_TRIANGLES, 0, 3);
-    api_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
-void StaticLayer::draw(const TableMesh& table, const View& view, int samples) {
+// One channel for each of the first four passes; with fewer the last fills the rest.
+void StaticLayer::keep_depths(const View& view, const Scratch& scratch, int samples) {
+    constexpr std::array<const char*, Scratch::kDepths> kNames{"u_depth0", "u_depth1", "u_depth2",
+                                                               "u_depth3"};
+    api_.BindFramebuffer(GL_FRAMEBUFFER, occluders_framebuffer_);
+    api_.UseProgram(depth_program_);
+    for (int i = 0; i < static_cast<int>(kNames.size()); ++i) {
+        gl::bind_texture(api_, depth_program_, i, kNames[static_cast<std::size_t>(i)],
+                         scratch.depth[scratch.slot(std::min(i, samples - 1))]);
+    }
+    api_.Uniform2f(api_.GetUniformLocation(depth_program_, "u_planes"), view.planes[0], view.planes[1]);
+    api_.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void StaticLayer::draw(const TableMesh& table, const View& view, int samples, bool again_soon) {
     samples = std::max(samples, 1);
     if (uploaded_ != &table) upload(table);
     resize(static_cast<int>(view.size[0]), static_cast<int>(view.size[1]));
-    const Scratch scratch(api_, width_, height_);
+    if (!scratch_) scratch_ = std::make_unique<Scratch>(api_, width_, height_);
+    const Scratch& scratch = *scratch_;
     api_.Viewport(0, 0, width_, height_);
-    api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.sum_framebuffer);
-    api_.ClearColor(0.0F, 0.0F, 0.0F, 0.0F);
-    api_.Clear(GL_COLOR_BUFFER_BIT);
     for (int pass = 0; pass < samples; ++pass) {
-        // 1 / plastic number and its square.
-        const double jx = r2(pass, 0.75487766624669276), jy = r2(pass, 0.56984029099805327);
-        draw_pass(table, view, scratch, samples == 1 ? 0.0 : jx, samples == 1 ? 0.0 : jy);
-        add_pass(view, scratch, pass, samples);
+        draw_pass(table, view, scratch, pass, samples);
+        add_pass(scratch, pass, samples);
+        if (pass == std::min(samples, static_cast<int>(Scratch::kDepths)) - 1)
+            keep_depths(view, scratch, samples);
     }
     api_.BindFramebuffer(GL_FRAMEBUFFER, color_framebuffer_);
     api_.UseProgram(resolve_program_);
     gl::bind_texture(api_, resolve_program_, 0, "u_pass", scratch.sum);
     api_.DrawArrays(GL_TRIANGLES, 0, 3);
+    if (!again_soon) scratch_.reset();
 }
 
 }  // namespace carom::render

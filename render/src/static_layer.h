@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 
 #include "gl_api.h"
 #include "view.h"
@@ -11,9 +12,13 @@ namespace carom::render {
 class StaticLayer {
   public:
     explicit StaticLayer(const gl::Api& api);
+    ~StaticLayer();
+    StaticLayer(const StaticLayer&) = delete;
+    StaticLayer& operator=(const StaticLayer&) = delete;
 
-    /// Draws the table: `samples` jittered passes, averaged in linear light.
-    void draw(const TableMesh& table, const View& view, int samples);
+    /// Draws the table: `samples` jittered passes, averaged in linear light. again_soon: keep the memory that
+    /// only drawing needs.
+    void draw(const TableMesh& table, const View& view, int samples, bool again_soon);
 
     GLuint color() const { return color_; }  ///< RGBA8; alpha: how much of the pixel is cloth
     GLuint occluders() const {
@@ -26,8 +31,9 @@ class StaticLayer {
     void upload(const TableMesh& table);
     void resize(int width, int height);
     void set_table_uniforms(const TableMesh& table, const View& view, GLuint program, double jx, double jy);
-    void draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, double jx, double jy);
-    void add_pass(const View& view, const Scratch& scratch, int pass, int samples);
+    void draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, int pass, int samples);
+    void add_pass(const Scratch& scratch, int pass, int samples);
+    void keep_depths(const View& view, const Scratch& scratch, int samples);
 
     const gl::Api& api_;
     /// Vertices that one program draws.
@@ -41,6 +47,7 @@ class StaticLayer {
     GLuint vertex_array_ = 0, buffer_ = 0, empty_array_ = 0;
     const TableMesh* uploaded_ = nullptr;
     int width_ = 0, height_ = 0;
+    std::unique_ptr<Scratch> scratch_;
     GLuint color_ = 0, occluders_ = 0, color_framebuffer_ = 0, occluders_framebuffer_ = 0;
 };
 

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "cushion_models.h"
 
 #include "support/engine_cases.h"
 #include "support/random_impacts.h"
@@ -309,6 +313,58 @@ TEST(Cushion, Mathavan2010IsTheLimitOfTheMarch) {
         EXPECT_LE((v - v_c).norm() + 0.028575 * (w - w_c).norm(), 1e-2 * approach) << i;
         EXPECT_LE((v - v_f).norm() + 0.028575 * (w - w_f).norm(), 1e-4 * approach) << i;
     }
+}
+
+// Errors of the 2010 model at its tolerance, over impacts whose load on the cloth has a limit (as above): the
+// same impact solved ten thousand times finer. Every impact ends.
+TEST(Cushion, Mathavan2010KeepsItsTolerance) {
+    SplitMix64 rng(12);
+    std::vector<double> off;
+    for (int i = 0; i < 20000; ++i) {
+        Case x = random_case(rng, i % 4);
+        const double s = x.contact.height / x.contact.R - 1.0;
+        x.contact.f_c = std::min(x.contact.f_c, 0.95 * s);
+        ASSERT_TRUE(mathavan_2010_ends(x.contact)) << i;
+        Vec3 v = x.v, w = x.w, v_f = x.v, w_f = x.w;
+        ASSERT_TRUE(resolve_cushion(CushionModel::kMathavan2010, x.contact, x.normal, v, w)) << i;
+        ASSERT_TRUE(detail::cushion_mathavan_2010_to(x.contact, x.normal, v_f, w_f, 1e-11)) << i;
+        off.push_back(std::max((v - v_f).cwiseAbs().maxCoeff(), 0.028575 * (w - w_f).cwiseAbs().maxCoeff()) /
+                      -x.v.x());
+    }
+    std::sort(off.begin(), off.end());
+    // Half of these impacts are straight in or hardly approaching: their forces are constant, their errors 0.
+    std::printf("mathavan_2010: error of 75 %% below %.2g, 99 %% %.2g, 99.9 %% %.2g, worst %.2g\n", off[15000],
+                off[19800], off[19980], off.back());
+    EXPECT_LE(off[15000], 2e-8);
+    EXPECT_LE(off[19800], 1e-6);
+    EXPECT_LE(off.back(), 5e-5);
+}
+
+// Any scene that the reader lets pass: the model ends, or says that it did not (then it changes nothing).
+TEST(Cushion, Mathavan2010EndsOrSaysSo) {
+    SplitMix64 rng(13);
+    int solved = 0, refused = 0;
+    for (int i = 0; i < 30000; ++i) {
+        Case x = random_case(rng, i % 4);
+        const double R = x.contact.R;
+        x.contact.mu_s = rng.uniform(0.0, 1.0);
+        x.contact.f_c = rng.uniform(0.0, 1.0);
+        x.contact.e_c = i % 7 ? rng.uniform(0.0, 1.0) : 0.0;
+        x.contact.height = R * rng.uniform(0.6, 1.9);
+        if (!mathavan_2010_ends(x.contact)) continue;
+        Vec3 v = x.v, w = x.w;
+        if (resolve_cushion(CushionModel::kMathavan2010, x.contact, x.normal, v, w)) {
+            ++solved;
+            ASSERT_TRUE(v.allFinite() && w.allFinite()) << i;
+        } else {
+            ++refused;
+            EXPECT_EQ(v, x.v);
+            EXPECT_EQ(w, x.w);
+        }
+    }
+    std::printf("%d solved, %d said that they were not\n", solved, refused);
+    EXPECT_GT(solved, 8000);
+    EXPECT_LE(refused, 10);
 }
 
 }  // namespace

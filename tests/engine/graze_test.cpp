@@ -9,6 +9,7 @@
 #include "motion.h"
 #include "roots.h"
 #include "support/graze_oracle.h"
+#include "support/graze_pairs.h"
 #include "support/hard_scenes.h"
 #include "support/random_impacts.h"
 
@@ -18,30 +19,6 @@ namespace {
 using namespace test;
 
 constexpr double kReach = 2.0 * 0.028575;
-
-Vec2 turned(const Vec2& a, const Vec2& e) {
-    return {a.x() * e.x() - a.y() * e.y(), a.x() * e.y() + a.y() * e.x()};
-}
-
-Path random_path(SplitMix64& rng, int kind, double speed) {
-    const SinCos c = sin_cos(rng.uniform(0.0, 6.283185307179586)),
-                 d = sin_cos(rng.uniform(0.0, 6.283185307179586));
-    const Vec2 v = speed * Vec2(c.cos, c.sin);
-    if (kind == 0) return {{0, 0}, {0, 0}, {0, 0}, kNever, true, false};                   // at rest
-    if (kind == 1) return {{0, 0}, v, v * (-0.0981 / speed), speed / 0.0981, true, true};  // rolls
-    return {{0, 0}, v,   1.962 * Vec2(d.cos, d.sin), rng.uniform(0.05, 1.0) * speed / 1.962,
-            false,  true};  // slides
-}
-
-// Puts ball 2 so that at the time t the two pass at right angles to their relative velocity, `depth` within
-// reach.
-void set_to_graze(const Path& one, Path& two, double t, double depth, SplitMix64& rng) {
-    const Vec2 v = (two.v - one.v) + t * (two.a - one.a);
-    const double speed = length(v);
-    const Vec2 across = turned(v / speed, Vec2(0.0, rng.next() % 2 ? 1.0 : -1.0));
-    const Vec2 travelled = t * ((two.v - one.v) + 0.5 * t * (two.a - one.a));
-    two.r = one.r + (kReach - depth) * across - travelled;
-}
 
 TEST(Graze, OracleKnowsAStraightLine) {
     const GrazeOracle oracle({0, 0}, {0, 0}, {0, 0}, {kReach + 1.0, 0}, {-2.0, 0}, {0, 0}, kReach, 1.0);
@@ -66,7 +43,7 @@ TEST(Graze, HundredThousandPairs) {
         const double horizon = std::min({one.horizon, two.horizon, 20.0});
         one.horizon = std::min(one.horizon, 20.0);
         const double depth = (rng.next() % 2 ? 1.0 : -1.0) * std::pow(10.0, rng.uniform(-16.0, -4.0));
-        set_to_graze(one, two, rng.uniform(0.05, 0.9) * horizon, depth, rng);
+        set_to_graze(one, two, rng.uniform(0.05, 0.9) * horizon, depth, kReach, rng);
         if (length(two.r - one.r) <= kReach) continue;
         const double got = time_to_ball(one, two, kReach);
         const Meeting want = GrazeOracle(one.r, one.v, one.a, two.r, two.v, two.a, kReach, horizon).meet();

@@ -87,26 +87,18 @@ TEST(HardRuns, MirrorsAndQuarterTurnBitwise) {
         for (const Case& c : cases) {
             SCOPED_TRACE(std::string(name(model)) + ", " + c.name);
             const Record two = run_verified(mapped(scene, c.map, c.determinant));
-            // The sum over a cluster runs in the order of places, which a mirror turns round: there to
-            // rounding, through 30 events.
-            const bool bitwise = model == ClusterModel::kSequential;
-            const std::size_t events =
-                bitwise ? one.events.size() : std::min<std::size_t>(one.events.size(), 30);
-            if (bitwise) {
-                ASSERT_EQ(two.events.size(), one.events.size());
-            }
+            const std::size_t events = one.events.size();
+            ASSERT_EQ(two.events.size(), events);
             double worst = 0.0;
             for (std::size_t k = 0; k < events; ++k) {
-                if (bitwise) {
-                    ASSERT_EQ(two.events[k].time, one.events[k].time) << "event " << k;
-                }
+                ASSERT_EQ(two.events[k].time, one.events[k].time) << "event " << k;
                 for (int i = 0; i < 16; ++i)
                     worst = std::max(worst, (two.state_at(i, one.events[k].time).position -
                                              c.map(one.state_at(i, one.events[k].time).position))
                                                 .norm());
             }
             report("H34", worst);
-            EXPECT_LE(worst, bitwise ? 0.0 : 1e-11);
+            EXPECT_EQ(worst, 0.0);
         }
     }
 }

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -67,6 +68,7 @@ struct ProcessOptions {
     std::vector<std::pair<std::string, std::string>> environment;  ///< set in addition
     std::string folder;                                            ///< to run in; empty: as the test
     std::string output_to;                                         ///< file or device for its standard output
+    long file_limit = -1;       ///< bytes that a file of it may have; -1: any number
     bool close_output = false;  ///< read nothing: its standard output is a broken pipe
 };
 
@@ -107,7 +109,8 @@ class Process {
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
 
-    void interrupt() const { ::kill(pid_, SIGINT); }
+    void interrupt() const { send(SIGINT); }
+    void send(int signal) const { ::kill(pid_, signal); }
 
     /// Sends text, and reads standard output up to the next line end; "" at its end or after `milliseconds`.
     std::string ask(const std::string& text, int milliseconds) {
@@ -159,6 +162,11 @@ class Process {
         ::dup2(in, 0);
         ::dup2(out, 1);
         ::dup2(err, 2);
+        if (options.file_limit >= 0) {
+            const rlimit limit{static_cast<rlim_t>(options.file_limit),
+                               static_cast<rlim_t>(options.file_limit)};
+            ::setrlimit(RLIMIT_FSIZE, &limit);
+        }
         for (const auto& [key, value] : options.environment) ::setenv(key.c_str(), value.c_str(), 1);
         if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(126);
         std::vector<char*> argv;

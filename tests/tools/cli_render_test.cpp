@@ -1,8 +1,7 @@
-// carom render and carom margin: numbered whole frames, an interrupt that leaves no half, the margin's JSON.
+// carom render: numbered whole frames, an interrupt that leaves no half.
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "carom/engine/record.h"
@@ -10,8 +9,6 @@
 
 namespace carom::test {
 namespace {
-
-using Json = nlohmann::json;
 
 class CliRender : public ::testing::Test {
   protected:
@@ -107,70 +104,6 @@ TEST_F(CliRender, AnInterruptKeepsFinishedFramesAndNothingElse) {
     EXPECT_GE(frames, 3);
     EXPECT_LT(frames, 2000);
     for (int k = 0; k < frames; ++k) EXPECT_EQ(png_size(frame(k)), std::make_pair(1280u, 720u)) << k;
-}
-
-void expect_margin_json(const Json& json, bool rendered) {
-    ASSERT_EQ(json.size(), 6u);
-    EXPECT_EQ(json.at("fps"), 20.0);
-    EXPECT_EQ(json.at("budget_ms"), 50.0);
-    const Json& stages = json.at("stages");
-    ASSERT_EQ(stages.size(), 5u);
-    for (const char* stage : {"simulate", "kernel", "draw", "readback", "encode"}) {
-        const bool measured = rendered || std::string(stage) == "simulate" || std::string(stage) == "kernel";
-        if (!measured) {
-            EXPECT_TRUE(stages.at(stage).is_null()) << stage;
-            continue;
-        }
-        const Json& values = stages.at(stage);
-        ASSERT_EQ(values.size(), 4u) << stage;
-        EXPECT_LE(values.at("p50").get<double>(), values.at("p95").get<double>());
-        EXPECT_LE(values.at("p95").get<double>(), values.at("p99").get<double>());
-        EXPECT_LE(values.at("p99").get<double>(), values.at("max").get<double>());
-        EXPECT_GT(values.at("max").get<double>(), 0.0) << stage;
-    }
-    EXPECT_LE(stages["kernel"]["max"].get<double>(), stages["simulate"]["max"].get<double>());
-    const Json& worst = json.at("worst");
-    ASSERT_EQ(worst.size(), 4u);
-    EXPECT_EQ(worst.at("time").get<double>(), worst.at("frame").get<double>() / 20.0);
-    EXPECT_GT(worst.at("ms").get<double>(), 0.0);
-    for (const Json& event : worst.at("events")) EXPECT_TRUE(event.at("type").is_string());
-}
-
-TEST_F(CliRender, MarginJsonIsTheDesigns) {
-    const ProcessResult result =
-        carom({"margin", scene_, "--fps", "20", "--json", "--repeat", "2", "--csv", folder_.file("m.csv")});
-    ASSERT_EQ(result.status, 0) << result.err;
-    const Json json = Json::parse(result.out);
-    expect_margin_json(json, true);
-    const std::vector<std::string> lines = lines_of(read_file(folder_.file("m.csv")));
-    EXPECT_EQ(lines.at(0),
-              "frame,time,events,simulate_ms,kernel_ms,draw_ms,readback_ms,encode_ms,total_ms,missed");
-    EXPECT_EQ(lines.size(), json.at("frames").get<std::size_t>() + 1);
-}
-
-TEST_F(CliRender, MarginWithoutRenderingCountsEveryEventOnce) {
-    const ProcessResult result =
-        carom({"margin", scene_, "--fps", "20", "--json", "--no-render", "--csv", folder_.file("m.csv")});
-    ASSERT_EQ(result.status, 0) << result.err;
-    expect_margin_json(Json::parse(result.out), false);
-    const std::vector<std::string> lines = lines_of(read_file(folder_.file("m.csv")));
-    EXPECT_EQ(lines.at(0), "frame,time,events,simulate_ms,kernel_ms,total_ms,missed");
-    int events = 0;
-    for (std::size_t i = 1; i < lines.size(); ++i) {
-        int here = -1;
-        ASSERT_EQ(std::sscanf(lines[i].c_str(), "%*d,%*f,%d,", &here), 1) << lines[i];
-        events += here;
-    }
-    EXPECT_EQ(events, Json::parse(carom({"simulate", scene_, "--json"}).out).at("events").get<int>());
-}
-
-TEST_F(CliRender, MarginForPeople) {
-    const ProcessResult result = carom({"margin", scene_, "--size", "160x90"});
-    ASSERT_EQ(result.status, 0) << result.err;
-    for (const char* part : {" missed\n", "\n  simulate ", "\n  kernel ", "\n  draw ", "\n  readback ",
-                             "\n  encode ", "\n  all ", "kernel is a part of simulate", "worst frame: "}) {
-        EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
-    }
 }
 
 }  // namespace

@@ -18,7 +18,10 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         std::vector<std::string> arguments;
         const char* message;
     } kCases[] = {
-        {{}, "a command is missing: simulate, render, margin, check, impact or bench; see carom --help"},
+        {{},
+         "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or describe; "
+         "see carom "
+         "--help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
         {{"simulate"}, "SCENE is required; see carom simulate --help"},
@@ -47,7 +50,9 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         {{"render", scene, "--png-level", "10"}, "10"},
         {{"render", scene, "--camera", "from the moon"}, "from the moon"},
         {{"margin", scene, "--repeat", "0"}, "--repeat"},
-        {{"margin", scene, "--sweep"}, "--sweep"},
+        {{"margin", scene, "--sweep", "--fps", "60"}, "--sweep goes through the frame rates"},
+        {{"margin", scene, "--sweep", "--trace", folder.file("t.json")}, "--trace is of one setting"},
+        {{"margin", scene, "--plot", folder.file("t.png")}, "a name that ends in .svg"},
         {{"check", scene, "more"}, "more"},
         {{"impact", "--method", "magic"}, "magic"},
         {{"impact", "--substeps", "0"}, "--substeps"},
@@ -70,7 +75,8 @@ TEST(CliUsage, VersionAndHelpExit0) {
     EXPECT_EQ(carom({"--version"}).out, "carom " CAROM_VERSION "\n");
     const ProcessResult help = carom({"--help"});
     EXPECT_EQ(help.status, 0);
-    for (const char* command : {"simulate", "render", "margin", "check", "impact"}) {
+    for (const char* command :
+         {"simulate", "render", "margin", "accuracy", "sweep", "check", "impact", "describe"}) {
         EXPECT_TRUE(contains(help.out, command)) << command;
         const ProcessResult result = carom({command, "--help"});
         EXPECT_EQ(result.status, 0) << command;
@@ -79,12 +85,13 @@ TEST(CliUsage, VersionAndHelpExit0) {
 }
 
 TEST(CliUsage, HelpNamesEveryDefault) {
-    for (const char* command : {"simulate", "render", "margin", "check", "impact"}) {
+    for (const char* command :
+         {"simulate", "render", "margin", "accuracy", "sweep", "check", "impact", "describe"}) {
         // Options begin with two blanks and a dash; their text may go on in the lines below.
         std::string option;
         const auto has_default = [&option] {
             return option.empty() || contains(option, "--help") || contains(option, "default:") ||
-                   contains(option, "=");
+                   contains(option, "=") || contains(option, "REQUIRED");
         };
         for (const std::string& line : lines_of(carom({command, "--help"}).out)) {
             const bool starts = line.substr(0, 3) == "  -";

@@ -62,10 +62,37 @@ TEST(CostsByFrame, SumsByFrameAndLosesNothing) {
     EXPECT_EQ(sums[1].events, (std::vector<std::size_t>{2, 3, 4}));
     EXPECT_TRUE(sums[2].events.empty());
     EXPECT_EQ(sums[3].events, std::vector<std::size_t>{5});
-    EXPECT_DOUBLE_EQ(sums[0].simulate_ms, 5000e-6 + 2 * 1200e-6);  // with the first detection
-    EXPECT_DOUBLE_EQ(sums[1].simulate_ms, 3 * 1200e-6);
+    EXPECT_DOUBLE_EQ(sums[0].simulate_ms(), 5000e-6 + 2 * 1200e-6);  // with the first detection
+    EXPECT_DOUBLE_EQ(sums[1].simulate_ms(), 3 * 1200e-6);
     EXPECT_DOUBLE_EQ(sums[1].kernel_ms, 3 * 30e-6);
-    EXPECT_EQ(sums[2].simulate_ms, 0.0);
+    EXPECT_EQ(sums[2].simulate_ms(), 0.0);
+}
+
+TEST(CostsByFrame, PartsAddUpAndClustersAreNotKernel) {
+    Record record = record_with_events({0.05, 0.05, 0.15});
+    record.events[1].type = EventType::kBallCluster;
+    const std::vector<FrameCost> sums = costs_by_frame(record, 0.0, 10.0, 2);
+    EXPECT_DOUBLE_EQ(sums[0].detect_ms, (5000 + 2 * 1000) * 1e-6);
+    EXPECT_DOUBLE_EQ(sums[0].resolve_ms, 2 * 170e-6);
+    EXPECT_DOUBLE_EQ(sums[0].kernel_ms, 30e-6);
+    EXPECT_DOUBLE_EQ(sums[0].cluster_ms, 30e-6);
+    EXPECT_DOUBLE_EQ(sums[0].simulate_ms(), (5000 + 2 * 1200) * 1e-6);
+    EXPECT_EQ(sums[1].cluster_ms, 0.0);
+    EXPECT_DOUBLE_EQ(sums[1].simulate_ms(), 1200e-6);
+}
+
+// The moments are given: what lies between frame_done and next_starts belongs to no frame.
+TEST(FrameWalls, CountsFramesAndNotWhatIsBetweenThem) {
+    std::vector<double> moments = {10.0, 11.0, 14.5, 20.0, 22.0, 22.5};
+    std::size_t at = 0;
+    FrameWalls walls([&] { return moments.at(at++); });
+    walls.frame_done();   // at 10: the first frame, whose start is not known
+    walls.next_starts();  // at 11
+    walls.frame_done();   // at 14.5
+    walls.next_starts();  // at 20
+    walls.frame_done();   // at 22
+    walls.next_starts();
+    EXPECT_EQ(walls.walls(), (std::vector<double>{3.5, 2.0}));
 }
 
 TEST(CostsByFrame, AgreesWithTheRendererOnTheFrames) {

@@ -1,22 +1,19 @@
 // Past the paper: one impact, every step done, its reduced state in one register. S = [x, a, |z|, b], where
-// (a, b) is the cloth slip of the pressed ball; the other ball's, v_n and the work follow from linear
-// invariants at the end of a stretch in which neither side nor stage can change. R = [1/c, 1/u, 1/c, 1/u] is
-// what limits the march. How it is had:
+// (a, b) is the cloth slip of the pressed ball. R = [1/c, 1/u, 1/c, 1/u] is what limits the march. How it is
+// had:
 //
 //   kExact      sqrt and division
 //   kSeed       extrapolated linearly, then corrected by a series before it is used
 //   kOneAhead   extrapolated from the last five; used at once, and the step corrected late, by terms linear
-//   in the error e kTwoAhead   the same, but from values one step older, so that the extrapolation too is off
-//   the critical path
+//               in the error e
+//   kTwoAhead   the same, but from values one step older, so that the extrapolation too is off the critical
+//               path
 //
 // A step whose e is too large for its form falls back to the series, or to sqrt and division (starts, near u
 // = 0 or c = 0).
 #pragma once
 
-#include <immintrin.h>
-
-#include "loop_marks.h"
-#include "reduced.h"
+#include "stretches.h"
 
 namespace carom::kernel {
 namespace {
@@ -35,52 +32,12 @@ inline bool all_within(__m256d e, double bound) {
     return _mm256_movemask_pd(_mm256_cmp_pd(size, _mm256_set1_pd(bound), _CMP_NLT_UQ)) == 0;
 }
 
-template <RootForm kForm, int kSign>
-class PackedMarch {
-  public:
-    PackedMarch(const Reduced& start, const ReducedConstants& constants) : r(start), k(constants) {}
-
-    long run() {
-        while (stop.goes_on(r.v_n)) {
-            if (steps > k.limit) return -1;
-            const long count = safe_steps();
-            if (count < 12)
-                reduced_steps<kSign>(r, stop, steps, count > 1 ? count : 1, k);
-            else
-                stretch(count);
-        }
-        return steps;
-    }
-
-    Reduced r;
-
-  private:
-    static constexpr double kKappa = 1.0 - 2.5 * kSign;
-    ReducedConstants k;
-    StopTest stop;
-    long steps = 0;
-
-    // Steps within which neither the stage can end nor |z| reach zero. v_n grows by at most (2 + mu_s mu_b) h
-    // a step, |z| falls by at most (5 + 5/2 mu_s) mu_b h.
-    long safe_steps() const {
-        const int pressed = r.z < 0.0;
-        const double mu_s = k.mu_s[pressed], growth = 2.0 * k.h + mu_s * k.mu_h, v = r.v_n;
-        double count = -v / growth;
-        if (!stop.compressing) {
-            const double missing = (stop.W_f - stop.W) / k.h;
-            count =
-                missing > 0.0 && v >= 0.0 ? (square_root(v * v + 2.0 * growth * missing) - v) / growth : 0.0;
-        }
-        const double fall = (5.0 + 2.5 * mu_s) * k.mu_h, size = absolute(r.z);
-        if (size > 0.0 && count * fall > size) count = size / fall;
-        if (count > 1e6) count = 1e6;
-        return count < 3.0 ? 0 : static_cast<long>(count) - 2;
-    }
-
+template <RootForm kForm>
+struct PackedMarch {
     // 1/c and 1/u by sqrt and division; 0 where there is no direction.
-    __m256d exact_roots(__m256d S) const {
+    static __m256d exact_roots(__m256d S, double u_floor) {
         const __m256d squares = _mm256_mul_pd(S, S), sum = _mm256_add_pd(squares, swapped_halves(squares));
-        const double f = k.u_floor * k.u_floor, c = kSlipCutoff * kSlipCutoff * (1.0 - 0x1p-52);
+        const double f = u_floor * u_floor, c = kSlipCutoff * kSlipCutoff * (1.0 - 0x1p-52);
         const __m256d directed = _mm256_cmp_pd(sum, _mm256_set_pd(f, c, f, c), _CMP_GT_OQ);
         return _mm256_and_pd(directed, _mm256_div_pd(_mm256_set1_pd(1.0), _mm256_sqrt_pd(sum)));
     }
@@ -92,19 +49,18 @@ class PackedMarch {
         return _mm256_fmadd_pd(_mm256_mul_pd(T, e), s, T);
     }
 
-    void stretch(long count) {
-        const int pressed = r.z < 0.0, other = 1 - pressed;
-        const double Z0 = absolute(r.z), a0 = r.Ux[pressed], b0 = r.Uy[pressed];
-        const double mu_hs = k.mu_h * k.mu_s[pressed];
+    template <int kSign>
+    static void march(Stretch& stretch, const StretchConstants& k, long count) {
+        constexpr double kKappa = 1.0 - 2.5 * kSign;
         // What xi and t, and what q, do to the state.
         const __m256d by_friction =
             _mm256_mul_pd(_mm256_set1_pd(k.mu_h), _mm256_set_pd(-2.5 * kSign, -5.0, 1.0, -7.0));
         const __m256d by_cloth = _mm256_set_pd(-kKappa, 2.5, -kKappa, 1.0);
         const __m256d half_friction = _mm256_mul_pd(by_friction, _mm256_set1_pd(0.5));
         const __m256d half_cloth = _mm256_mul_pd(by_cloth, _mm256_set1_pd(0.5));
-        const __m256d push = _mm256_set_pd(k.h, 0.0, 0.0, 0.0), mu = _mm256_set1_pd(mu_hs);
+        const __m256d push = _mm256_set_pd(k.h, 0.0, 0.0, 0.0), mu = _mm256_set1_pd(k.mu_hs);
         const __m256d half = _mm256_set1_pd(0.5);
-        __m256d S = _mm256_set_pd(b0, Z0, a0, r.x), sum_S = _mm256_setzero_pd();
+        __m256d S = _mm256_set_pd(stretch.b, stretch.z, stretch.a, stretch.x), sum_S = _mm256_setzero_pd();
         // R of the last steps, the newest first. Zero, as at the start, gives e = 1: the first steps take the
         // exact roots.
         __m256d R1 = _mm256_setzero_pd(), R2 = R1, R3 = R1, R4 = R1, R5 = R1, R6 = R1;
@@ -114,7 +70,7 @@ class PackedMarch {
             __m256d R = R1, next = pushed;
             bool late = false;
             if constexpr (kForm == RootForm::kExact) {
-                R = exact_roots(S);
+                R = exact_roots(S, k.u_floor);
             } else {
                 __m256d T;
                 if constexpr (kForm == RootForm::kSeed) {
@@ -151,7 +107,7 @@ class PackedMarch {
                     late = all_within(e, kLateError);
                 }
                 if (!late) [[unlikely]]
-                    R = all_within(e, kSeriesError) ? series(T, e) : exact_roots(S);
+                    R = all_within(e, kSeriesError) ? series(T, e) : exact_roots(S, k.u_floor);
             }
             if (!late) [[unlikely]] {
                 const __m256d SR = _mm256_mul_pd(S, R);
@@ -173,41 +129,12 @@ class PackedMarch {
         alignas(32) double end[4], sum[4];
         _mm256_store_pd(end, S);
         _mm256_store_pd(sum, sum_S);
-        // From the invariants of a stretch of M steps: the sums of q_y, of xi, of t.
-        constexpr double kForQ = 1.0 / (1.0 - 1.25 * kSign);
-        const double M = static_cast<double>(count), p = M * k.h;
-        const double dx = end[0] - r.x, da = end[1] - a0, dZ = end[2] - Z0, db = end[3] - b0;
-        const double Q = kForQ * (p + 0.5 * kSign * dZ - db), T = 0.2 * (2.5 * Q - dZ);
-        const double Xi = (kKappa * dx + da) / (1.0 - 7.0 * kKappa);
-        const double sum_Q =
-            kForQ * (0.5 * k.h * M * (M - 1.0) + 0.5 * kSign * (sum[2] - M * Z0) - (sum[3] - M * b0));
-        const double dv = 2.0 * p - Q, sum_v = M * r.v_n + k.h * M * (M - 1.0) - sum_Q;
-        stop.W += k.h * absolute(sum_v + 0.5 * dv);
-        r.x = end[0];
-        r.z = pressed ? -end[2] : end[2];
-        r.Ux[pressed] = end[1];
-        r.Uy[pressed] = end[3];
-        r.Ux[other] += Xi;
-        r.Uy[other] += p + 2.5 * kSign * T;
-        r.v_n += dv;
-        steps += count;
+        stretch = {end[0], end[1], end[2], end[3], sum[2], sum[3]};
     }
 };
 
 template <RootForm kForm>
-struct Packed {
-    template <int kSign>
-    static long loop(FrameState& s, const ImpactParams& p, int n) {
-        const ReducedConstants k = reduced_constants<kSign>(s, p, n);
-        const Reduced start = reduce<kSign>(s, p.R);
-        PackedMarch<kForm, kSign> march(start, k);
-        const long steps = march.run();
-        if (steps < 0) return -1;
-        expand(s, sums_between<kSign>(start, march.r, static_cast<double>(steps) * k.h), p.R);
-        return steps;
-    }
-};
-
+using Packed = InStretches<PackedMarch<kForm>>;
 using PackedExact = Packed<RootForm::kExact>;
 using ExtrapolatedSeed = Packed<RootForm::kSeed>;
 using Pipelined = Packed<RootForm::kOneAhead>;

@@ -33,6 +33,17 @@ constexpr double evaluate(const double* a, int degree, double x) {
     return sum;
 }
 
+// The same with even and odd powers apart, which halves the chain.
+template <int kDegree>
+double value(const double* a, double x) {
+    constexpr int kEven = kDegree - kDegree % 2, kOdd = kDegree - 1 + kDegree % 2;
+    const double x2 = x * x;
+    double even = a[kEven], odd = a[kOdd];
+    for (int k = kEven - 2; k >= 0; k -= 2) even = even * x2 + a[k];
+    for (int k = kOdd - 2; k >= 0; k -= 2) odd = odd * x2 + a[k];
+    return even + x * odd;
+}
+
 // g with g(x + d) - g(x) = f(x) and g(start) = 0; f of degree `degree`, g one higher.
 constexpr void sum_polynomial(const double* f, int degree, double d, double start, double* g) {
     for (int i = degree; i >= 0; --i) {

@@ -16,10 +16,15 @@ namespace {
 
 constexpr int kMostSweeps = 24;
 // Change of a node per sweep, and highest modes of the rates, both relative to the approach speed.
-constexpr double kSweepTolerance = 3e-11, kModeTolerance = 1e-9;
+constexpr double kSweepTolerance = 5e-13, kModeTolerance = 2e-10;
+
+// What the modes may exceed that by after two sweeps: a block that will not do ends there.
+constexpr double kEarlySlack = 10.0;
+// Rounding of a sweep, summed over the nodes, relative to the slips.
+constexpr double kSweepRounding = 4e-15;
 
 // How far the poles are kept, relative to the estimate.
-constexpr double kPoleMargin = 0.5;
+constexpr double kPoleMargin = 0.35;
 
 template <int kSign>
 class SummedMarch {
@@ -27,22 +32,32 @@ class SummedMarch {
     SummedMarch(const Reduced& start, const ReducedConstants& constants)
         : r(start), k(constants), scale(absolute(start.v_n)) {}
 
-    long run() {
+    // The steps done, or -1. After `most_exact` exact steps it gives up, and `chatters` is set.
+    long run(long most_exact) {
         long patience = 1;
         while (stop.goes_on(r.v_n)) {
             if (steps > k.limit) return -1;
-            int level = widest();
-            while (level >= 0 && !block(kSumTables[level])) --level;
+            const FirstStep first = first_step();
+            int level = widest(first);
+            while (level >= 0 && !block(kSumTables[level], first)) --level;
             // Exact steps, more of them the longer nothing smooth comes.
-            if (level >= 0)
+            if (level >= 0) {
                 patience = 1;
-            else
-                reduced_steps<kSign>(r, stop, steps, patience < kSmallestBlock ? patience *= 2 : patience, k);
+                continue;
+            }
+            const long before = steps;
+            reduced_steps<kSign>(r, stop, steps, patience < kSmallestBlock ? patience *= 2 : patience, k);
+            most_exact -= steps - before;
+            if (most_exact < 0 && stop.goes_on(r.v_n)) {
+                chatters = true;
+                return -1;
+            }
         }
         return steps;
     }
 
     Reduced r;
+    bool chatters = false;
 
   private:
     ReducedConstants k;
@@ -50,11 +65,37 @@ class SummedMarch {
     StopTest stop;
     long steps = 0;
 
-    // A pressed ball that rolls: its slip gets a direction with the next step.
-    bool rolls() const {
-        const int pressed = r.z < 0.0;
-        const double a = r.Ux[pressed], b = r.Uy[pressed];
-        return k.mu_s[pressed] > 0.0 && !(square_root(a * a + b * b) > k.u_floor);
+    // The reciprocal lengths and the rates at the state reached; `cloth`: that of the pressed ball takes
+    // part.
+    struct FirstStep {
+        int pressed;
+        bool slips, turns, cloth, rolls;
+        double size, C, U, xi, t, q_x, q_y;
+    };
+
+    FirstStep first_step() const {
+        FirstStep f{};
+        f.pressed = r.z < 0.0;
+        f.size = absolute(r.z);
+        const double c = square_root(r.x * r.x + r.z * r.z), mu_s = k.mu_s[f.pressed];
+        const double a = r.Ux[f.pressed], b = r.Uy[f.pressed], u = square_root(a * a + b * b);
+        // A pressed ball that rolls: its slip gets a direction with the next step.
+        f.rolls = mu_s > 0.0 && !(u > k.u_floor);
+        f.slips = !(c < kSlipCutoff);
+        f.turns = f.slips && !(f.size < kSlipCutoff);
+        f.cloth = f.turns && mu_s > 0.0 && !f.rolls;
+        if (f.slips) {
+            f.C = 1.0 / c;
+            f.xi = k.mu_h * f.C * r.x;
+        }
+        if (f.turns) f.t = k.mu_h * f.C * f.size;
+        if (f.cloth) {
+            f.U = 1.0 / u;
+            const double B = f.t * (mu_s * f.U);
+            f.q_x = B * a;
+            f.q_y = B * b;
+        }
+        return f;
     }
 
     // How smooth the direction of a vector is along a block of K steps from (a, b) at (da, db) a step: it has
@@ -69,33 +110,43 @@ class SummedMarch {
         const double sine =
             absolute(a * db - b * da) / (square_root((a * a + b * b) * (da * da + db * db)) + 1e-300);
         const double ratio = amplitude * sine / (kModeTolerance * scale);
-        const double rho = 1.0 + kPoleMargin * square_root(square_root(square_root(ratio)));
+        const double rho = 1.0 + kPoleMargin * eighth_root(ratio);
         return {a, b, da, db, 0.5 * (rho + 1.0 / rho)};
     }
 
-    static bool smooth(const Path& p, double K) {
-        const double a = p.a + K * p.da, b = p.b + K * p.db;
-        return square_root(p.a * p.a + p.b * p.b) + square_root(a * a + b * b) >=
-               p.needed * K * square_root(p.da * p.da + p.db * p.db);
+    // To a tenth, which is enough here: the exponent divided, the fraction taken as it falls.
+    static double eighth_root(double x) {
+        long bits;
+        __builtin_memcpy(&bits, &x, sizeof x);
+        bits = bits / 8 + 0x3ff0000000000000L / 8 * 7;
+        __builtin_memcpy(&x, &bits, sizeof x);
+        return x;
+    }
+
+    // The slack of every block size at once; >= 0 where smooth.
+    static Vector8 slack(const Path& p, Vector8 K) {
+        const Vector8 a = p.a + K * p.da, b = p.b + K * p.db;
+        return square_root(p.a * p.a + p.b * p.b) + square_root8(a * a + b * b) -
+               K * (p.needed * square_root(p.da * p.da + p.db * p.db));
     }
 
     // The widest block that promises to be resolved; -1 if none does.
-    int widest() const {
+    int widest(const FirstStep& f) const {
         constexpr double kKappa = 1.0 - 2.5 * kSign;
-        if (rolls()) return -1;
-        const int pressed = r.z < 0.0;
-        const double c = square_root(r.x * r.x + r.z * r.z), size = absolute(r.z), mu_s = k.mu_s[pressed];
+        if (f.rolls) return -1;
         int level = kBlockSizes - 1;
-        if (c < kSlipCutoff) return level;
-        const double a = r.Ux[pressed], b = r.Uy[pressed], u = square_root(a * a + b * b);
-        const double xi = k.mu_h * r.x / c, t = k.mu_h * size / c;
-        const double B = u > 0.0 ? mu_s * t / u : 0.0, q_x = B * a, q_y = B * b;
-        const Path slip = path(r.x, size, q_x - 7.0 * xi, 2.5 * q_y - 5.0 * t, kLargestBlock * k.mu_h);
-        const Path cloth =
-            path(a, b, xi - kKappa * q_x, k.h - 2.5 * kSign * t - kKappa * q_y, kLargestBlock * mu_s * t);
-        while (level >= 0 &&
-               !(smooth(slip, kSmallestBlock << level) && smooth(cloth, kSmallestBlock << level)))
-            --level;
+        if (!f.slips) return level;
+        const double a = r.Ux[f.pressed], b = r.Uy[f.pressed], mu_s = k.mu_s[f.pressed];
+        const Path slip =
+            path(r.x, f.size, f.q_x - 7.0 * f.xi, 2.5 * f.q_y - 5.0 * f.t, kLargestBlock * k.mu_h);
+        const Path cloth = path(a, b, f.xi - kKappa * f.q_x, k.h - 2.5 * kSign * f.t - kKappa * f.q_y,
+                                kLargestBlock * mu_s * f.t);
+        alignas(64) constexpr double kSizes[kNodes] = {16, 32, 64, 128, 256, 512, 1024, 1024};
+        alignas(64) double of_slip[kNodes], of_cloth[kNodes];
+        const Vector8 slip_slack = slack(slip, load8(kSizes)), cloth_slack = slack(cloth, load8(kSizes));
+        store8(of_slip, slip_slack);
+        store8(of_cloth, cloth_slack);
+        while (level >= 0 && !(of_slip[level] >= 0.0 && of_cloth[level] >= 0.0)) --level;
         return level;
     }
 
@@ -103,11 +154,24 @@ class SummedMarch {
         Vector8 xi, t, q_x, q_y;
     };
 
-    Rates rates(Vector8 x, Vector8 z, Vector8 a, Vector8 b, double mu_s) const {
-        const Vector8 c = square_root8(x * x + z * z), u = square_root8(a * a + b * b);
-        const Vector8 A = k.mu_h / c;
+    // y is near 1/sqrt(square): e = 1 - square y^2, and the series of (1 - e)^(-1/2). 35/128 e^4 is left, for
+    // the next sweep.
+    static Vector8 refined(Vector8 y, Vector8 e) { return y + (y * e) * (0.5 + e * (0.375 + e * 0.3125)); }
+
+    // C and U: reciprocal lengths of the sweep before, then of this one.
+    Rates rates(Vector8 x, Vector8 z, Vector8 a, Vector8 b, double mu_s, Vector8& C, Vector8& U) const {
+        const Vector8 c2 = x * x + z * z, u2 = a * a + b * b;
+        const Vector8 e_c = 1.0 - c2 * (C * C), e_u = 1.0 - u2 * (U * U);
+        if (all_below8(e_c * e_c + e_u * e_u, 0.01)) [[likely]] {
+            C = refined(C, e_c);
+            U = refined(U, e_u);
+        } else {
+            C = 1.0 / square_root8(c2);
+            U = 1.0 / square_root8(u2);
+        }
+        const Vector8 A = k.mu_h * C;
         const Vector8 t = A * z;
-        const Vector8 B = t * (mu_s / u);
+        const Vector8 B = t * (mu_s * U);
         return {A * x, t, B * a, B * b};
     }
 
@@ -115,38 +179,46 @@ class SummedMarch {
     static Vector8 combined(const double (&columns)[kNodes][kNodes], Vector8 start, Vector8 F) {
         // Through memory: loads broadcast for nothing, lanes moved in registers do not.
         alignas(64) double at_node[kNodes];
-        __builtin_memcpy(at_node, &F, sizeof F);
-        Vector8 even = start, odd = at_node[1] * load8(columns[1]);
-        for (int l = 0; l < kNodes; l += 2) even += at_node[l] * load8(columns[l]);
-        for (int l = 3; l < kNodes; l += 2) odd += at_node[l] * load8(columns[l]);
+        store8(at_node, F);
+        Vector8 even = start + at_node[0] * load8(columns[0]), odd = at_node[1] * load8(columns[1]);
+#pragma GCC unroll 8
+        for (int l = 2; l < kNodes; l += 2) {
+            even = even + at_node[l] * load8(columns[l]);
+            odd = odd + at_node[l + 1] * load8(columns[l + 1]);
+        }
         return even + odd;
     }
 
-    static double total(const double* weights, Vector8 F) { return sum8(load8(weights) * F); }
+    static double total(const double* weights, Vector8 F) {
+        return sum8(load8(weights) * F);
+    }
 
-    bool block(const SumTable& table) {
+    bool block(const SumTable& table, const FirstStep& first) {
         constexpr double kKappa = 1.0 - 2.5 * kSign;
-        const int pressed = r.z < 0.0;
-        const bool slips = !(square_root(r.x * r.x + r.z * r.z) < kSlipCutoff);
-        const bool turns = slips && !(absolute(r.z) < kSlipCutoff), cloth = turns && k.mu_s[pressed] > 0.0;
+        const int pressed = first.pressed;
         Rates f{};
-        if (!slips) return advance(table, f, pressed);
-        const double mu_s = cloth ? k.mu_s[pressed] : 0.0, z0 = turns ? absolute(r.z) : 0.0;
+        if (!first.slips) return advance(table, f, pressed);
+        const double mu_s = first.cloth ? k.mu_s[pressed] : 0.0, z0 = first.turns ? first.size : 0.0;
         // Where the cloth does nothing its slip must only not be zero.
-        const double a0 = cloth ? r.Ux[pressed] : 1e3 * scale, b0 = cloth ? r.Uy[pressed] : 0.0;
+        const double a0 = first.cloth ? r.Ux[pressed] : 1e3 * scale, b0 = first.cloth ? r.Uy[pressed] : 0.0;
         const Vector8 at = load8(table.at), push = k.h * at;
         // First guess: the rates of the first step throughout.
-        const Rates f0 = rates(all8(r.x), all8(z0), all8(a0), all8(b0), mu_s);
-        Vector8 x = r.x + at * (f0.q_x - 7.0 * f0.xi), z = z0 + at * (2.5 * f0.q_y - 5.0 * f0.t);
-        Vector8 a = a0 + at * (f0.xi - kKappa * f0.q_x);
-        Vector8 b = b0 + push - at * ((2.5 * kSign) * f0.t + kKappa * f0.q_y);
+        Vector8 x = r.x + at * (first.q_x - 7.0 * first.xi);
+        Vector8 z = z0 + at * (2.5 * first.q_y - 5.0 * first.t);
+        Vector8 a = a0 + at * (first.xi - kKappa * first.q_x);
+        Vector8 b = b0 + push - at * ((2.5 * kSign) * first.t + kKappa * first.q_y);
+        Vector8 C = all8(first.C), U = all8(first.cloth ? first.U : 1.0 / a0);
+        // Below the second no sweep gets, of rounding.
+        const double settled =
+            kSweepTolerance * scale + kSweepRounding * (absolute(r.x) + z0 + absolute(a0) + absolute(b0));
+        double change_before = scale;
         for (int sweep = 1;; ++sweep) {
             CAROM_LOOP_BEGIN("summed sweep");
-            f = rates(x, z, a, b, mu_s);
-            const Vector8 next_x = combined(table.sums, all8(r.x), f.q_x - 7.0 * f.xi);
-            const Vector8 next_z = combined(table.sums, all8(z0), 2.5 * f.q_y - 5.0 * f.t);
-            const Vector8 next_a = combined(table.sums, all8(a0), f.xi - kKappa * f.q_x);
-            const Vector8 next_b = combined(table.sums, b0 + push, (-2.5 * kSign) * f.t - kKappa * f.q_y);
+            const Rates now = rates(x, z, a, b, mu_s, C, U);
+            const Vector8 next_x = combined(table.sums, all8(r.x), now.q_x - 7.0 * now.xi);
+            const Vector8 next_z = combined(table.sums, all8(z0), 2.5 * now.q_y - 5.0 * now.t);
+            const Vector8 next_a = combined(table.sums, all8(a0), now.xi - kKappa * now.q_x);
+            const Vector8 next_b = combined(table.sums, b0 + push, (-2.5 * kSign) * now.t - kKappa * now.q_y);
             const double change = sum8(absolute8(next_x - x) + absolute8(next_z - z) + absolute8(next_a - a) +
                                        absolute8(next_b - b));
             x = next_x;
@@ -154,14 +226,20 @@ class SummedMarch {
             a = next_a;
             b = next_b;
             CAROM_LOOP_END("summed sweep");
-            if (change <= kSweepTolerance * scale) break;
-            if (sweep == 2 && !resolved(table, f, 1e3)) return false;
+            // Sweeps converge ever faster: the next would change less than this by the same factor at least.
+            const double left =
+                sweep > 2 && change < change_before ? change * change / change_before : change;
+            if (left <= settled) {
+                f = now;
+                break;
+            }
+            change_before = change;
+            if (sweep == 2 && !resolved(table, now, kEarlySlack)) return false;
             if (!(sweep < kMostSweeps)) return false;
         }
         if (!resolved(table, f, 1.0)) return false;
         // A side that flips within the block shows at a node or at its end.
-        for (int i = 0; i < kNodes; ++i)
-            if (z[i] < 0.0) return false;
+        if (!all_below8(-1.0 * z, 0x1p-1074)) return false;
         if (z0 + total(table.total, 2.5 * f.q_y - 5.0 * f.t) < 0.0) return false;
         return advance(table, f, pressed);
     }
@@ -186,53 +264,53 @@ class SummedMarch {
             steps += static_cast<long>(K);
             return true;
         }
-        double once[kNodes + 1], twice[kNodes + 2];
-        const Vector8 once_low = combined(table.once_low, Vector8{}, f.q_y);
-        const Vector8 twice_low = combined(table.twice_low, Vector8{}, f.q_y);
-        __builtin_memcpy(once, &once_low, sizeof once_low);
-        __builtin_memcpy(twice, &twice_low, sizeof twice_low);
-        once[kNodes] = total(table.once_high[0], f.q_y);
-        twice[kNodes] = total(table.twice_high[0], f.q_y);
-        twice[kNodes + 1] = total(table.twice_high[1], f.q_y);
-        const auto theta = [&](double t) { return table.theta0 + table.theta_step * t; };
-        const auto v_at = [&](double t) { return v0 + 2.0 * h * t - evaluate(once, kNodes, theta(t)); };
-        const auto V_at = [&](double t) {
-            return t * v0 + h * t * (t - 1.0) - evaluate(twice, kNodes + 1, theta(t)) + 0.5 * (v_at(t) - v0);
-        };
-        double from = 0.0, V_from = 0.0;
+        const Profile at(table, f.q_y, v0, h);
+        double from = 0.0, v_from = v0, V_from = 0.0;
         if (stop.compressing) {
-            // The first step after which v_n > 0: v grows by about 2 h a step, so Newton with that slope
-            // lands beside it.
-            double t = -v0 / (2.0 * h);
-            for (int i = 0; i < 3; ++i) t -= v_at(t) / (2.0 * h);
-            from = first(t, K, [&](double m) { return v_at(m) > 0.0; });
-            if (from < 0.0) return false;
-            const double V_before = V_at(from - 1.0);
-            V_from = V_at(from);
-            stop.W += h * (-V_before + absolute(V_from - V_before));
+            // The first step after which v_n > 0: a secant, as v grows almost evenly, and one correction.
+            const double slope = (v_end - v0) / K;
+            double t = -v0 / slope;
+            t -= at.v(t) / slope;
+            from = whole(t + 1.0, K);
+            double v_before = at.v(from - 1.0);
+            v_from = at.v(from);
+            if (!(v_from > 0.0) || (v_before > 0.0 && from > 1.0)) {
+                from = first_whole(t, K, [&](double m) { return at.v(m) > 0.0; });
+                if (from < 0.0) return false;
+                v_before = at.v(from - 1.0);
+                v_from = at.v(from);
+            }
+            const double last_step = 0.5 * (v_before + v_from), V_before = at.V(from - 1.0, v_before);
+            V_from = V_before + last_step;
+            stop.W += h * (absolute(last_step) - V_before);
             stop.W_f = k.work_ratio * stop.W;
             stop.compressing = false;
         }
         double last = K;
-        if (stop.W + h * (V_at(K) - V_from) >= stop.W_f) {
-            const double missing = (stop.W_f - stop.W) / h;
-            double t = K;
-            for (int i = 0; i < 12; ++i) {
-                const double v = v_at(t);
-                if (!(v > 0.0)) break;
-                const double move = (V_at(t) - V_from - missing) / v;
-                t -= move;
-                if (absolute(move) < 0.01) break;
-            }
-            last = first(t, K, [&](double m) { return m >= from && V_at(m) - V_from >= missing; });
-            if (last < 0.0) last = from;
+        if (stop.W + h * (V - V_from) >= stop.W_f) {
+            // The first step with the work asked for: v taken as even, and one Newton step.
+            const double missing = (stop.W_f - stop.W) / h, growth = (v_end - v_from) / (K - from + 1e-300);
+            const double root = square_root(v_from * v_from + 2.0 * growth * missing);
+            double t = from + 2.0 * missing / (root + v_from);
+            const double v_there = at.v(t);
+            if (v_there > 0.0) t -= (at.V(t, v_there) - V_from - missing) / v_there;
+            last = whole(t + 1.0, K);
+            const double v_last = at.v(last), done = at.V(last, v_last) - V_from;
+            const double done_before = done - 0.5 * (at.v(last - 1.0) + v_last);
+            if (!(done >= missing && (done_before < missing || last - 1.0 < from) && last >= from))
+                last = first_whole(
+                    t, K, [&](double m) { return m >= from && at.V(m, at.v(m)) - V_from >= missing; });
+            if (last < 0.0) last = K;
+            stop.W = stop.W_f;
+        } else {
+            stop.W += h * (V - V_from);
         }
-        stop.W += h * (V_at(last) - V_from);
         // What each node's rate adds to the sum at `last`.
+        const double theta = table.theta0 + table.theta_step * last;
         alignas(64) double powers[kNodes], weight[kNodes];
         powers[0] = 1.0;
-        for (int i = 1; i < kNodes; ++i) powers[i] = powers[i - 1] * theta(last);
-        const double highest = powers[kNodes - 1] * theta(last);
+        for (int i = 1; i < kNodes; ++i) powers[i] = powers[i - 1] * theta;
+        const double highest = powers[kNodes - 1] * theta;
         for (int l = 0; l < kNodes; ++l)
             weight[l] = total(table.once_low[l], load8(powers)) + highest * table.once_high[0][l];
         const Vector8 weights = load8(weight);
@@ -241,10 +319,38 @@ class SummedMarch {
         return true;
     }
 
+    // v_n and the sum of (v(m) + v(m+1)) / 2 over the steps of a block, at any t.
+    class Profile {
+      public:
+        Profile(const SumTable& t, Vector8 q_y, double start, double step) : table(t), v0(start), h(step) {
+            const Vector8 once_low = combined(table.once_low, all8(0.0), q_y);
+            const Vector8 twice_low = combined(table.twice_low, all8(0.0), q_y);
+            store8(once, once_low);
+            store8(twice, twice_low);
+            once[kNodes] = total(table.once_high[0], q_y);
+            twice[kNodes] = total(table.twice_high[0], q_y);
+            twice[kNodes + 1] = total(table.twice_high[1], q_y);
+        }
+        double v(double t) const { return v0 + 2.0 * h * t - value<kNodes>(once, theta(t)); }
+        double V(double t, double v_t) const {
+            return t * v0 + h * t * (t - 1.0) - value<kNodes + 1>(twice, theta(t)) + 0.5 * (v_t - v0);
+        }
+
+      private:
+        const SumTable& table;
+        double v0, h, once[kNodes + 1], twice[kNodes + 2];
+        double theta(double t) const { return table.theta0 + table.theta_step * t; }
+    };
+
+    // t cut to a whole number of 1 .. K.
+    static double whole(double t, double K) {
+        return t > 1.0 ? (t < K ? static_cast<double>(static_cast<long>(t)) : K) : 1.0;
+    }
+
     // The first whole t in 1 .. K at which `reached` holds, near the guess; -1 if none is.
     template <class Reached>
-    static double first(double guess, double K, Reached reached) {
-        double t = guess > 1.0 ? (guess < K ? static_cast<double>(static_cast<long>(guess)) : K) : 1.0;
+    static double first_whole(double guess, double K, Reached reached) {
+        double t = whole(guess, K);
         while (t > 1.0 && reached(t - 1.0)) t -= 1.0;
         while (t < K && !reached(t)) t += 1.0;
         return reached(t) ? t : -1.0;
@@ -269,10 +375,18 @@ class SummedMarch {
 struct Summed {
     template <int kSign>
     static long loop(FrameState& s, const ImpactParams& p, int n) {
+        bool chatters = false;
+        return march<kSign>(s, p, n, kMarchStepLimit * static_cast<long>(n), chatters);
+    }
+
+    // Gives up after `most_exact` exact steps and says so; the state is then as it came.
+    template <int kSign>
+    static long march(FrameState& s, const ImpactParams& p, int n, long most_exact, bool& chatters) {
         const ReducedConstants k = reduced_constants<kSign>(s, p, n);
         const Reduced start = reduce<kSign>(s, p.R);
         SummedMarch<kSign> march(start, k);
-        const long steps = march.run();
+        const long steps = march.run(most_exact);
+        chatters = march.chatters;
         if (steps < 0) return -1;
         expand(s, sums_between<kSign>(start, march.r, static_cast<double>(steps) * k.h), p.R);
         return steps;

@@ -20,7 +20,9 @@ struct CushionContact {
 ///
 /// @param normal  unit, horizontal, from the cushion into the table.
 /// A ball that does not approach (v . normal >= 0) is left alone.
-using CushionFunction = void (*)(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
+/// @return false where the model found no solution (mathavan_2010 beyond its bound on steps, which takes
+/// frictions that no cloth has); the velocities are then as they came
+using CushionFunction = bool (*)(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
 
 /// One model: its function and what it looks at. All models are homogeneous in the velocities and do not read
 /// the mass (all impulses are per mass).
@@ -39,11 +41,11 @@ struct CushionModelInfo {
 const CushionModelInfo& cushion_model(CushionModel model);
 
 /// Shorthand for cushion_model(model).resolve(...).
-void resolve_cushion(CushionModel model, const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
+bool resolve_cushion(CushionModel model, const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
 
-/// Whether the integration of mathavan_2010 is sure to end: the normal velocity falls all along,
-/// f_c s + mu_s (s + f_c c) < c with (s, c) sine and cosine of the nose's height angle. Beyond that the ball
-/// could jam.
+/// Whether a ball can jam in mathavan_2010. It cannot while the normal velocity falls all along,
+/// f_c s + mu_s (s + f_c c) < c with (s, c) sine and cosine of the nose's height angle, and while the cloth
+/// cannot hold the ball at any friction of the nose.
 bool mathavan_2010_ends(const CushionContact& contact);
 
 }  // namespace carom

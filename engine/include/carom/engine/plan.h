@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "carom/engine/record.h"
 #include "carom/engine/scene.h"
 #include "carom/kernel/closed_forms.h"
+#include "carom/kernel/contact_phase.h"
 #include "carom/kernel/march.h"
 #include "carom/kernel/tolerance.h"
 
@@ -38,6 +40,11 @@ struct Nose {
     int index;       ///< of the jaw or cushion in scene.table
 };
 
+/// How detection looks for what a ball can meet: through all boxes, or in a tree of them (Box2D's). The
+/// events are the same to the last bit; docs/speed.md has the measured crossing.
+enum class Search : std::uint8_t { kDirect, kTree };
+const char* name(Search search);
+
 struct Plan {
     Scene scene;         ///< ids, table and settings as read
     BallParams balls{};  ///< as the scene, with the friction of skipped effects 0
@@ -58,10 +65,16 @@ struct Plan {
     bool cloth_in_impact = true;  ///< the cloth acts during a ball-ball impact
     bool squirt = true;           ///< a struck ball leaves the line of aim
     kernel::Isa isa = kernel::Isa::kScalar;
-    kernel::MarchFunction march = nullptr;             ///< set where the scene asks for substeps
-    kernel::ToleranceFunction by_tolerance = nullptr;  ///< set otherwise
+    kernel::MarchFunction march = nullptr;                 ///< set where the scene asks for substeps
+    kernel::ToleranceFunction by_tolerance = nullptr;      ///< set otherwise
+    kernel::ContactPhaseFunction contact_phase = nullptr;  ///< of compliant clusters
     ClusterModel clusters =
-        ClusterModel::kSequential;      ///< kSequential where fewer than three balls leave nothing to decide
+        ClusterModel::kSequential;  ///< kSequential where fewer than three balls leave nothing to decide
+    Search ball_search = Search::kDirect;   ///< among balls
+    Search table_search = Search::kDirect;  ///< among cushions, noses and pockets
+    /// [ball radii] Way that a ball's box covers before it is renewed; infinite: until the ball's next own
+    /// event.
+    double box_travel = std::numeric_limits<double>::infinity();
     std::vector<std::string> warnings;  ///< one sentence each, for stderr
 };
 

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "carom/engine/scene.h"
@@ -68,6 +71,7 @@ struct EventCost {
     double kernel_ns = 0.0;   ///< inside the impact kernel
     long steps = 0;           ///< of the kernel
     const char* method = "";  ///< "march", "elastic", "han_2005", ...
+    double queue_ns = 0.0;    ///< part of detect_ns: which event is next; files do not keep it
 };
 
 enum class StopReason : std::uint8_t { kAtRest, kTime, kEvents };
@@ -126,8 +130,18 @@ class Record {
 };
 
 /// Position, velocity and spin of a segment `tau` seconds after its start (tau >= 0).
-Vec3 position_at(const Segment& segment, double tau);
-Vec3 velocity_at(const Segment& segment, double tau);
+inline Vec3 position_at(const Segment& s, double tau) {
+    return {s.r.x() + tau * (s.v.x() + 0.5 * tau * s.a.x()), s.r.y() + tau * (s.v.y() + 0.5 * tau * s.a.y()),
+            s.r.z()};
+}
+inline Vec3 velocity_at(const Segment& s, double tau) {
+    if (s.state == MotionState::kRolling && s.duration < std::numeric_limits<double>::infinity() && !s.held) {
+        // v + a tau, written so that the direction stays and the end is exactly 0.
+        const double left = std::max(0.0, 1.0 - tau / s.duration);
+        return {s.v.x() * left, s.v.y() * left, 0.0};
+    }
+    return {s.v.x() + tau * s.a.x(), s.v.y() + tau * s.a.y(), 0.0};
+}
 Vec3 spin_at(const Segment& segment, double tau, double R);
 
 /// Writes a record as JSON to `path` by way of a temporary name. Doubles read back to the same bits.
@@ -136,5 +150,8 @@ void write_record(const Record& record, const std::string& path);
 
 /// Reads what write_record wrote. @throws SceneError
 Record read_record(const std::string& path);
+
+/// The same from text; `name` stands for the file in messages.
+Record parse_record(std::string_view text, const std::string& name);
 
 }  // namespace carom

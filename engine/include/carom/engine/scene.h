@@ -22,6 +22,12 @@ struct SourceLocation {
 class SceneError : public std::runtime_error {
   public:
     SceneError(const std::string& file, SourceLocation where, const std::string& message);
+
+    /// "what is wrong and what to do", without the place.
+    const std::string& message() const noexcept { return message_; }
+
+  private:
+    std::string message_;
 };
 
 /// Properties shared by all balls of a scene (SI; frictions and restitutions are numbers).
@@ -109,7 +115,7 @@ struct RenderSettings {
 };
 
 struct Scene {
-    std::string file;
+    std::string file;  ///< stands in messages; a scene built in code may call itself what it likes
     Table table;
     std::string ball_preset = "pool";
     BallParams balls{};
@@ -126,6 +132,13 @@ Scene read_scene(const std::string& path);
 
 /// The same from text; `name` stands for the file in messages.
 Scene parse_scene(std::string_view text, const std::string& name);
+
+/// A scene as a scene file, every value written out: parse_scene reads the same scene back (racked balls as
+/// written ones; names that only people read, and depths of pockets, are left out).
+std::string scene_text(const Scene& scene);
+
+/// For a scene that was built in code: all that parse_scene checks. @throws SceneError without a line
+void validate(const Scene& scene);
 
 /// A preset by name. @throws std::invalid_argument for an unknown one
 Table make_table(std::string_view preset);

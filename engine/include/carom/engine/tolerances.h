@@ -44,11 +44,13 @@ inline constexpr double kContactStiffness = 3.094e9;  ///< [m^-0.5 s^-2] k/m
 inline constexpr double kLeastRestitution =
     0.1;  ///< stands for a smaller e in that rule, where no bounce is left at all
 
-/// [V] and [L/V] Regularisation of the friction in the compliant cluster map, and its step: errs by about
-/// 2e-3 V in stick (docs/hard_cases.md), 4e-7 V of it from the step. [L/V] The map goes on while a listed
+/// [V] and [L/V] Regularisation of the friction in the compliant cluster map, which errs by about 2e-3 V in
+/// stick (docs/hard_cases.md), and its longest steps: without friction, where they err by 3e-7 V, and with it,
+/// where 2e-5 V (largest of 40 racks 8e-5 V) is far below the former. [L/V] The map goes on while a listed
 /// pair would touch within this time.
 inline constexpr double kClusterEpsilon = 2e-3;
 inline constexpr double kClusterStep = 1.0 / 80.0;
+inline constexpr double kClusterFrictionStep = 1.0 / 16.0;
 inline constexpr double kClusterLookAhead = 2.0;
 /// [V] A contact of a cluster that closes faster than this sets the scale V itself: the step is made for
 /// approaches near V.
@@ -107,22 +109,32 @@ inline constexpr double kHoldEnds = 0.5;
 /// straight line.
 inline constexpr double kHoldStraight = 1e-9;
 
-/// [of the approach speed] Error per step of the cushion model mathavan_2010, and the slip at the nose or the
-/// cloth that counts as none. The direction of a slip near the tolerance is noise of the integration; a
-/// hundred times above it is not.
-inline constexpr double kCushionTolerance = 1e-10;
-inline constexpr double kCushionStick = 1e-8;
+/// [of the approach speed] Error per step of the cushion model mathavan_2010; a result of its ten or so steps
+/// errs by about as much. Far below the ball-ball impact's default.
+inline constexpr double kCushionTolerance = 1e-7;
+/// [of the approach speed] Slip at the nose that a nose which can stick is taken to have lost; what that
+/// leaves out is of second order (docs/physics.md, "Cushion impact").
+inline constexpr double kCushionStick = 3e-5;
 /// A nose that has let go slips by less than this for a while, and its direction follows the drive at once
 /// (stiff): it is taken as driven. What that leaves out is of second order, about the square root of this
 /// times its square.
 inline constexpr double kCushionCreep = 1e-4;
-inline constexpr int kCushionSteps = 20000;  ///< [-] bound on its steps; a real impact takes 10 to 1000
+inline constexpr int kCushionSteps = 5000;  ///< [-] bound on its steps; an impact takes 3 to 300
 /// [-] Grid on which the cushion model stronge brackets the end of stick: a thirtieth of the restitution, far
 /// finer than the swing of its tangential spring.
 inline constexpr int kStrongeGrid = 32;
 
 /// [share] Boxes that leave out far parts of the table are widened by this much: rounding stays inside.
 inline constexpr double kBoxShare = 1e-9;
+
+/// [-] From this many balls, or parts of the table, a tree of boxes is faster than a loop through all of
+/// them; measured by carom bench shot, docs/speed.md.
+inline constexpr std::size_t kTreeFromBalls = 300;
+inline constexpr std::size_t kTreeFromParts = 300;
+/// [-] and [ball radii] From this many balls on, a ball's box covers only this way and is then renewed: what
+/// lies beyond is mostly never reached.
+inline constexpr std::size_t kShortBoxesFromBalls = 50;
+inline constexpr double kBoxTravel = 8.0;
 
 /// [share of the jaw radius] A cushion end this close to a jaw's circle is rounded off by it and needs no tip
 /// of its own. The jaw is a full circle, so nothing can slip between the two.
@@ -152,6 +164,9 @@ inline constexpr int kMaxBalls = 4096;         ///< balls of a scene, written an
 inline constexpr int kMaxRackRows = 90;        ///< of a triangle: 4095 balls
 inline constexpr int kMaxTableParts = 4096;    ///< cushions, jaws and pockets of a table, each
 inline constexpr std::size_t kMaxFileSize = 4u << 20;  ///< [bytes] of a scene file
+/// [bytes] Of a record file: about 700 000 segments. Reading it takes some ten times as much memory.
+inline constexpr std::size_t kMaxRecordSize = std::size_t{256} << 20;
 inline constexpr std::size_t kMaxIdLength = 64;        ///< [bytes] of a ball's id
+inline constexpr int kVariationTrials = 100;  ///< shots of a variation, one of which has to be a valid scene
 
 }  // namespace carom

@@ -25,8 +25,9 @@ MarchFunction march_function(Isa isa) noexcept;
 
 /// The march with N substeps on every impact of a batch. Each result depends on its own impact alone, not on
 /// what it shares vectors with, and is the same bits on every instruction set; it has the step count of
-/// MarchFunction, or one beside it where the last step sits on a rounding tie, and differs from it by
-/// rounding (docs/kernel.md). `isa` must be available.
+/// MarchFunction, or one beside it where the last step sits on a rounding tie, and differs from it by at most
+/// about 1e-10 of the approach speed at N up to 1000; where rounding decides (glancing impacts, chatter near
+/// stick) it has its bits (docs/kernel.md). `isa` must be available.
 void collide_balls_batch(Isa isa, const ImpactBatch& batch, int n, const ImpactBatchResult& result) noexcept;
 
 /// An impact of v_n > 0 ends after N + 1 to about N + 31 steps; only degenerate parameters come near this

@@ -61,6 +61,9 @@ struct DrawBox {
     int glyph = -1;
 };
 
+/// Samples of the table for a camera that moves, which pays for them in every frame.
+inline constexpr int kMovingSamples = 4;
+
 struct DrawList {
     std::shared_ptr<const TableMesh> table;
     Camera camera;

@@ -7,6 +7,7 @@
 #include "carom/render/backend.h"
 #include "carom/render/draw_list.h"
 #include "carom/render/image.h"
+#include "carom/render/kept_image.h"
 
 namespace carom::render {
 
@@ -18,7 +19,8 @@ class Renderer {
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// Starts to draw the list. The table comes from the last frame if neither it nor the camera changed.
+    /// Starts to draw the list. If neither table nor camera changed, only what did is drawn; the pixels are
+    /// those of a whole picture.
     void draw(const DrawList& list);
 
     /// Waits until the last draw() is done: for those who measure it.
@@ -27,9 +29,12 @@ class Renderer {
     /// Copies the pixels of the last draw().
     void read(Image& image);
 
-    /// Copies those of the draw() before, while the last one goes on in the driver's threads. Needs two draws
-    /// of one size before.
-    void read_previous(Image& image);
+    /// The same, but only those that differ from what the image shows.
+    void read(KeptImage& image);
+
+    /// Those of the draw() before, while the last one goes on in the driver's threads. Needs two draws of one
+    /// size before.
+    void read_previous(KeptImage& image);
 
     /// "4.5 (Core Profile) Mesa 22.3.6, llvmpipe ..."
     std::string description() const;

@@ -30,7 +30,11 @@ struct SequenceOptions {
     std::string camera = "top";  ///< top, rail, player or follow
     FreeCamera view;             ///< eye and target instead of a named camera; which ball to follow
     Overlay overlay;
-    /// What frame k cost, simulation included [ms], for the margin bar; default: what drawing it took.
+    /// For the margin bar [ms]: what simulating frame k cost; default: 0. Added to it is what drawing,
+    /// reading back and encoding took for the last frames of which it is known while frame k is drawn (one to
+    /// a few before it).
+    std::function<double(long k)> simulate_ms;
+    /// Instead of all that: what the bar shows for frame k.
     std::function<double(long k)> frame_cost_ms;
     int table_samples =
         16;  ///< per pixel of the table, drawn once per camera; a camera that moves takes at most 4

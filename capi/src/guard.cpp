@@ -1,0 +1,68 @@
+#include "guard.h"
+
+#include <cstdlib>
+#include <new>
+#include <string>
+
+#include "carom/engine/scene.h"
+#include "carom/engine/simulate.h"
+
+namespace carom::c {
+namespace {
+
+thread_local std::string last_error;
+
+void remember(const char* text) noexcept {
+    try {
+        last_error = text;
+    } catch (...) {
+        last_error.clear();  // no memory for the message: the status has to do
+    }
+}
+
+}  // namespace
+
+carom_status keep_error() noexcept {
+    try {
+        throw;
+    } catch (const BadArgument& error) {
+        remember(error.what());
+        return CAROM_BAD_ARGUMENT;
+    } catch (const SceneError& error) {
+        remember(error.what());
+        return CAROM_BAD_SCENE;
+    } catch (const SimulationError& error) {
+        remember(error.what());
+        return CAROM_FAILED;
+    } catch (const std::bad_alloc&) {
+        remember("out of memory");
+        return CAROM_NO_MEMORY;
+    } catch (const std::exception& error) {
+        remember(error.what());
+        return CAROM_INTERNAL;
+    } catch (...) {
+        remember("unknown error");
+        return CAROM_INTERNAL;
+    }
+}
+
+void need(std::initializer_list<const void*> pointers) {
+    for (const void* pointer : pointers)
+        if (pointer == nullptr) throw BadArgument("a pointer is NULL that must not be");
+}
+
+kernel::Isa chosen_isa() {
+    kernel::Isa isa{};
+    if (kernel::isa_from_environment(isa) == kernel::IsaChoice::kOk) return isa;
+    throw BadArgument("CAROM_ISA in the environment is no instruction set that can be run here; unset it");
+}
+
+}  // namespace carom::c
+
+const char* carom_last_error(void) {
+    return carom::c::last_error.c_str();
+}
+
+const char* carom_version(void) {
+    return CAROM_VERSION;
+}

@@ -1,0 +1,237 @@
+// The C interface: scenes and records.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "carom/engine/simulate.h"
+#include "guard.h"
+
+struct carom_scene {
+    carom::Scene scene;
+};
+
+struct carom_record {
+    carom::Record record;
+};
+
+namespace {
+
+using carom::c::BadArgument;
+using carom::c::chosen_isa;
+using carom::c::guarded;
+using carom::c::need;
+
+/// The number that a name stands for.
+double& ball_param(carom::BallParams& p, const char* name) {
+    const struct {
+        const char* name;
+        double& value;
+    } known[] = {{"radius", p.R},  {"mass", p.m},  {"mu_s", p.mu_s}, {"mu_r", p.mu_r}, {"mu_sp", p.mu_sp},
+                 {"mu_b", p.mu_b}, {"e_b", p.e_b}, {"e_c", p.e_c},   {"f_c", p.f_c}};
+    for (const auto& k : known)
+        if (std::strcmp(name, k.name) == 0) return k.value;
+    throw BadArgument("there is no ball parameter \"" + std::string(name) +
+                      "\"; use radius, mass, mu_s, mu_r, mu_sp, mu_b, e_b, e_c or f_c");
+}
+
+carom::BallStart* find_ball(carom::Scene& scene, const std::string& id) {
+    const auto it = std::find_if(scene.ball.begin(), scene.ball.end(),
+                                 [&](const carom::BallStart& ball) { return ball.id == id; });
+    return it == scene.ball.end() ? nullptr : &*it;
+}
+
+void check_index(std::size_t index, std::size_t count, const char* what) {
+    if (index < count) return;
+    throw BadArgument("there is no " + std::string(what) + " " + std::to_string(index) + "; there are " +
+                      std::to_string(count));
+}
+
+/// Hands a new object to the caller, or NULL.
+template <class T, class Make>
+carom_status made(T** out, Make&& make) {
+    return guarded([&] {
+        need({out});
+        *out = nullptr;
+        auto object = std::make_unique<T>();
+        make(*object);
+        *out = object.release();
+    });
+}
+
+}  // namespace
+
+carom_status carom_scene_read(const char* path, carom_scene** scene) {
+    return made(scene, [&](carom_scene& s) {
+        need({path});
+        s.scene = carom::read_scene(path);
+    });
+}
+
+carom_status carom_scene_parse(const char* text, const char* name, carom_scene** scene) {
+    return made(scene, [&](carom_scene& s) {
+        need({text, name});
+        s.scene = carom::parse_scene(text, name);
+    });
+}
+
+carom_status carom_scene_create(const char* table, const char* balls, carom_scene** scene) {
+    return made(scene, [&](carom_scene& s) {
+        need({table, balls});
+        try {
+            if (*table != '\0') s.scene.table = carom::make_table(table);
+            s.scene.balls = carom::make_ball_params(balls);
+        } catch (const std::invalid_argument& error) {
+            throw BadArgument(error.what());
+        }
+        s.scene.ball_preset = balls;
+        s.scene.file = "scene";
+    });
+}
+
+void carom_scene_free(carom_scene* scene) {
+    delete scene;
+}
+
+carom_status carom_scene_set_ball_param(carom_scene* scene, const char* name, double value) {
+    return guarded([&] {
+        need({scene, name});
+        ball_param(scene->scene.balls, name) = value;
+        for (carom::BallStart& ball : scene->scene.ball) ball.position.z() = scene->scene.balls.R;
+    });
+}
+
+carom_status carom_scene_get_ball_param(const carom_scene* scene, const char* name, double* value) {
+    return guarded([&] {
+        need({scene, name, value});
+        carom::BallParams params = scene->scene.balls;
+        *value = ball_param(params, name);
+    });
+}
+
+carom_status carom_scene_set_ball(carom_scene* scene, const char* id, const double rvw[9]) {
+    return guarded([&] {
+        need({scene, id, rvw});
+        carom::BallStart start;
+        start.id = id;
+        start.position = {rvw[0], rvw[1], rvw[2]};
+        start.velocity = {rvw[3], rvw[4], rvw[5]};
+        start.spin = {rvw[6], rvw[7], rvw[8]};
+        if (carom::BallStart* ball = find_ball(scene->scene, start.id))
+            *ball = start;
+        else
+            scene->scene.ball.push_back(start);
+    });
+}
+
+void carom_cue_init(carom_cue* cue) {
+    if (cue == nullptr) return;
+    const carom::Cue c;
+    // A file that has a [cue] strikes: 9 m/s, a little above the centre.
+    *cue = {9.0, c.aim_deg, c.elevation_deg, c.side, 0.1, c.mass, c.end_mass};
+}
+
+carom_status carom_scene_set_cue(carom_scene* scene, const char* id, const carom_cue* cue) {
+    return guarded([&] {
+        need({scene});
+        if (cue == nullptr) {
+            scene->scene.cue.reset();
+            return;
+        }
+        need({id});
+        carom::Cue c;
+        c.ball = id;
+        c.speed = cue->speed;
+        c.aim_deg = cue->aim_deg;
+        c.elevation_deg = cue->elevation_deg;
+        c.side = cue->side;
+        c.height = cue->height;
+        c.mass = cue->mass;
+        c.end_mass = cue->end_mass;
+        scene->scene.cue = c;
+    });
+}
+
+size_t carom_scene_text(const carom_scene* scene, char* text, size_t size) {
+    std::size_t length = static_cast<std::size_t>(-1);
+    guarded([&] {
+        need({scene});
+        if (size > 0) need({text});
+        const std::string whole = carom::scene_text(scene->scene);
+        if (size > 0) {
+            const std::size_t part = std::min(whole.size(), size - 1);
+            std::memcpy(text, whole.data(), part);
+            text[part] = '\0';
+        }
+        length = whole.size();
+    });
+    return length;
+}
+
+carom_status carom_simulate(const carom_scene* scene, double until, carom_record** record) {
+    return made(record, [&](carom_record& r) {
+        need({scene});
+        if (std::isnan(until)) throw BadArgument("until is not a number");
+        carom::validate(scene->scene);
+        carom::SimulateOptions options;
+        if (until >= 0.0) options.until = until;
+        r.record = carom::simulate(carom::make_plan(scene->scene, chosen_isa()), options);
+    });
+}
+
+void carom_record_free(carom_record* record) {
+    delete record;
+}
+
+double carom_record_duration(const carom_record* record) {
+    return record ? record->record.duration : 0.0;
+}
+
+size_t carom_record_ball_count(const carom_record* record) {
+    return record ? record->record.tracks.size() : 0;
+}
+
+size_t carom_record_event_count(const carom_record* record) {
+    return record ? record->record.events.size() : 0;
+}
+
+const char* carom_record_ball_id(const carom_record* record, size_t ball) {
+    return ball < carom_record_ball_count(record) ? record->record.tracks[ball].id.c_str() : nullptr;
+}
+
+carom_status carom_record_event(const carom_record* record, size_t index, carom_event* event) {
+    return guarded([&] {
+        need({record, event});
+        check_index(index, record->record.events.size(), "event");
+        const carom::Event& e = record->record.events[index];
+        *event = {e.time,
+                  carom::name(e.type),
+                  record->record.tracks.at(static_cast<std::size_t>(e.a)).id.c_str(),
+                  {}};
+        const std::string partner = record->record.partner_id(e);
+        std::memcpy(event->b, partner.data(), std::min(partner.size(), sizeof event->b - 1));
+    });
+}
+
+carom_status carom_record_state(const carom_record* record, size_t ball, double t, double rvw[9],
+                                const char** state) {
+    return guarded([&] {
+        need({record, rvw});
+        check_index(ball, record->record.tracks.size(), "ball");
+        if (std::isnan(t)) throw BadArgument("t is not a number");
+        const carom::BallState s = record->record.state_at(static_cast<int>(ball), t);
+        std::copy_n(s.position.data(), 3, rvw);
+        std::copy_n(s.velocity.data(), 3, rvw + 3);
+        std::copy_n(s.spin.data(), 3, rvw + 6);
+        if (state) *state = carom::name(s.state);
+    });
+}
+
+carom_status carom_record_hash(const carom_record* record, char hash[17]) {
+    return guarded([&] {
+        need({record, hash});
+        const std::string text = record->record.hash();
+        std::memcpy(hash, text.c_str(), 17);
+    });
+}

@@ -1,0 +1,67 @@
+// Many scenes from one file: single values replaced by draws, shot by shot.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "carom/engine/scene.h"
+
+namespace carom {
+
+/// A rule that cannot be read, or that gives no valid scene. what() begins with the rule.
+class VariationError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// One shot: the values drawn, and the scene that they make.
+struct VariedShot {
+    std::vector<std::string> values;  ///< one per key; numbers read back to the same bits
+    std::optional<Scene> scene;       ///< nothing where the values make no valid scene;
+    std::string error;                ///< then why
+};
+
+/// A scene file and the rules by which its values vary.
+///
+/// A rule is KEY=DISTRIBUTION. KEY is written as in the file, with dots: cue.speed, balls.mu_b, rack.seed.
+/// One element of an array is named by its number from 0 or by its name (x, y, z; side, height):
+/// cue.offset.side. Balls go by their ids, parts of an outline by their names: ball.cue.position.x,
+/// table.pocket.p1.radius.
+///
+///   uniform(a,b)                a <= x < b
+///   normal(sd), normal(mean,sd) without a mean, around the number in the file
+///   integer(a,b)                a, a + 1, ..., b, equally likely
+///   list(v,...)                 TOML values, equally likely
+///
+/// Draws come from SplitMix64, seeded by the seed, the number of the shot and the text of the key, and use no
+/// function of the C library: a shot is the same on every machine, whatever other keys vary and in whatever
+/// order shots are asked for.
+class Variation {
+  public:
+    /// @throws SceneError for a bad file, VariationError for a bad rule, and when none of the first shots
+    /// makes a valid scene
+    Variation(const std::string& path, const std::vector<std::string>& rules, std::uint64_t seed);
+    ~Variation();
+    Variation(Variation&&) noexcept;
+    Variation& operator=(Variation&&) noexcept;
+
+    const Scene& base() const;  ///< the file as it is
+    const std::vector<std::string>& keys() const;
+
+    /// Shot 0, 1, ...; any thread may ask. Where the balls are not those of the file (a rack of another
+    /// size), there is no scene but an error: all shots share the columns of one table.
+    VariedShot shot(std::uint64_t index) const;
+
+    /// Of the file's content, the rules and the seed: the same number, the same shots.
+    std::uint64_t fingerprint() const;
+
+  private:
+    struct Parts;
+    std::unique_ptr<const Parts> parts_;
+};
+
+}  // namespace carom

@@ -1,0 +1,131 @@
+// Which boxes overlap a box? Boxes are in single precision, rounded outward: they only leave out, and what
+// they leave in is judged in double. Either all of them in one loop, four at a time, or first in Box2D's
+// dynamic tree, whose leaves are blocks of 64 neighbouring boxes, and then by that loop inside the blocks.
+// Both give the same set.
+#pragma once
+
+#include <box2d/b2_dynamic_tree.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+#include "carom/engine/plan.h"
+
+namespace carom {
+
+/// A rectangle on the table [m].
+struct Box {
+    double low_x, low_y, high_x, high_y;
+};
+
+class BoxSearch {
+  public:
+    /// All boxes are out until they are placed.
+    void set_up(int count, Search kind);
+
+    void place(int index, const Box& box);
+    void remove(int index);
+    /// Call between placing and searching: now and then, blocks are formed anew of what has become
+    /// neighbours.
+    void settle() {
+        if (tree_ && --until_rebuild_ <= 0) rebuild();
+    }
+
+    /// Calls found(index) for every placed box that overlaps or touches `box`; in the order of the indices
+    /// unless the search is a tree.
+    template <class Found>
+    void overlapping(const Box& box, Found found) const {
+        search(outward(box), found);
+    }
+    /// The same for a placed box; itself is not found.
+    template <class Found>
+    void neighbours(int index, Found found) const {
+        const std::size_t i = slot(index);
+        search({low_x_[i], low_y_[i], high_x_[i], high_y_[i]}, [index, &found](int other) {
+            if (other != index) found(other);
+        });
+    }
+
+  private:
+    static constexpr std::size_t kBlock = 64;
+    struct Rounded {
+        float low_x, low_y, high_x, high_y;
+    };
+    static Rounded outward(const Box& box);
+    static b2AABB aabb_of(const Rounded& box);
+    std::size_t slot(int index) const {
+        const auto i = static_cast<std::size_t>(index);
+        return tree_ ? static_cast<std::size_t>(slot_[i]) : i;
+    }
+    void set(std::size_t slot, const Rounded& box);
+    void rebuild();
+    void update_block(std::size_t block);
+
+    template <class Found>
+    void search(const Rounded& box, Found found) const;
+    template <class Found>
+    void scan(std::size_t begin, std::size_t end, const Rounded& box, Found& found) const;
+
+    template <class Found>
+    struct BlockVisitor {
+        const BoxSearch& boxes;
+        const Rounded& box;
+        Found& found;
+        bool QueryCallback(int proxy);  // Box2D's name
+    };
+
+    // Per slot; padded with boxes that overlap nothing.
+    std::vector<float> low_x_, low_y_, high_x_, high_y_;
+    // With the tree: which box stands in which slot, and a proxy for every block of slots.
+    std::unique_ptr<b2DynamicTree> tree_;
+    std::vector<int> slot_, index_, proxy_;
+    std::vector<Rounded> sorted_;
+    long until_rebuild_ = 0;
+};
+
+template <class Found>
+bool BoxSearch::BlockVisitor<Found>::QueryCallback(int proxy) {
+    const auto block = reinterpret_cast<std::uintptr_t>(boxes.tree_->GetUserData(proxy));
+    auto by_slot = [this](int slot) { found(boxes.index_[static_cast<std::size_t>(slot)]); };
+    boxes.scan(block * kBlock, (block + 1) * kBlock, box, by_slot);
+    return true;
+}
+
+template <class Found>
+void BoxSearch::search(const Rounded& box, Found found) const {
+    if (!tree_) {
+        scan(0, low_x_.size(), box, found);
+        return;
+    }
+    BlockVisitor<Found> visitor{*this, box, found};
+    tree_->Query(&visitor, aabb_of(box));
+}
+
+template <class Found>
+void BoxSearch::scan(std::size_t begin, std::size_t end, const Rounded& box, Found& found) const {
+#if defined(__SSE2__)
+    const __m128 lx = _mm_set1_ps(box.low_x), ly = _mm_set1_ps(box.low_y);
+    const __m128 hx = _mm_set1_ps(box.high_x), hy = _mm_set1_ps(box.high_y);
+    for (std::size_t i = begin; i < end; i += 4) {
+        const __m128 in_x = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(&low_x_[i]), hx),
+                                       _mm_cmple_ps(lx, _mm_loadu_ps(&high_x_[i])));
+        const __m128 in_y = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(&low_y_[i]), hy),
+                                       _mm_cmple_ps(ly, _mm_loadu_ps(&high_y_[i])));
+        for (auto mask = static_cast<unsigned>(_mm_movemask_ps(_mm_and_ps(in_x, in_y))); mask != 0;
+             mask &= mask - 1)
+            found(static_cast<int>(i) + __builtin_ctz(mask));
+    }
+#else
+    for (std::size_t i = begin; i < end; ++i)
+        if (low_x_[i] <= box.high_x && box.low_x <= high_x_[i] && low_y_[i] <= box.high_y &&
+            box.low_y <= high_y_[i])
+            found(static_cast<int>(i));
+#endif
+}
+
+}  // namespace carom

@@ -1,0 +1,39 @@
+// Which ball's next event comes first: a tournament over all balls. The winner is at the root; a ball whose
+// event changed replays its own matches only, log2 n of them. Memory is fixed by set_up.
+#pragma once
+
+#include <vector>
+
+namespace carom {
+
+class EventQueue {
+  public:
+    /// `count` players; each must be given to update() once before first() means anything.
+    void set_up(int count) {
+        leaves_ = 1;
+        while (leaves_ < count) leaves_ *= 2;
+        winner_.assign(2 * static_cast<std::size_t>(leaves_), -1);
+        for (int i = 0; i < count; ++i) winner_[static_cast<std::size_t>(leaves_ + i)] = i;
+    }
+
+    /// Replays the matches of player i. earlier(x, y): x comes before y, a strict weak order.
+    template <class Earlier>
+    void update(int i, Earlier earlier) {
+        for (std::size_t node = static_cast<std::size_t>(leaves_ + i) / 2; node > 0; node /= 2) {
+            const int left = winner_[2 * node], right = winner_[2 * node + 1];
+            const int winner = left < 0 || (right >= 0 && earlier(right, left)) ? right : left;
+            // Above this match nobody sees a difference.
+            if (winner == winner_[node] && winner != i) return;
+            winner_[node] = winner;
+        }
+    }
+
+    /// The winner; -1 of no players.
+    int first() const { return winner_[1]; }
+
+  private:
+    int leaves_ = 1;
+    std::vector<int> winner_;  // of the match at each node; the leaves stand behind
+};
+
+}  // namespace carom

@@ -1,0 +1,25 @@
+// 64-bit FNV-1a, for hashes that people compare.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace carom {
+
+class Fnv {
+  public:
+    void add(double x) { add_bytes(&x, sizeof x); }
+    void add(std::uint64_t x) { add_bytes(&x, sizeof x); }
+    void add(std::string_view text) { add_bytes(text.data(), text.size()); }
+    std::uint64_t value() const { return hash_; }
+
+  private:
+    void add_bytes(const void* data, std::size_t size) {
+        const auto* bytes = static_cast<const unsigned char*>(data);
+        for (std::size_t i = 0; i < size; ++i) hash_ = (hash_ ^ bytes[i]) * 0x100000001B3ull;
+    }
+    std::uint64_t hash_ = 0xCBF29CE484222325ull;
+};
+
+}  // namespace carom

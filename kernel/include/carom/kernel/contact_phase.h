@@ -1,0 +1,54 @@
+// The contact phase of many equal balls at once: Hertz contacts with friction, frozen normals, in units of
+// the approach speed V and of L = (V^2 m / k)^0.4 (docs/physics.md, several contacts at once).
+#pragma once
+
+#include <cstddef>
+
+#include "carom/kernel/isa.h"
+
+namespace carom::kernel {
+
+struct HertzContact {
+    int i, j;        ///< balls
+    double nx, ny;   ///< unit normal from i to j
+    double overlap;  ///< [L] at the start; negative: a gap
+};
+
+/// F = d^1.5 while a contact is loaded for the first time, d^1.5 (a + b (d / d_m)^p) below its largest
+/// overlap d_m; friction along the slip s with |s| regularised to sqrt(s^2 + epsilon^2).
+struct HertzLaw {
+    double a, b;
+    int p;  ///< a power of 2
+    double mu_b, mu_s;
+    double epsilon;            ///< [V] > 0
+    bool published_slip_sign;  ///< of the cloth slip
+};
+
+/// What one call reads and writes. `numbers` and `places` are scratch memory of contact_phase_numbers() and
+/// contact_phase_places() elements.
+struct ContactPhase {
+    int balls, contacts;
+    double* motion;  ///< per ball v_x, v_y, R w_x, R w_y, R w_z [V]; replaced
+    const HertzContact* contact;
+    double* numbers;
+    int* places;
+};
+
+constexpr std::size_t contact_phase_numbers(int balls, int contacts) noexcept {
+    return 48 * (static_cast<std::size_t>(balls) + 4) + 11 * (static_cast<std::size_t>(contacts) + 8);
+}
+constexpr std::size_t contact_phase_places(int contacts) noexcept {
+    return 6 * (static_cast<std::size_t>(contacts) + 8);
+}
+
+/// Classical Runge-Kutta steps until every contact is open and none would close again within look_ahead
+/// [L/V]. A step is `longest_step` [L/V], or shorter where friction near stick is too stiff for it. The order
+/// in which a ball's contacts are given is the order of its sums.
+/// @return the number of steps, or -1 if the contacts did not part within time_limit [L/V]
+using ContactPhaseFunction = long (*)(const ContactPhase& phase, const HertzLaw& law, double longest_step,
+                                      double look_ahead, double time_limit) noexcept;
+
+/// The integration built for one instruction set (which must be available). All give the same bits.
+ContactPhaseFunction contact_phase_function(Isa isa) noexcept;
+
+}  // namespace carom::kernel

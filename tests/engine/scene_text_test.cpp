@@ -1,0 +1,173 @@
+// A scene written out reads back to the same scene, and scenes built in code are checked like files.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/simulate.h"
+
+namespace carom {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Every key of the format that can stand in a written-out scene, none at its default.
+constexpr char kEveryKey[] = R"([table]
+[[table.cushion]]
+from = [0, 0]
+to = [0.1, 2.9]
+height = 0.0371
+[[table.jaw]]
+center = [1.5, 0.25]
+radius = 0.0125
+height = 0.0372
+[[table.pocket]]
+center = [1.0, 3.0]
+radius = 0.0625
+[balls]
+preset = "carom"
+radius = 0.03
+mass = 0.2
+mu_s = 0.21
+mu_r = 0.011
+mu_sp = 0.0131
+mu_b = 0.06
+e_b = 0.94
+e_c = 0.84
+f_c = 0.19
+[[ball]]
+id = "cue \\ ball é"
+position = [0.635, 0.50]
+[[ball]]
+id = "2"
+position = [0.60, 2]
+velocity = [0.125, 0.25]
+spin = [1, 2, 3]
+[cue]
+ball = "cue \\ ball é"
+speed = 4
+aim_deg = 33.3
+elevation_deg = 2
+offset = [0.2, 0.12]
+mass = 0.5
+end_mass = 0.005
+[physics]
+gravity = 9.8
+ball_ball = "inelastic"
+cushion = "stronge"
+jaw = "smooth"
+cloth_slip = "as_published"
+clusters = "rigid"
+tolerance = 1e-7
+[effects]
+pockets = true
+[stop]
+time = 3.5
+events = 55
+[render]
+fps = 50
+size = [640, 360]
+camera = "rail"
+)";
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, text.npos) << from;
+    return text.replace(at, from.size(), to);
+}
+
+std::string hash_of(const Scene& scene) {
+    return simulate(make_plan(scene, kernel::Isa::kScalar)).hash();
+}
+
+TEST(SceneText, ReadsBackToTheSameScene) {
+    std::vector<std::string> texts = {kEveryKey};
+    texts.push_back(with(kEveryKey, "tolerance = 1e-7", "substeps = 500"));
+    texts.push_back(with(kEveryKey, "mu_b = 0.06", "mu_b_fit = [0.01, 0.1, 1.1]"));
+    texts.push_back(with(kEveryKey, "camera = \"rail\"", "eye = [1, 2, 3]\ntarget = [0, 1, 0]"));
+    texts.push_back("[table]\ncushion = []\n[[ball]]\nvelocity = [0, 1]\n");
+    for (const std::string& text : texts) {
+        const Scene scene = parse_scene(text, "a.toml");
+        const std::string written = scene_text(scene);
+        const Scene again = parse_scene(written, "b.toml");
+        EXPECT_EQ(scene_text(again), written);
+        EXPECT_EQ(hash_of(again), hash_of(scene)) << written;
+    }
+}
+
+TEST(SceneText, EveryExampleSceneReadsBackToTheSameShot) {
+    for (const auto& entry : fs::directory_iterator(CAROM_SOURCE_DIR "/scenes")) {
+        Scene scene = read_scene(entry.path().string());
+        scene.stop.events = 60;  // enough to tell them apart
+        EXPECT_EQ(hash_of(parse_scene(scene_text(scene), "b.toml")), hash_of(scene)) << entry.path();
+    }
+}
+
+/// All keys of the schema, except those of a rack, which is written out as balls.
+void collect_keys(const nlohmann::json& node, std::set<std::string>& keys) {
+    if (!node.is_structured()) return;
+    if (node.is_object() && node.contains("properties") && node["properties"].is_object()) {
+        for (const auto& [key, value] : node["properties"].items()) {
+            if (key == "rack") continue;
+            keys.insert(key);
+            collect_keys(value, keys);
+        }
+    }
+    for (const auto& [key, value] : node.items())
+        if (key != "properties") collect_keys(value, keys);
+}
+
+// Guards against a key that is added to the format and forgotten here.
+TEST(SceneText, WritesEveryKeyOfTheFormat) {
+    std::ifstream file(CAROM_SOURCE_DIR "/docs/scene.schema.json");
+    std::set<std::string> keys;
+    collect_keys(nlohmann::json::parse(file), keys);
+    ASSERT_GE(keys.size(), 40u);
+    std::string text =
+        scene_text(parse_scene(kEveryKey, "a.toml")) +
+        scene_text(parse_scene(with(kEveryKey, "tolerance = 1e-7", "substeps = 500"), "a.toml")) +
+        scene_text(parse_scene(with(kEveryKey, "mu_b = 0.06", "mu_b_fit = [0, 0.1, 1]"), "a.toml")) +
+        scene_text(parse_scene(with(kEveryKey, "camera = \"rail\"", "eye = [1, 2, 3]\ntarget = [0, 1, 0]"),
+                               "a.toml"));
+    for (const char* effect : kEffectKeywords)
+        text += std::string(effect) + " = true\n";  // one stands for all
+    for (const std::string& key : keys) {
+        const bool section =
+            text.find("[" + key + "]") != text.npos || text.find("." + key + "]") != text.npos;
+        EXPECT_TRUE(section || text.find("\n" + key + " = ") != text.npos) << key;
+    }
+}
+
+TEST(Validate, ChecksASceneBuiltInCode) {
+    Scene scene;
+    scene.file = "my scene";
+    scene.table = make_table("nine_foot");
+    scene.balls = make_ball_params("pool");
+    const auto error = [&] {
+        try {
+            validate(scene);
+        } catch (const SceneError& e) {
+            return std::string(e.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(error(), "my scene: there is no ball; add a [[ball]] or a [rack]");
+    scene.ball.push_back({"cue", Vec3(0.5, 0.5, scene.balls.R), Vec3(0, 1, 0), Vec3::Zero(), {}});
+    EXPECT_EQ(error(), "");
+    scene.ball.push_back({"1", Vec3(0.5, 0.51, scene.balls.R), Vec3::Zero(), Vec3::Zero(), {}});
+    EXPECT_NE(error().find("my scene: balls \"cue\" and \"1\" overlap"), std::string::npos) << error();
+    scene.ball[1].position = Vec3(0.5, 1.5, 0.0);
+    EXPECT_NE(error().find("z has to be the radius"), std::string::npos) << error();
+    scene.ball[1].position = Vec3(0.5, std::nan(""), scene.balls.R);
+    EXPECT_NE(error().find("must be a finite number"), std::string::npos) << error();
+    scene.ball[1].position = Vec3(0.5, 1.5, scene.balls.R);
+    scene.table.pockets.clear();  // no longer the preset
+    EXPECT_EQ(error(), "");
+    EXPECT_EQ(parse_scene(scene_text(scene), "x").table.pockets.size(), 0u);
+}
+
+}  // namespace
+}  // namespace carom

@@ -1,0 +1,214 @@
+// Many scenes from one file: keys, distributions, and that a shot depends on nothing but what it should.
+#include "carom/engine/variation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "distribution.h"
+#include "support/process.h"
+
+namespace carom::test {
+namespace {
+
+constexpr char kScene[] = R"([table]
+cushion = [{from = [0, 0], to = [0, 3], height = 0.03}, {from = [2, 0], to = [2, 3], height = 0.03}]
+pocket = [{center = [1.0, 3.0], radius = 0.06}]
+[[ball]]
+position = [0.635, 0.50]
+[[ball]]
+id = "ball.2"
+position = [0.60, 2]
+[cue]
+speed = 4
+offset = [0.2, 0.1]
+)";
+
+class VariationTest : public testing::Test {
+  protected:
+    Variation vary(const std::vector<std::string>& rules, std::uint64_t seed = 1) {
+        return Variation(folder_.write("s.toml", text_), rules, seed);
+    }
+    /// The message of a rule that has to fail.
+    std::string error_of(const std::string& rule) {
+        try {
+            vary({rule});
+        } catch (const VariationError& error) {
+            return error.what();
+        }
+        return "";
+    }
+    TemporaryFolder folder_;
+    std::string text_ = kScene;
+};
+
+TEST_F(VariationTest, EveryKindOfKeyReachesItsValue) {
+    const Variation v = vary({"cue.speed=list(2.5)", "cue.offset.side=list(-0.1)", "cue.offset.1=list(0.3)",
+                              "ball.cue.position.x=list(0.7)", "ball.ball.2.position=list([0.5, 1.5])",
+                              "ball.ball.2.velocity=list([0.5, 0])", "balls.mu_b=list(0.07)",
+                              "physics.cushion=list(\"stronge\")", "table.pocket.p1.radius=list(0.07)",
+                              "table.cushion.c2.to.y=list(4)", "stop.events=integer(7,7)"});
+    const VariedShot shot = v.shot(5);
+    ASSERT_TRUE(shot.scene) << shot.error;
+    const Scene& s = *shot.scene;
+    EXPECT_EQ(s.cue->speed, 2.5);
+    EXPECT_EQ(s.cue->side, -0.1);
+    EXPECT_EQ(s.cue->height, 0.3);
+    EXPECT_EQ(s.ball[0].position.x(), 0.7);
+    EXPECT_EQ(s.ball[0].position.y(), 0.5);
+    EXPECT_EQ(s.ball[1].position.y(), 1.5);
+    EXPECT_EQ(s.ball[1].velocity.x(), 0.5);
+    EXPECT_EQ(s.balls.mu_b, 0.07);
+    EXPECT_EQ(s.physics.cushion, CushionModel::kStronge);
+    EXPECT_EQ(s.table.pockets[0].radius, 0.07);
+    EXPECT_EQ(s.table.cushions[1].to.y(), 4.0);
+    EXPECT_EQ(s.stop.events, 7);
+    EXPECT_EQ(v.base().cue->speed, 4.0);
+    EXPECT_EQ(shot.values[0], "2.5");
+    EXPECT_EQ(shot.values[4], "[ 0.5, 1.5 ]");
+    EXPECT_EQ(shot.values[7], "stronge");
+}
+
+TEST_F(VariationTest, AShotDependsOnSeedNumberAndKeyAlone) {
+    const std::string speed = "cue.speed=uniform(1,2)";
+    const Variation alone = vary({speed}), among = vary({"cue.aim_deg=normal(90,1)", speed}),
+                    other_seed = vary({speed}, 2);
+    std::set<std::string> seen;
+    for (std::uint64_t i = 0; i < 1000; ++i) {
+        const std::string value = alone.shot(i).values[0];
+        EXPECT_EQ(value, among.shot(i).values[1]);
+        EXPECT_NE(value, other_seed.shot(i).values[0]);
+        seen.insert(value);
+    }
+    EXPECT_EQ(seen.size(), 1000u);
+    EXPECT_EQ(alone.shot(999).values, alone.shot(999).values);
+    EXPECT_NE(alone.fingerprint(), among.fingerprint());
+    EXPECT_NE(alone.fingerprint(), other_seed.fingerprint());
+    // A written-down value: changing the generator would change every sweep that was ever published.
+    EXPECT_EQ(alone.shot(0).values[0], "1.1117882243348463");
+    EXPECT_EQ(std::stod(alone.shot(7).values[0]), alone.shot(7).scene->cue->speed);
+}
+
+TEST_F(VariationTest, NormalIsAroundTheNumberOfTheScene) {
+    const Variation v = vary({"cue.speed=normal(0.1)"});
+    double sum = 0.0;
+    for (std::uint64_t i = 0; i < 400; ++i) sum += v.shot(i).scene->cue->speed;
+    EXPECT_NEAR(sum / 400.0, 4.0, 4.0 * 0.1 / 20.0);
+}
+
+TEST_F(VariationTest, InvalidValuesAreNoScene) {
+    const Variation v = vary({"ball.cue.position.y=uniform(1.5,2.5)"});  // the other ball is at (0.6, 2)
+    int bad = 0;
+    for (std::uint64_t i = 0; i < 200; ++i) {
+        const VariedShot shot = v.shot(i);
+        const double y = std::stod(shot.values[0]);
+        EXPECT_EQ(shot.scene.has_value(), std::hypot(0.035, y - 2.0) >= 2 * 0.028575) << y;
+        if (shot.scene) continue;
+        ++bad;
+        EXPECT_NE(shot.error.find("overlap by"), std::string::npos) << shot.error;
+        EXPECT_EQ(shot.error.find("s.toml"), std::string::npos) << shot.error;
+    }
+    EXPECT_GT(bad, 5);
+}
+
+TEST_F(VariationTest, AllShotsHaveTheSameBalls) {
+    text_ = "[rack]\ngame = \"line\"\ncount = 3\n";
+    const Variation v = vary({"rack.count=integer(2,4)"});
+    for (std::uint64_t i = 0; i < 50; ++i) {
+        const VariedShot shot = v.shot(i);
+        EXPECT_EQ(shot.scene.has_value(), shot.values[0] == "3");
+        if (shot.scene) continue;
+        EXPECT_NE(shot.error.find("its balls are not those"), std::string::npos);
+    }
+}
+
+TEST_F(VariationTest, BadRulesSayWhatToDo) {
+    const struct {
+        const char *rule, *says;
+    } cases[] = {
+        {"cue.speed", "expected KEY=DISTRIBUTION"},
+        {"=uniform(1,2)", "expected KEY=DISTRIBUTION"},
+        {"speed=uniform(1,2)", "name a value in its section, such as cue.speed"},
+        {"cue.=uniform(1,2)", "the name of the value is missing"},
+        {"cue.sped=uniform(1,2)", "unknown key \"sped\" in [cue]"},
+        {"quue.speed=uniform(1,2)", "unknown section or key \"quue\""},
+        {"rack.seed=integer(1,2)", "the scene has no [rack]"},
+        {"ball.1.position.x=uniform(0,1)", "it names no [[ball]] of the scene"},
+        {"ball.cue.spin.z=uniform(0,1)", "does not write this array"},
+        {"cue.offset.2=uniform(0,1)", "the array in the scene is shorter"},
+        {"cue.offset.left=uniform(0,1)", "\"left\" is no element of an array"},
+        {"cue.speed.x=uniform(0,1)", "does not write this array"},
+        {"table.pocket.1.radius=uniform(0,1)", "name the part by its number, as in table.pocket.p1.radius"},
+        {"table.pocket.p2.radius=uniform(0,1)", "does not write this part"},
+        {"table.jaw.j1.radius=uniform(0,1)", "does not write this part"},
+        {"cue.speed=uniform(1)", "uniform has 1 values; write uniform(a,b)"},
+        {"cue.speed=uniform(2,1)", "needs a <= b"},
+        {"cue.speed=uniform(-1e308,1e308)", "b - a is too large"},
+        {"cue.speed=uniform(1,nan)", "must be a finite number"},
+        {"cue.speed=uniform(1,2", "expected uniform(a,b)"},
+        {"cue.speed=uniform(1],v=[2)", "cannot read the values"},
+        {"cue.speed=gauss(1,2)", "unknown distribution \"gauss\""},
+        {"cue.speed=normal(-1)", "must be at least 0"},
+        {"cue.aim_deg=normal(1)", "there is none; write it there, or use normal(mean,sd)"},
+        {"cue.speed=integer(1.5,2)", "value 1 of integer must be an integer"},
+        {"cue.speed=integer(3,2)", "needs -1000000000 <= a <= b"},
+        {"cue.speed=list()", "list has 0 values"},
+        {"physics.cushion=list(smooth)", "strings in double quotes"},
+        {"cue.speed=list(\"fast\")",
+         "none of the first 100 shots is a valid scene; shot 0: cue.speed must be a number"},
+        {"cue.speed=uniform(-2,-1)", "none of the first 100 shots is a valid scene; shot 0: cue.speed = -"},
+    };
+    for (const auto& c : cases)
+        EXPECT_NE(error_of(c.rule).find(c.says), std::string::npos) << error_of(c.rule);
+    try {
+        vary({"cue.offset=list([0,0])", "cue.offset.side=uniform(0,0.1)"});
+        ADD_FAILURE() << "two rules for one value";
+    } catch (const VariationError& error) {
+        EXPECT_NE(std::string(error.what()).find("cue.offset varies this value already"), std::string::npos);
+    }
+}
+
+// Moments and tails of 1e6 draws, within five standard errors.
+TEST(StandardNormal, HasTheMomentsAndTailsOfTheNormalDistribution) {
+    SplitMix64 random(42);
+    constexpr int kDraws = 1000000;
+    double sum = 0.0, squares = 0.0, fourth = 0.0;
+    int beyond_two = 0, beyond_three = 0;
+    for (int i = 0; i < kDraws; ++i) {
+        const double x = detail::standard_normal(random);
+        sum += x;
+        squares += x * x;
+        fourth += x * x * x * x;
+        beyond_two += std::abs(x) > 2.0;
+        beyond_three += std::abs(x) > 3.0;
+    }
+    constexpr double n = kDraws;
+    EXPECT_NEAR(sum / n, 0.0, 5.0 / std::sqrt(n));
+    EXPECT_NEAR(squares / n, 1.0, 5.0 * std::sqrt(2.0 / n));
+    EXPECT_NEAR(fourth / n, 3.0, 5.0 * std::sqrt(96.0 / n));
+    EXPECT_NEAR(beyond_two / n, 0.0455003, 5.0 * std::sqrt(0.0455 / n));
+    EXPECT_NEAR(beyond_three / n, 0.0026998, 5.0 * std::sqrt(0.0027 / n));
+}
+
+TEST(Distribution, DrawsLieInTheirRangesAndReachTheirEnds) {
+    SplitMix64 random(1);
+    const auto uniform = detail::Distribution::parse("uniform(-1, 3)", nullptr);
+    const auto integer = detail::Distribution::parse("integer(-2,2)", nullptr);
+    double least = 9.0, most = -9.0;
+    std::set<std::int64_t> seen;
+    for (int i = 0; i < 10000; ++i) {
+        const double x = std::get<double>(uniform.draw(random));
+        least = std::min(least, x);
+        most = std::max(most, x);
+        seen.insert(std::get<std::int64_t>(integer.draw(random)));
+    }
+    EXPECT_GE(least, -1.0);
+    EXPECT_LT(least, -0.99);
+    EXPECT_LT(most, 3.0);
+    EXPECT_GT(most, 2.99);
+    EXPECT_EQ(seen, (std::set<std::int64_t>{-2, -1, 0, 1, 2}));
+}
+
+}  // namespace
+}  // namespace carom::test

@@ -1,0 +1,36 @@
+// Any text as a line of `carom impact`: the answer is one line of JSON without NaN, and comes at once.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "impact_line.h"
+
+namespace {
+
+using carom::tools::ImpactSettings;
+
+// By tolerance and by the published march, for the closed forms see the cushions.
+void answer(std::string_view line, ImpactSettings settings) {
+    const carom::tools::ImpactAnswer got = carom::tools::answer_impact(line, settings);
+    if (got.json.find('\n') != std::string::npos) std::abort();
+    const nlohmann::json json = nlohmann::json::parse(got.json, nullptr, false);
+    if (!json.is_object() || json.contains("error") == got.ok) std::abort();
+    // The writer turns a NaN into null.
+    if (got.ok && got.json.find("null") != std::string::npos && line.find("null") == std::string_view::npos)
+        std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view line(reinterpret_cast<const char*>(data), size);
+    ImpactSettings settings;
+    settings.march = carom::kernel::march_function(carom::kernel::Isa::kScalar);
+    settings.by_tolerance = carom::kernel::tolerance_function(carom::kernel::Isa::kScalar);
+    answer(line, settings);
+    settings.substeps = 100;
+    answer(line, settings);
+    return 0;
+}

@@ -1,0 +1,44 @@
+// Any text as a scene file: read it, plan it, run its first events. Refusing is right; a crash, a hang, a NaN
+// or an exception of another kind is a finding.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/simulate.h"
+
+namespace {
+
+// Enough for every kind of event to come, few enough for hundreds of runs a second.
+constexpr std::int64_t kEvents = 60;
+constexpr std::size_t kBalls = 12;
+constexpr int kSubsteps = 1000;
+
+void check_finite(const carom::Record& record) {
+    for (const carom::BallTrack& track : record.tracks) {
+        for (const carom::Segment& s : track.segments) {
+            if (!s.r.allFinite() || !s.v.allFinite() || !s.w.allFinite() || !s.a.allFinite() ||
+                !s.dw.allFinite() || !std::isfinite(s.start))
+                std::abort();
+        }
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    try {
+        carom::Scene scene =
+            carom::parse_scene(std::string_view(reinterpret_cast<const char*>(data), size), "fuzz.toml");
+        const bool small = scene.ball.size() <= kBalls && scene.physics.substeps.value_or(1) <= kSubsteps;
+        if (!scene.stop.events || *scene.stop.events > kEvents) scene.stop.events = kEvents;
+        const carom::Plan plan = carom::make_plan(scene, carom::kernel::Isa::kScalar);
+        if (small) check_finite(carom::simulate(plan));
+    } catch (const carom::SceneError&) {
+    } catch (const carom::SimulationError&) {
+        // A run that cannot go on says so: also an answer.
+    }
+    return 0;
+}

@@ -1,0 +1,169 @@
+// Frames of which only a part is drawn and read back have the pixels of whole ones.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/simulate.h"
+#include "carom/render/renderer.h"
+#include "drawn_balls.h"
+#include "render/hand_made.h"
+
+namespace carom::render {
+namespace {
+
+const Record& the_break() {
+    static const Record record = [] {
+        const Scene scene = read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/eight_ball_break.toml");
+        return simulate(make_plan(scene, kernel::Isa::kScalar));
+    }();
+    return record;
+}
+
+Stage stage_of(const std::string& camera, const std::string& overlay = "") {
+    StageOptions options;
+    options.camera = camera;
+    options.overlay = parse_overlay(overlay);
+    options.size = {480, 270};
+    options.table_samples = kMovingSamples + 1;  // the least for which it is looked at where the cloth is
+    return Stage(the_break(), options);
+}
+
+// Draws from nothing: a picture from elsewhere makes both targets worthless.
+Image whole_picture(Renderer& renderer, const DrawList& list) {
+    DrawList elsewhere = list;
+    elsewhere.table_samples = 1;
+    elsewhere.camera.eye.x() += 0.1;
+    renderer.draw(elsewhere);
+    renderer.draw(list);
+    Image image;
+    renderer.read(image);
+    return image;
+}
+
+// Steps from the rack to rest: balls at rest among moving ones, pockets, balls that meet in the picture.
+std::vector<double> instants() {
+    std::vector<double> times;
+    for (double t : {0.0, 0.02, 0.1, 0.1, 0.3, 0.9, 2.0, 2.05, 3.5, 5.0, 0.3}) times.push_back(t);
+    times.push_back(the_break().duration);
+    times.push_back(the_break().duration);
+    return times;
+}
+
+class Redraw : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Redraw, PartsHaveThePixelsOfTheWhole) {
+    const Stage stage = stage_of(GetParam());
+    Renderer renderer, reference;
+    KeptImage image;
+    for (const double t : instants()) {
+        const DrawList list = stage.at(t);
+        renderer.draw(list);
+        renderer.read(image);
+        EXPECT_TRUE(render_test::same_pixels(image.image(), whole_picture(reference, list))) << t;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cameras, Redraw, ::testing::Values("top", "rail", "player", "follow"),
+                         [](const auto& camera) { return std::string(camera.param); });
+
+TEST(RedrawLines, AnOverlayThatComesAndGoesLeavesNothing) {
+    const Stage bare = stage_of("rail"), lines = stage_of("rail", "trails,clock");
+    Renderer renderer, reference;
+    KeptImage image;
+    int shown = 0;
+    for (const double t : {0.2, 0.4, 0.5, 0.6, 0.7, 0.8}) {
+        // The stages have a table each: one of them is taken, or the whole would be drawn anyway.
+        DrawList list = (++shown % 3 == 0 ? lines : bare).at(t);
+        list.table = bare.table();
+        renderer.draw(list);
+        renderer.read(image);
+        EXPECT_TRUE(render_test::same_pixels(image.image(), whole_picture(reference, list))) << t;
+    }
+}
+
+TEST(RedrawKept, ImagesReadAtAnyOrderShowTheirFrame) {
+    const Stage stage = stage_of("top");
+    Renderer renderer, reference;
+    std::array<KeptImage, 3> images;
+    Image expected;
+    int k = 0;
+    for (const double t : instants()) {
+        const DrawList list = stage.at(t);
+        renderer.draw(list);
+        // The frame before, into an image that shows one of several frames ago.
+        if (k > 0) {
+            KeptImage& image = images[static_cast<std::size_t>(k * k) % 3];
+            renderer.read_previous(image);
+            EXPECT_TRUE(render_test::same_pixels(image.image(), expected)) << t;
+        }
+        expected = whole_picture(reference, list);
+        ++k;
+    }
+}
+
+TEST(RedrawKept, AnImageMayGoFromOneRendererToAnother) {
+    const Stage stage = stage_of("top");
+    Renderer first, second;
+    KeptImage image;
+    Image expected;
+    for (const double t : {0.1, 0.3, 0.9}) {
+        first.draw(stage.at(t));
+        first.read(image);
+        second.draw(stage.at(t + 0.1));
+        second.read(image);
+        second.read(expected);
+        EXPECT_TRUE(render_test::same_pixels(image.image(), expected)) << t;
+    }
+}
+
+// What makes a frame cheap: nothing to do when nothing moves, and no more than the moving balls when they do.
+TEST(RedrawWork, OnlyWhatMovedIsDrawn) {
+    const Stage stage = stage_of("top");
+    const ClothMap none;
+    const FrameSize size{480, 270};
+    const auto picture = [&](double t) { return DrawnPicture{1, false, visible_balls(stage.at(t), none)}; };
+    const double end = the_break().duration;
+    EXPECT_TRUE(differing_boxes(picture(end), picture(end + 1.0), size).empty());
+    const DrawnPicture rack = picture(0.0), cue_moved = picture(0.01);
+    std::vector<PixelBox> boxes = differing_boxes(rack, cue_moved, size);
+    ASSERT_EQ(boxes.size(), 2U);  // where the cue ball was, and where it is
+    const std::vector<bool> inside = balls_inside(cue_moved.balls, boxes);
+    EXPECT_EQ(std::count(inside.begin(), inside.end(), true), 1);
+    // A rack is drawn as a whole as soon as a ball of it is touched.
+    boxes = {rack.balls[5].box};
+    const std::vector<bool> all = balls_inside(rack.balls, boxes);
+    EXPECT_EQ(std::count(all.begin(), all.end(), true), 15);
+    // Another table, or lines that reach anywhere: everything.
+    DrawnPicture other = rack;
+    other.table = 2;
+    EXPECT_EQ(differing_boxes(rack, other, size), (std::vector<PixelBox>{{0, 0, 480, 270}}));
+    other = rack;
+    other.overlay = true;
+    EXPECT_EQ(differing_boxes(rack, other, size).size(), 1U);
+}
+
+TEST(RedrawWork, BallsOnBareClothAreTold) {
+    const Stage stage = stage_of("top");
+    const DrawList list = stage.at(0.0);
+    // Alpha of the picture is cloth: all of it here, then all but one pixel in the corner of a ball's box.
+    std::vector<std::uint8_t> alpha(std::size_t{4} * 480 * 270, 255);
+    std::vector<DrawnBall> balls = visible_balls(list, ClothMap(alpha, {480, 270}));
+    EXPECT_EQ(std::count_if(balls.begin(), balls.end(), [](const DrawnBall& b) { return b.plain; }), 16);
+    const auto at =
+        static_cast<std::size_t>(balls[7].box.y0) * 480 + static_cast<std::size_t>(balls[7].box.x0);
+    alpha[4 * at + 3] = 254;
+    balls = visible_balls(list, ClothMap(alpha, {480, 270}));
+    EXPECT_FALSE(balls[7].plain);
+    // With it every ball that it meets in the picture, and those that these meet: the rack, or the cue ball
+    // alone.
+    for (const DrawnBall& ball : balls) {
+        EXPECT_FALSE(ball.plain && ball.box.meets(balls[7].box));
+    }
+    EXPECT_GE(std::count_if(balls.begin(), balls.end(), [](const DrawnBall& b) { return b.plain; }), 1);
+    EXPECT_EQ(visible_balls(list, ClothMap{})[0].plain, false);
+}
+
+}  // namespace
+}  // namespace carom::render

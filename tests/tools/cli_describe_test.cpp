@@ -1,0 +1,102 @@
+// The man page and the completions that the program prints of itself.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <sstream>
+
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+ProcessResult shell(const std::string& program, const std::string& script, const std::string& folder) {
+    ProcessOptions options;
+    options.folder = folder;
+    return run_process({program, "-c", script}, options);
+}
+
+std::string described(const std::string& format) {
+    const ProcessResult result = carom({"describe", format});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.out;
+}
+
+/// What bash offers for a line; its last word is the one that is typed.
+std::set<std::string> offered(const TemporaryFolder& folder, const std::vector<std::string>& words) {
+    std::string line;
+    for (const std::string& word : words) line += " '" + word + "'";
+    const ProcessResult result = shell("bash",
+                                       "set -u; . ./completion; COMP_WORDS=(" + line +
+                                           "); COMP_CWORD=" + std::to_string(words.size() - 1) +
+                                           "; _carom; printf '%s\\n' \"${COMPREPLY[@]}\"",
+                                       folder.path().string());
+    EXPECT_EQ(result.status, 0) << result.err;
+    std::istringstream lines(result.out);
+    std::set<std::string> found;
+    for (std::string one; std::getline(lines, one);)
+        if (!one.empty()) found.insert(one);
+    return found;
+}
+
+using Words = std::set<std::string>;
+
+TEST(CliDescribe, BashOffersCommandsOptionsValuesAndFiles) {
+    const TemporaryFolder folder;
+    folder.write("completion", described("bash"));
+    folder.write("a shot.toml", "");
+    EXPECT_EQ(offered(folder, {"carom", "s"}), (Words{"simulate", "sweep"}));
+    EXPECT_EQ(offered(folder, {"carom", "--v"}), Words{"--version"});
+    EXPECT_EQ(offered(folder, {"carom", "bench", "k"}), Words{"kernel"});
+    EXPECT_EQ(offered(folder, {"carom", "bench", "kernel", "--ran"}), Words{"--random"});
+    EXPECT_EQ(offered(folder, {"carom", "render", "--camera", ""}),
+              (Words{"top", "rail", "player", "follow"}));
+    EXPECT_EQ(offered(folder, {"carom", "render", "--fr"}), (Words{"--from", "--frame"}));
+    EXPECT_EQ(offered(folder, {"carom", "render", "--fps", ""}), Words{});
+    EXPECT_EQ(offered(folder, {"carom", "check", "a"}), Words{"a shot.toml"});
+    EXPECT_EQ(offered(folder, {"carom", "sweep", "-o", "a"}), Words{"a shot.toml"});
+    EXPECT_EQ(offered(folder, {"carom", "describe", ""}), (Words{"man", "bash", "zsh"}));
+}
+
+TEST(CliDescribe, ZshReadsItsCompletion) {
+    const TemporaryFolder folder;
+    const std::string text = described("zsh");
+    EXPECT_EQ(text.rfind("#compdef carom\n", 0), 0u);
+    folder.write("_carom", text);
+    if (run_process({"zsh", "--version"}).status != 0) GTEST_SKIP() << "zsh is not installed";
+    const ProcessResult result = shell("zsh", "zsh -n _carom", folder.path().string());
+    EXPECT_EQ(result.status, 0) << result.err;
+    // What the functions hand to _arguments and _describe, seen by stand-ins for them.
+    const ProcessResult seen =
+        shell("zsh",
+              "_arguments() { print -l -- \"$@\"; }; _describe() { print -l -- ${(P)2}; }\n"
+              "words=(x); state=command; source ./_carom; _carom_render; _carom_sweep",
+              folder.path().string());
+    EXPECT_EQ(seen.status, 0) << seen.err;
+    for (const char* line : {"*--vary[What varies and how", ":SCENE:_files",
+                             "(--camera)--camera[Camera (default", ":NAME:(top rail player follow)"})
+        EXPECT_NE(seen.out.find(line), std::string::npos) << line << "\n" << seen.out;
+}
+
+TEST(CliDescribe, TheManPageHasEveryCommandAndIsCleanRoff) {
+    const TemporaryFolder folder;
+    const std::string page = described("man");
+    EXPECT_EQ(page.rfind(".TH CAROM 1 ", 0), 0u);
+    for (const char* text : {".SS \"carom simulate SCENE [options]\"", ".SS \"carom bench kernel [options]\"",
+                             "\\fB\\-o, \\-\\-output\\fR \\fIPATTERN\\fR", "\\-\\-vary KEY=DISTRIBUTION",
+                             "One of top, rail, player, follow."})
+        EXPECT_NE(page.find(text), std::string::npos) << text;
+    folder.write("carom.1", page);
+    if (run_process({"groff", "--version"}).status != 0) GTEST_SKIP() << "groff is not installed";
+    const ProcessResult result =
+        shell("bash", "groff -man -ww -z -Tascii carom.1 2>&1", folder.path().string());
+    EXPECT_EQ(result.out, "");
+}
+
+TEST(CliDescribe, RefusesOtherFormats) {
+    const ProcessResult result = carom({"describe", "fish"});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.err.find("FORMAT"), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace carom::test

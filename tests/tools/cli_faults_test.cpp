@@ -1,0 +1,200 @@
+// Faults from outside: a full disk, a folder that takes nothing, a reader that leaves, signals, a run that
+// was killed. What stands afterwards is whole or absent, and the exit status says what happened.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <memory>
+#include <thread>
+
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Faults : public ::testing::Test {
+  protected:
+    std::string frame(int k) const {
+        char name[32];
+        std::snprintf(name, sizeof name, "frames/%05d.png", k);
+        return folder_.file(name);
+    }
+    std::string pattern() const { return folder_.file("frames/%05d.png"); }
+
+    /// Starts a render that is far from its end when its third frame stands.
+    std::unique_ptr<Process> long_render() const {
+        auto process = std::make_unique<Process>(
+            std::vector<std::string>{CAROM_PROGRAM, "render", scene_, "-o", pattern(), "--fps", "2000",
+                                     "--size", "640x360"},
+            ProcessOptions{});
+        for (int wait = 0; wait < 6000 && !fs::exists(frame(2)); ++wait)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        EXPECT_TRUE(fs::exists(frame(2)));
+        return process;
+    }
+
+    std::vector<std::string> temporary_files() const {
+        std::vector<std::string> found;
+        for (const std::string& name : folder_.names())
+            if (name.find(".tmp") != std::string::npos) found.push_back(name);
+        return found;
+    }
+
+    TemporaryFolder folder_;
+    std::string scene_ = folder_.write("s.toml", kSmallScene);
+};
+
+/// Every file that the program writes, by the option that asks for it.
+TEST_F(Faults, AFileThatMayNotGrowIsNamedAndNotLeftHalf) {
+    const std::vector<std::vector<std::string>> commands = {
+        {"simulate", scene_, "-o"},
+        {"simulate", scene_, "--events"},
+        {"simulate", scene_, "--sample-dt", "0.1", "--samples"},
+        {"margin", scene_, "--no-render", "--csv"},
+        {"render", scene_, "--size", "320x180", "--at", "0.5", "-o"},
+        {"render", scene_, "--size", "320x180", "--sheet", "2x2", "-o"},
+    };
+    for (std::vector<std::string> command : commands) {
+        const bool frames = std::find(command.begin(), command.end(), "--at") != command.end();
+        command.push_back(folder_.file(frames ? "out%d.png" : "out"));
+        ProcessOptions options;
+        options.file_limit = 500;
+        const ProcessResult result = carom(command, options);
+        EXPECT_EQ(result.status, 1) << command[0] << " " << command[command.size() - 2];
+        EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+        EXPECT_NE(result.err.find("File too large"), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find(folder_.path().string()), std::string::npos)
+            << "names no file: " << result.err;
+        EXPECT_EQ(folder_.names(), std::vector<std::string>{"s.toml"}) << command[0];
+    }
+}
+
+TEST_F(Faults, AFolderThatTakesNoFilesIsNamed) {
+    // Not even root makes a file in /proc.
+    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+             {"simulate", scene_, "-o", "/proc/carom.json"},
+             {"simulate", scene_, "--events", "/proc/carom.csv"},
+             {"margin", scene_, "--no-render", "--csv", "/proc/carom.csv"},
+             {"render", scene_, "--at", "0.1", "--size", "64x36", "-o", "/proc/carom%d.png"}}) {
+        const ProcessResult result = carom(command);
+        EXPECT_EQ(result.status, 1) << command[0];
+        EXPECT_NE(result.err.find("/proc/carom"), std::string::npos) << result.err;
+    }
+}
+
+TEST_F(Faults, AReaderThatLeavesEndsEveryCommandQuietly) {
+    for (const std::vector<std::string>& command :
+         std::vector<std::vector<std::string>>{{"simulate", scene_},
+                                               {"simulate", scene_, "--json"},
+                                               {"check", scene_},
+                                               {"margin", scene_, "--no-render"},
+                                               {"render", scene_, "--raw", "--size", "64x36"}}) {
+        ProcessOptions options;
+        options.close_output = true;
+        const ProcessResult result = carom(command, options);
+        EXPECT_EQ(result.status, 1) << command[0];
+        EXPECT_EQ(result.err, "") << command[0];
+    }
+    EXPECT_EQ(folder_.names(), std::vector<std::string>{"s.toml"});
+}
+
+TEST_F(Faults, ASignalKeepsFinishedFramesAndLeavesNoTemporaryFile) {
+    for (const auto& [signal, status] : {std::pair{SIGINT, 130}, {SIGTERM, 143}}) {
+        const std::unique_ptr<Process> process = long_render();
+        process->send(signal);
+        EXPECT_EQ(process->finish("").status, status);
+        EXPECT_EQ(temporary_files(), std::vector<std::string>{});
+        for (int k = 0; k < 3; ++k) EXPECT_TRUE(fs::exists(frame(k)));
+        fs::remove_all(folder_.path() / "frames");
+    }
+}
+
+TEST_F(Faults, AKilledRenderIsFinishedByResumeWithTheSameFrames) {
+    const std::vector<std::string> command = {"render", scene_,   "-o",      pattern(), "--fps",
+                                              "200",    "--size", "320x180", "--to",    "0.5"};
+    ASSERT_EQ(carom(command).status, 0);
+    std::vector<std::string> whole;
+    for (int k = 0; k <= 100; ++k) whole.push_back(read_file(frame(k)));
+    fs::remove_all(folder_.path() / "frames");
+
+    {
+        std::vector<std::string> arguments = command;
+        arguments.insert(arguments.begin(), CAROM_PROGRAM);
+        Process process(arguments, ProcessOptions{});
+        for (int wait = 0; wait < 6000 && !fs::exists(frame(2)); ++wait)
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        process.send(SIGKILL);
+        process.finish("");
+    }
+    // Whatever stands under a frame's name is whole: killed between two system calls, only a temporary name
+    // is not.
+    for (int k = 0; k <= 100; ++k)
+        if (fs::exists(frame(k))) {
+            EXPECT_EQ(read_file(frame(k)), whole[static_cast<std::size_t>(k)]) << k;
+        }
+    std::vector<std::string> again = command;
+    again.push_back("--resume");
+    ASSERT_EQ(carom(again).status, 0);
+    for (int k = 0; k <= 100; ++k) EXPECT_EQ(read_file(frame(k)), whole[static_cast<std::size_t>(k)]) << k;
+}
+
+TEST_F(Faults, ARecordThatIsTooLargeIsRefusedUnread) {
+    const std::string path = folder_.write("huge.json", "{");
+    fs::resize_file(path, (std::uintmax_t{256} << 20) + 1);  // sparse: takes no space
+    const ProcessResult result = carom({"render", path, "-o", pattern()});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_EQ(result.err,
+              "carom: " + path +
+                  ": is larger than 256 MiB; stop the shot earlier ([stop]) and write it in parts\n");
+}
+
+/// What asks for more than the program takes on: each with the limit in its message, none with work begun.
+TEST_F(Faults, EveryLimitHasItsMessage) {
+    const auto message = [](const std::vector<std::string>& command) {
+        const ProcessResult result = carom(command);
+        EXPECT_EQ(result.status, 2) << command[0];
+        EXPECT_EQ(result.out, "");
+        return result.err;
+    };
+    const auto has = [](const std::string& text, const char* part) {
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+    };
+    std::string many(kSmallScene);
+    for (int i = 0; i < 5000; ++i)
+        many += "[[ball]]\nid = \"n" + std::to_string(i) + "\"\nposition = [0, 0]\n";
+    has(message({"check", folder_.write("many.toml", many)}), "more than 4096 balls");
+    std::string large(kSmallScene);
+    large.resize((std::size_t{4} << 20) + 1, '#');
+    has(message({"check", folder_.write("large.toml", large)}), "larger than 4 MiB");
+    has(message({"render", scene_, "-o", pattern(), "--size", "16385x10"}), "16384");
+    has(message({"render", scene_, "-o", pattern(), "--fps", "1e300"}), "fps");
+    has(message({"render", scene_, "-o", pattern(), "--fps", "99999", "--to", "1e9"}), "frames");
+    has(message({"render", scene_, "-o", pattern(), "--sheet", "100000x100000"}), "16384");
+}
+
+/// A name in a scene or a record is data: it never becomes a path.
+TEST_F(Faults, NamesInAFileNeverBecomePaths) {
+    std::string scene(kSmallScene);
+    for (std::size_t at; (at = scene.find("ball 2")) != std::string::npos;) scene.replace(at, 6, "../../x");
+    const std::string path = folder_.write("names.toml", scene);
+    fs::create_directory(folder_.path() / "in");
+    ProcessOptions options;
+    options.folder = folder_.file("in");
+    ASSERT_EQ(carom({"simulate", path, "-o", "r.json", "--events", "e.csv", "--samples", "s.csv",
+                     "--sample-dt", "0.1"},
+                    options)
+                  .status,
+              0);
+    ASSERT_EQ(carom({"render", "r.json", "-o", "f%d.png", "--at", "0", "--size", "64x36"}, options).status,
+              0);
+    std::vector<std::string> names = folder_.names();
+    std::sort(names.begin(), names.end());
+    EXPECT_EQ(names,
+              (std::vector<std::string>{"e.csv", "f0.png", "names.toml", "r.json", "s.csv", "s.toml"}));
+}
+
+}  // namespace
+}  // namespace carom::test

@@ -1,0 +1,154 @@
+// carom margin: what it prints and writes. Times are measured, and no test asserts one.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class CliMargin : public ::testing::Test {
+  protected:
+    TemporaryFolder folder_;
+    std::string scene_ = folder_.write("s.toml", kSmallScene);
+};
+
+void expect_margin_json(const Json& json, bool rendered) {
+    EXPECT_EQ(json.at("fps"), 20.0);
+    EXPECT_EQ(json.at("budget_ms"), 50.0);
+    const Json& stages = json.at("stages");
+    ASSERT_EQ(stages.size(), 9u);
+    for (const char* stage :
+         {"simulate", "detect", "resolve", "kernel", "cluster", "draw", "readback", "encode", "write"}) {
+        const std::string name = stage;
+        const bool drawn = name == "draw" || name == "readback" || name == "encode" || name == "write";
+        if (drawn && !rendered) {
+            EXPECT_TRUE(stages.at(stage).is_null()) << stage;
+            continue;
+        }
+        const Json& values = stages.at(stage);
+        ASSERT_EQ(values.size(), 4u) << stage;
+        EXPECT_LE(values.at("p50").get<double>(), values.at("p95").get<double>());
+        EXPECT_LE(values.at("p95").get<double>(), values.at("p99").get<double>());
+        EXPECT_LE(values.at("p99").get<double>(), values.at("max").get<double>());
+        if (name != "cluster") {
+            EXPECT_GT(values.at("max").get<double>(), 0.0) << stage;
+        }
+    }
+    EXPECT_EQ(stages["cluster"]["max"].get<double>(), 0.0);  // balls far apart: none meets two at once
+    EXPECT_LE(stages["kernel"]["max"].get<double>(), stages["simulate"]["max"].get<double>());
+    const Json& worst = json.at("worst");
+    ASSERT_EQ(worst.size(), 4u);
+    EXPECT_EQ(worst.at("time").get<double>(), worst.at("frame").get<double>() / 20.0);
+    EXPECT_GT(worst.at("ms").get<double>(), 0.0);
+    for (const Json& event : worst.at("events")) EXPECT_TRUE(event.at("type").is_string());
+    EXPECT_LE(json.at("slack_percent").at("least").get<double>(),
+              json.at("slack_percent").at("median").get<double>());
+    EXPECT_DOUBLE_EQ(json.at("slack_percent").at("least").get<double>(),
+                     100.0 * (1.0 - worst.at("ms").get<double>() / 50.0));
+    EXPECT_GT(json.at("timing").at("clock_ns").get<double>(), 0.0);
+    EXPECT_GT(json.at("serial").at("wall_ms").get<double>(), 0.0);
+}
+
+TEST_F(CliMargin, JsonIsTheDesigns) {
+    const ProcessResult result =
+        carom({"margin", scene_, "--fps", "20", "--json", "--repeat", "2", "--csv", folder_.file("m.csv")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const Json json = Json::parse(result.out);
+    expect_margin_json(json, true);
+    EXPECT_EQ(json.at("runs").at("count"), 2);
+    EXPECT_LE(json.at("runs").at("p99")[0].get<double>(), json.at("runs").at("p99")[1].get<double>());
+    const std::vector<std::string> lines = lines_of(read_file(folder_.file("m.csv")));
+    EXPECT_EQ(lines.at(0),
+              "frame,time,events,simulate_ms,detect_ms,resolve_ms,kernel_ms,cluster_ms,draw_ms,readback_ms,"
+              "encode_ms,write_ms,total_ms,slack_percent,missed");
+    EXPECT_EQ(lines.size(), json.at("frames").get<std::size_t>() + 1);
+}
+
+TEST_F(CliMargin, FramesThatWereWrittenAreRemoved) {
+    ProcessOptions options;
+    options.environment = {{"TMPDIR", folder_.path().string()}};
+    ASSERT_EQ(carom({"margin", scene_, "--fps", "5"}, options).status, 0);
+    EXPECT_EQ(folder_.names(), std::vector<std::string>{"s.toml"});
+}
+
+TEST_F(CliMargin, WithoutRenderingCountsEveryEventOnce) {
+    const ProcessResult result =
+        carom({"margin", scene_, "--fps", "20", "--json", "--no-render", "--csv", folder_.file("m.csv")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    expect_margin_json(Json::parse(result.out), false);
+    const std::vector<std::string> lines = lines_of(read_file(folder_.file("m.csv")));
+    EXPECT_EQ(
+        lines.at(0),
+        "frame,time,events,simulate_ms,detect_ms,resolve_ms,kernel_ms,cluster_ms,total_ms,slack_percent,"
+        "missed");
+    int events = 0;
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+        int here = -1;
+        ASSERT_EQ(std::sscanf(lines[i].c_str(), "%*d,%*f,%d,", &here), 1) << lines[i];
+        events += here;
+    }
+    EXPECT_EQ(events, Json::parse(carom({"simulate", scene_, "--json"}).out).at("events").get<int>());
+}
+
+TEST_F(CliMargin, ForPeople) {
+    const ProcessResult result =
+        carom({"margin", scene_, "--size", "160x90", "--fps", "20", "--repeat", "2"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    for (const char* part :
+         {" missed\n", "\n  simulate ", "\n    kernel ", "\n    cluster ", "\n  draw ", "\n  readback ",
+          "\n  encode ", "\n  write ", "\n  all ", "Slack: ", "Without encoding", "Medians of 2 runs",
+          "The parts add up to ", "Timing itself: ", "worst frame: "}) {
+        EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
+    }
+}
+
+TEST_F(CliMargin, TraceAndPlot) {
+    const ProcessResult result = carom({"margin", scene_, "--fps", "20", "--no-render", "--trace",
+                                        folder_.file("t.json"), "--plot", folder_.file("m.svg")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const Json trace = Json::parse(read_file(folder_.file("t.json"))).at("traceEvents");
+    int frames = 0, events = 0;
+    double end = 0.0;
+    for (const Json& e : trace) {
+        EXPECT_EQ(e.at("ph"), "X");
+        const double ts = e.at("ts").get<double>(), dur = e.at("dur").get<double>();
+        EXPECT_GE(dur, 0.0);
+        events += e.at("cat") == "event" ? 1 : 0;
+        if (e.at("cat") != "frame") continue;
+        EXPECT_GE(ts, end - 1e-6) << "frames overlap";
+        EXPECT_GE(ts, frames * 50000.0 - 1e-6);
+        end = ts + dur;
+        ++frames;
+    }
+    EXPECT_EQ(events, Json::parse(carom({"simulate", scene_, "--json"}).out).at("events").get<int>());
+    EXPECT_GT(frames, 20);
+    const std::string svg = read_file(folder_.file("m.svg"));
+    for (const char* part : {"<svg", "simulate", "ball_ball", "ball_cushion", "1/20 s"})
+        EXPECT_NE(svg.find(part), std::string::npos) << part;
+}
+
+TEST_F(CliMargin, SweepGoesThroughAccuracyAndFrameRate) {
+    ProcessResult result =
+        carom({"margin", scene_, "--sweep", "--no-render", "--json", "--csv", folder_.file("s.csv")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const Json json = Json::parse(result.out);
+    EXPECT_EQ(json.at("rows").size(), 8u * 6u);
+    EXPECT_EQ(json.at("frontier").size(), 8u);
+    for (const Json& row : json.at("rows")) {
+        EXPECT_LE(row.at("missed").get<long>(), row.at("frames").get<long>());
+        EXPECT_EQ(row.at("missed").get<long>() > 0,
+                  row.at("worst_ms").get<double>() > row.at("budget_ms").get<double>());
+    }
+    EXPECT_EQ(lines_of(read_file(folder_.file("s.csv"))).size(), 8u * 6u + 1u);
+    result = carom({"margin", scene_, "--sweep", "--no-render", "--plot", folder_.file("s.svg")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("tolerance 1e-06: "), std::string::npos) << result.out;
+    EXPECT_NE(read_file(folder_.file("s.svg")).find("1/fps"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace carom::test

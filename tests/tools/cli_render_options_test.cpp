@@ -1,0 +1,233 @@
+// carom render: the view, overlays, contact sheets, raw frames, resuming, OpenGL libraries, and what a disk
+// refuses.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+class CliRenderOptions : public ::testing::Test {
+  protected:
+    /// Renders one small picture and returns its bytes.
+    std::string picture(const std::vector<std::string>& options, const std::string& at = "0.5") {
+        const std::string name = folder_.file("p" + std::to_string(++count_) + "_%d.png");
+        std::vector<std::string> arguments = {"render", record_, "-o", name, "--at", at};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const ProcessResult result = carom(arguments);
+        EXPECT_EQ(result.status, 0) << result.err;
+        return read_file(folder_.file("p" + std::to_string(count_) + "_0.png"));
+    }
+
+    /// Expects a refusal that says `part`, and no new file.
+    void expect_refused(int status, const std::string& part, const std::vector<std::string>& options,
+                        ProcessOptions process = {}) {
+        const std::size_t before = folder_.names().size();
+        std::vector<std::string> arguments = {"render", record_, "-o", folder_.file("n%d.png")};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const ProcessResult result = carom(arguments, std::move(process));
+        EXPECT_EQ(result.status, status) << result.err;
+        EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+        EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+        EXPECT_EQ(result.out, "");
+        EXPECT_EQ(folder_.names().size(), before);
+    }
+
+    TemporaryFolder folder_;
+    std::string scene_ = folder_.write("s.toml", kSmallScene);
+    std::string record_ = [this] {
+        const std::string path = folder_.file("r.json");
+        EXPECT_EQ(carom({"simulate", scene_, "-o", path}).status, 0);
+        return path;
+    }();
+    int count_ = 0;
+};
+
+TEST_F(CliRenderOptions, ViewsDiffer) {
+    const std::string top = picture({});
+    EXPECT_TRUE(picture({"--camera", "top"}) == top);
+    const std::string free = picture({"--eye", "0.6,-0.5,0.8", "--target", "0.6,1,0"});
+    EXPECT_TRUE(free != top);
+    EXPECT_TRUE(picture({"--eye", "0.6,-0.5,0.9", "--target", "0.6,1,0"}) != free);
+    EXPECT_TRUE(picture({"--eye", "0.6,-0.5,0.8", "--target", "0.5,1,0"}) != free);
+    const std::string follow = picture({"--camera", "follow", "--ball", "1"});
+    EXPECT_TRUE(picture({"--camera", "follow", "--ball", "cue"}) != follow);
+}
+
+TEST_F(CliRenderOptions, BadViewsAreRefused) {
+    expect_refused(2, "--eye: expected three numbers", {"--eye", "0.6,-0.5", "--target", "0,1,0"});
+    expect_refused(2, "--target: expected three numbers", {"--eye", "0.6,-0.5,1", "--target", "0,1,nan"});
+    expect_refused(2, "--eye needs --target", {"--eye", "0.6,-0.5,1"});
+    expect_refused(2, "--target is where the eye is", {"--eye", "0,1,1", "--target", "0,1,1"});
+    expect_refused(2, "exclude each other", {"--eye", "0,1,1", "--target", "0,1,0", "--camera", "rail"});
+    expect_refused(1, "'9'", {"--camera", "follow", "--ball", "9"});
+}
+
+TEST_F(CliRenderOptions, EveryOverlayShows) {
+    // On its way to the first hit, of which the ghost shows the place.
+    const std::string at = "0.1";
+    std::vector<std::string> seen = {picture({}, at)};
+    for (const char* layer : {"trails", "events", "spin", "ghost", "clock", "margin", "all"}) {
+        const std::string with = picture({"--overlay", layer}, at);
+        for (const std::string& other : seen) EXPECT_TRUE(with != other) << layer;
+        seen.push_back(with);
+    }
+    EXPECT_TRUE(picture({"--trails"}, at) == seen[1]);
+    expect_refused(2, "--overlay: ", {"--overlay", "trails,shadow"});
+}
+
+TEST_F(CliRenderOptions, ASheetIsOnePicture) {
+    const std::string sheet = folder_.file("sheet.png");
+    const ProcessResult result =
+        carom({"render", record_, "--sheet", "3x2", "--size", "300x180", "-o", sheet});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.out, "6 pictures: " + sheet + "\n");
+    const std::string bytes = read_file(sheet);
+    EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\x01\x2C\0\0\0\xB4", 8));  // 300 x 180
+    EXPECT_EQ(folder_.names().size(), 3u);                                     // scene, record, sheet
+    expect_refused(2, "--sheet", {"--sheet", "3"});
+    expect_refused(2, "--sheet", {"--sheet", "0x2"});
+    expect_refused(1, "16 pixels", {"--sheet", "100x2"});
+}
+
+TEST_F(CliRenderOptions, RawFramesAreRgbInOrder) {
+    const ProcessResult result =
+        carom({"render", record_, "--raw", "--fps", "4", "--to", "0.5", "--size", "64x36"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    constexpr std::size_t kFrame = 64 * 36 * 3;
+    ASSERT_EQ(result.out.size(), 3 * kFrame);
+    EXPECT_TRUE(result.out.substr(0, kFrame) != result.out.substr(kFrame, kFrame));
+    EXPECT_NE(result.err.find("ffmpeg -f rawvideo -pix_fmt rgb24 -s 64x36 -framerate 4 -i - "),
+              std::string::npos)
+        << result.err;
+    // The last frame by itself is the last of the three.
+    const ProcessResult last = carom({"render", record_, "--raw", "--at", "0.5", "--size", "64x36"});
+    EXPECT_TRUE(last.out == result.out.substr(2 * kFrame));
+    EXPECT_EQ(folder_.names().size(), 2u);  // no file
+    expect_refused(2, "--raw goes with neither", {"--raw", "--resume"});
+    expect_refused(2, "--raw goes with neither", {"--raw", "--sheet", "2x2"});
+}
+
+TEST_F(CliRenderOptions, AClosedPipeEndsRawFrames) {
+    ProcessOptions options;
+    options.close_output = true;
+    const ProcessResult result = carom({"render", record_, "--raw", "--size", "640x360"}, options);
+    EXPECT_NE(result.status, 0);
+}
+
+TEST_F(CliRenderOptions, AFullDeviceEndsRawFramesWithAMessage) {
+    ProcessOptions options;
+    options.output_to = "/dev/full";
+    const ProcessResult result = carom({"render", record_, "--raw", "--size", "640x360"}, options);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_NE(result.err.find("No space left"), std::string::npos) << result.err;
+}
+
+TEST_F(CliRenderOptions, ResumeLeavesFinishedFramesAlone) {
+    const std::vector<std::string> arguments = {
+        "render", record_, "-o", folder_.file("f%d.png"), "--fps", "4", "--to", "0.75", "--size", "64x36"};
+    ASSERT_EQ(carom(arguments).status, 0);
+    const std::string second = read_file(folder_.file("f1.png"));
+    // A frame is missing, one is torn, and one was marked by hand: it keeps its mark as it looks finished.
+    std::filesystem::remove(folder_.file("f0.png"));
+    folder_.write("f1.png", second.substr(0, 20));
+    const std::string marked = read_file(folder_.file("f2.png")) + "mark";
+    folder_.write("f2.png", marked);
+    std::vector<std::string> again = arguments;
+    again.push_back("--resume");
+    const ProcessResult result = carom(again);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_TRUE(read_file(folder_.file("f1.png")) == second);
+    EXPECT_TRUE(read_file(folder_.file("f2.png")) == marked);
+    EXPECT_TRUE(std::filesystem::exists(folder_.file("f0.png")));
+    EXPECT_EQ(folder_.names().size(), 6u);
+    // All there: nothing to do is no failure. Of another size: all to do.
+    ASSERT_EQ(carom(again).status, 0);
+    EXPECT_TRUE(read_file(folder_.file("f2.png")) == marked);
+    again.insert(again.end(), {"--size", "32x18"});
+    again.erase(again.begin() + 8, again.begin() + 10);
+    ASSERT_EQ(carom(again).status, 0);
+    EXPECT_TRUE(read_file(folder_.file("f2.png")) != marked);
+}
+
+TEST_F(CliRenderOptions, BothBackEndsGiveTheSameFile) {
+    ProcessResult egl =
+        carom({"render", record_, "-o", folder_.file("e%d.png"), "--at", "0.5", "--gl", "egl"});
+    if (egl.status == 1 && egl.err.find("libegl1") != std::string::npos) GTEST_SKIP() << egl.err;
+    ASSERT_EQ(egl.status, 0) << egl.err;
+    EXPECT_TRUE(read_file(folder_.file("e0.png")) == picture({"--gl", "osmesa"}));
+    const ProcessResult unknown = carom({"render", record_, "--gl", "vulkan"});
+    EXPECT_EQ(unknown.status, 2);
+    EXPECT_NE(unknown.err.find("osmesa"), std::string::npos) << unknown.err;
+}
+
+TEST_F(CliRenderOptions, AMissingLibraryNamesItsPackage) {
+    // Files of these names that are no libraries, in front of the real ones.
+    TemporaryFolder fake;
+    for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so", "libEGL.so.1", "libEGL.so"})
+        fake.write(name, "no library");
+    ProcessOptions options;
+    options.environment = {{"LD_LIBRARY_PATH", fake.path().string()}};
+    expect_refused(1, "libosmesa6", {"--gl", "osmesa"}, options);
+    expect_refused(1, "libegl1", {"--gl", "egl"}, options);
+}
+
+TEST_F(CliRenderOptions, PlacesThatCannotBeWrittenAreNamed) {
+    const auto refused = [](const ProcessResult& result, const std::string& name) {
+        EXPECT_EQ(result.status, 1);
+        EXPECT_NE(result.err.find(name), std::string::npos) << result.err;
+        EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+    };
+    // No one may make a folder in /proc, root neither.
+    refused(carom({"render", record_, "--at", "0", "-o", "/proc/frames/%d.png"}), "/proc/frames");
+    refused(carom({"render", record_, "--sheet", "2x2", "-o", "/proc/sheet.png"}), "/proc/sheet.png");
+    refused(carom({"render", record_, "--at", "0", "-o", record_ + "/%d.png"}), record_);
+    if (::geteuid() == 0) return;
+    const std::string locked = folder_.file("locked");
+    ASSERT_EQ(::mkdir(locked.c_str(), 0555), 0);
+    refused(carom({"render", record_, "--at", "0", "-o", locked + "/%d.png"}), locked);
+}
+
+TEST_F(CliRenderOptions, AFileThatCannotGrowLeavesNothing) {
+    // The limit stands for a disk that fills up in the middle of a frame: 8 blocks of 512 bytes.
+    const ProcessResult result =
+        run_process({"sh", "-c", "ulimit -f 8; exec \"$0\" \"$@\"", CAROM_PROGRAM, "render", record_, "-o",
+                     folder_.file("big%d.png"), "--size", "640x360", "--to", "0.1"});
+    EXPECT_EQ(result.status, 1) << result.err;
+    EXPECT_NE(result.err.find("big"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("File too large"), std::string::npos) << result.err;
+    EXPECT_EQ(folder_.names().size(), 2u);
+}
+
+TEST_F(CliRenderOptions, BenchRenderGivesItsRows) {
+    const ProcessResult result = carom({"bench", "render", record_, "--frames", "2"});
+    EXPECT_EQ(result.status, 2) << result.err;  // a scene is asked for
+    EXPECT_EQ(carom({"bench", "render", scene_, "--frames", "2"}).status, 2);
+    const ProcessResult rows = carom({"bench", "render", scene_, "--frames", "3", "--json"});
+    ASSERT_EQ(rows.status, 0) << rows.err;
+    const auto json = nlohmann::json::parse(rows.out);
+    ASSERT_EQ(json.at("rows").size(), 2u);
+    EXPECT_EQ(json.at("rows")[0].at("name"), "720p");
+    EXPECT_EQ(json.at("rows")[1].at("name"), "1080p");
+    for (const auto& row : json.at("rows")) {
+        for (const char* figure :
+             {"draw_ms", "readback_ms", "draw_readback_p95_ms", "encode_ms", "write_ms", "setup_ms", "fps"})
+            EXPECT_GT(row.at(figure).get<double>(), 0.0) << figure;
+    }
+}
+
+TEST_F(CliRenderOptions, ABrokenRecordIsRefused) {
+    const std::string text = read_file(record_);
+    const std::string torn = folder_.write("torn.json", text.substr(0, text.size() / 2));
+    const ProcessResult result = carom({"render", torn, "-o", folder_.file("n%d.png")});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.err.find("torn.json"), std::string::npos) << result.err;
+    EXPECT_EQ(folder_.names().size(), 3u);
+}
+
+}  // namespace
+}  // namespace carom::test

@@ -1,0 +1,189 @@
+// Every command that README.md, CONTRIBUTING.md and docs/ print works as printed, and prints what they say.
+//
+// A ```sh block is run as it stands, in a folder that looks like a clone after its build; the blocks of one
+// page run in their order in one folder. Lines of a ```text block right behind it have to appear in the
+// output, in this order; "..." stands for any lines. Two comments in front of a block change that:
+//   <!-- not run by the tests: WHY -->
+//   <!-- run by the tests where this succeeds: COMMAND -->
+#include <gtest/gtest.h>
+
+#include <map>
+#include <regex>
+
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Block {
+    std::size_t line = 0;  ///< of its fence, from 1
+    std::string language, text, comment;
+};
+
+bool starts_with(const std::string& text, const std::string& start) {
+    return text.compare(0, start.size(), start) == 0;
+}
+
+std::vector<Block> blocks_of(const std::string& page) {
+    std::vector<Block> blocks;
+    bool inside = false;
+    std::string comment;
+    const std::vector<std::string> lines = lines_of(page);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const std::string& line = lines[i];
+        if (starts_with(line, "```")) {
+            if (!inside) blocks.push_back({i + 1, line.substr(3), "", comment});
+            inside = !inside;
+            comment.clear();
+        } else if (inside) {
+            blocks.back().text += line + '\n';
+        } else if (starts_with(line, "<!-- ")) {
+            comment = line;
+        } else if (!line.empty()) {
+            comment.clear();
+        }
+    }
+    EXPECT_FALSE(inside) << "a fence is not closed";
+    return blocks;
+}
+
+/// What stands in a comment behind `start`, or "".
+std::string comment_value(const std::string& comment, const std::string& start) {
+    const std::string whole = "<!-- " + start + ": ";
+    const std::size_t end = comment.rfind(" -->");
+    if (!starts_with(comment, whole) || end == comment.npos || end <= whole.size()) return "";
+    return comment.substr(whole.size(), end - whole.size());
+}
+
+/// The first line of `expected` that does not appear in its place in `output`, or "".
+std::string missing_line(const std::string& expected, const std::string& output) {
+    const std::vector<std::string> got = lines_of(output);
+    std::size_t at = 0;
+    for (const std::string& line : lines_of(expected)) {
+        if (line == "...") continue;
+        while (at < got.size() && got[at] != line) ++at;
+        if (at == got.size()) return line.empty() ? "(an empty line)" : line;
+        ++at;
+    }
+    return "";
+}
+
+/// A folder like a clone after its build, so that nothing is written into the real one.
+class Clone {
+  public:
+    Clone() {
+        for (const auto& entry : fs::directory_iterator(CAROM_SOURCE_DIR)) {
+            const std::string name = entry.path().filename().string();
+            if (name == "build" || name == "out" || name == ".git") continue;
+            fs::create_symlink(entry.path(), folder_.path() / name);
+        }
+        fs::create_directory(folder_.path() / "build");
+        fs::create_directory(folder_.path() / "home");
+        fs::create_directory_symlink(CAROM_BUILD_DIR, folder_.path() / "build/release");
+    }
+
+    ProcessResult run(const std::string& script) const {
+        ProcessOptions options;
+        options.folder = folder_.path().string();
+        options.environment = {{"CAROM_ISA", ""}, {"HOME", folder_.file("home")}};
+        // The system's own tools first: another Python may stand in front that has no packages.
+        options.environment.emplace_back("PATH", std::string("/usr/bin:/bin:") + std::getenv("PATH"));
+        return run_process({"/bin/bash", "-euo", "pipefail", "-c", script}, options);
+    }
+
+  private:
+    TemporaryFolder folder_;
+};
+
+std::vector<std::string> pages() {
+    std::vector<std::string> names = {"README.md", "CONTRIBUTING.md"};
+    for (const auto& entry : fs::directory_iterator(CAROM_SOURCE_DIR "/docs"))
+        if (entry.path().extension() == ".md") names.push_back("docs/" + entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::string read_page(const std::string& name) {
+    return read_file(std::string(CAROM_SOURCE_DIR "/") + name);
+}
+
+class Docs : public testing::TestWithParam<std::string> {};
+
+TEST_P(Docs, CommandsWorkAsPrinted) {
+#ifdef CAROM_SANITIZED
+    GTEST_SKIP() << "the tests of the program run under sanitizers; what pages print runs in the plain build";
+#endif
+    const std::vector<Block> blocks = blocks_of(read_page(GetParam()));
+    const Clone clone;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const Block& block = blocks[i];
+        if (block.language != "sh") continue;
+        if (!comment_value(block.comment, "not run by the tests").empty()) continue;
+        const std::string condition = comment_value(block.comment, "run by the tests where this succeeds");
+        EXPECT_TRUE(block.comment.empty() || !condition.empty()) << "unknown comment " << block.comment;
+        if (!condition.empty() && clone.run(condition).status != 0) continue;
+        const ProcessResult result = clone.run(block.text);
+        ASSERT_EQ(result.status, 0) << GetParam() << ":" << block.line << "\n" << block.text << result.err;
+        EXPECT_NE(result.out, "") << GetParam() << ":" << block.line << ": says nothing";
+        if (i + 1 < blocks.size() && blocks[i + 1].language == "text") {
+            const std::string missing = missing_line(blocks[i + 1].text, result.out);
+            EXPECT_EQ(missing, "") << GetParam() << ":" << blocks[i + 1].line << ": not in the output:\n"
+                                   << result.out;
+        }
+    }
+}
+
+// A command with a file belongs into a block, where it is run; a mention may only name options that there
+// are.
+TEST_P(Docs, MentionsOfTheProgramAreRight) {
+    static std::map<std::string, std::string> helps;
+    const std::regex span("`(?:build/release/)?carom ([a-z]+)([^`]*)`"), option("--[a-z][a-z-]*");
+    const std::string page = read_page(GetParam());
+    for (std::sregex_iterator it(page.begin(), page.end(), span), end; it != end; ++it) {
+        const std::string whole = it->str(0), command = it->str(1), rest = it->str(2);
+        EXPECT_EQ(rest.find(".toml"), rest.npos) << whole << " is not run: make it a ```sh block";
+        if (helps.count(command) == 0) helps[command] = carom({command, "--help"}).out;
+        std::string help = helps[command];
+        EXPECT_NE(help, "") << whole << ": there is no such command";
+        if (command == "bench") help += carom({"bench", "kernel", "--help"}).out;
+        for (std::sregex_iterator o(rest.begin(), rest.end(), option), none; o != none; ++o)
+            EXPECT_NE(help.find(o->str()), help.npos) << whole << ": there is no option " << o->str();
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Pages, Docs, testing::ValuesIn(pages()), [](const auto& page) {
+    std::string name = page.param;
+    for (char& c : name)
+        if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+    return name;
+});
+
+TEST(DocsReader, FindsBlocksCommentsAndMissingLines) {
+    const auto blocks =
+        blocks_of("<!-- not run by the tests: slow -->\n\n```sh\na\nb\n```\n```text\nx\n```\n");
+    ASSERT_EQ(blocks.size(), 2u);
+    EXPECT_EQ(blocks[0].text, "a\nb\n");
+    EXPECT_EQ(comment_value(blocks[0].comment, "not run by the tests"), "slow");
+    EXPECT_EQ(blocks[1].comment, "");
+    EXPECT_EQ(comment_value("<!-- not run by the tests:  -->", "not run by the tests"), "");
+    EXPECT_EQ(missing_line("a\n...\nc\n", "a\nb\nc\n"), "");
+    EXPECT_EQ(missing_line("c\na\n", "a\nb\nc\n"), "a");
+}
+
+TEST(Readme, PrintsCommandsAndNamesEveryFolder) {
+    std::size_t commands = 0;
+    for (const Block& block : blocks_of(read_page("README.md"))) commands += block.language == "sh" ? 1 : 0;
+    EXPECT_GE(commands, 2u);
+    const std::string readme = read_page("README.md");
+    for (const auto& entry : fs::directory_iterator(CAROM_SOURCE_DIR)) {
+        const std::string folder = entry.path().filename().string();
+        if (!entry.is_directory() || folder[0] == '.' || folder == "build" || folder == "out") continue;
+        if (folder == "frames") continue;  // what a reader who tries README.md leaves behind
+        EXPECT_NE(readme.find("| `" + folder + "/` |"), std::string::npos) << folder;
+    }
+}
+
+}  // namespace
+}  // namespace carom::test

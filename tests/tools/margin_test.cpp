@@ -1,0 +1,73 @@
+// The bookkeeping of carom margin, on costs that are given.
+#include "margin.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace carom::tools {
+namespace {
+
+/// A run with these simulate and draw costs; the other stages of rendering take 1 ms each.
+MarginRun run_of(const std::vector<double>& simulate, const std::vector<double>& draw) {
+    MarginRun run;
+    run.frames.resize(simulate.size());
+    run.stage[kSimulate] = simulate;
+    run.stage[kDetect] = simulate;
+    for (const std::size_t s : {kResolve, kKernel, kCluster}) run.stage[s].assign(simulate.size(), 0.0);
+    run.stage[kDraw] = draw;
+    for (const std::size_t s : {kReadback, kEncode, kWrite}) run.stage[s].assign(draw.size(), 1.0);
+    return run;
+}
+
+TEST(Margin, AFrameIsTheSumOfItsStagesAndEveryFrameTheMedianOfItsRuns) {
+    const std::vector<MarginRun> runs = {run_of({1, 0, 0}, {5, 6, 7}), run_of({3, 0, 0}, {5, 9, 7}),
+                                         run_of({2, 0, 1}, {5, 7, 80})};
+    const Margin margin = combine(runs, 100.0, true);
+    EXPECT_EQ(margin.budget_ms, 10.0);
+    EXPECT_EQ(margin.total, (std::vector<double>{2 + 5 + 3, 7 + 3, 7 + 3}));
+    EXPECT_EQ(margin.missed, 0);  // exactly in time is in time
+    EXPECT_EQ(margin.missed_runs.low, 0.0);
+    EXPECT_EQ(margin.missed_runs.high, 2.0);  // frames 0 and 1 of the second; the third has one
+    EXPECT_EQ(margin.slack(0), 0.0);
+    EXPECT_DOUBLE_EQ(margin.frame_spread, 0.3);  // (12 - 9) / 10 is the middle one
+}
+
+TEST(Margin, MissedFramesAndTheWorst) {
+    const Margin margin = combine({run_of({0, 4, 0}, {5, 5, 30})}, 100.0, true);
+    EXPECT_EQ(margin.missed, 2);
+    EXPECT_EQ(margin.missed_shown, 1);  // 4 + 5 + 1 = 10 is in time without the file
+    EXPECT_EQ(margin.worst, 2u);
+    EXPECT_DOUBLE_EQ(margin.slack(2), -230.0);
+}
+
+TEST(Margin, WithoutRenderingAFrameIsItsSimulation) {
+    const Margin margin = combine({run_of({0, 4, 1}, {})}, 500.0, false);
+    EXPECT_EQ(margin.total, (std::vector<double>{0, 4, 1}));
+    EXPECT_EQ(margin.missed, 1);
+    EXPECT_FALSE(margin.has(kDraw));
+    EXPECT_TRUE(margin.has(kCluster));
+}
+
+TEST(Accounting, LeavesOutTheFirstFrameWhoseStartNobodySees) {
+    MarginRun run = run_of({1, 2, 3}, {100, 10, 20});
+    run.simulate_wall_ms = 6.5;
+    run.frame_walls = {13.5, 23.0};
+    const Accounting sum = account(run);
+    EXPECT_DOUBLE_EQ(sum.parts_ms, 6 + 10 + 20 + 2 * 3);
+    EXPECT_DOUBLE_EQ(sum.wall_ms, 6.5 + 13.5 + 23.0);
+    EXPECT_DOUBLE_EQ(sum.share(), 42.0 / 43.0);
+}
+
+TEST(MarginTrace, ALateFramePushesTheNextOne) {
+    const auto trace =
+        nlohmann::json::parse(margin_trace(run_of({0, 0, 0}, {20, 1, 1}), 100.0)).at("traceEvents");
+    std::vector<double> starts;
+    for (const auto& event : trace)
+        if (event.at("cat") == "frame") starts.push_back(event.at("ts").get<double>());
+    // 23 ms for the first: the second begins then, and the third too late as well.
+    EXPECT_EQ(starts, (std::vector<double>{0.0, 23000.0, 27000.0}));
+}
+
+}  // namespace
+}  // namespace carom::tools

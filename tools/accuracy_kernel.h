@@ -1,0 +1,64 @@
+// carom accuracy kernel: what the accuracy of one ball-ball impact costs in time.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace carom::tools {
+
+struct AccuracyKernelArgs {
+    int count = 1000;  ///< seeded random impacts
+    std::uint64_t seed = 1;
+    int repeat = 9;               ///< interleaved rounds
+    long most_substeps = 100000;  ///< largest N of the march
+    bool json = false;
+    std::string csv, plot;  ///< file names; empty: not asked for
+};
+
+/// One method at one setting. Times are per impact [ns], processor time of the thread; errors are the largest
+/// component of v and R w, as a share of the approach speed, from the converged solution.
+struct KernelAccuracyRow {
+    std::string method;        ///< "march", "march summed", "tolerance", ...
+    std::string kind;          ///< single, batch
+    std::string setting;       ///< "N=1000", "1e-06", "" for a formula
+    double value = 0.0;        ///< N or tolerance
+    bool other_model = false;  ///< a formula for simpler physics: its error is the model's, not numerical
+    double ns_min = 0.0, ns_median = 0.0, ns_max = 0.0;
+    double error_median = 0.0, error_p99 = 0.0, error_max = 0.0;
+};
+
+/// What a method takes to reach an error: the cheapest of its settings that does, for half of all impacts and
+/// for all of them; infinite where none does.
+struct KernelReach {
+    std::string method, kind;
+    double error = 0.0, ns_median = 0.0, ns_all = 0.0;
+};
+
+struct KernelAccuracy {
+    std::string isa;
+    int count = 0;                 ///< impacts on which the two converged methods agree: these are judged
+    int disagreeing = 0;           ///< the others: nothing is called an error on them
+    double worst_agreement = 0.0;  ///< largest difference of the two, share of the approach speed
+    double slope = 0.0;            ///< of log median error over log N, plain march, N >= 100
+    std::vector<KernelAccuracyRow> rows;
+    std::vector<KernelReach> reach;
+};
+
+KernelAccuracy measure_kernel_accuracy(const AccuracyKernelArgs& args);
+
+/// For every method the time to reach 1e-3, 1e-6, 1e-9 and 1e-12.
+std::vector<KernelReach> reach_of(const std::vector<KernelAccuracyRow>& rows);
+
+/// Slope of the straight line through (log x, log y) by least squares; NaN for fewer than two points.
+double log_slope(const std::vector<double>& x, const std::vector<double>& y);
+
+std::string kernel_accuracy_text(const KernelAccuracy& result);
+std::string kernel_accuracy_json(const KernelAccuracy& result);
+std::string kernel_accuracy_csv(const KernelAccuracy& result);
+void plot_kernel_accuracy(const KernelAccuracy& result, const std::string& path);
+
+/// Measures, writes what was asked for and prints. Returns the exit status.
+int run_accuracy_kernel(const AccuracyKernelArgs& args);
+
+}  // namespace carom::tools

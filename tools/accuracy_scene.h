@@ -1,0 +1,93 @@
+// carom accuracy SCENE: what each accuracy setting of a shot costs, and which one the shot deserves.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/record.h"
+
+namespace carom::tools {
+
+struct AccuracySceneArgs {
+    std::string scene;
+    double target = 1e-3;                                 ///< final error allowed [m]
+    std::vector<int> march = {100, 1000, 10000, 100000};  ///< N
+    std::vector<double> tolerances = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
+    int repeat = 5;  ///< interleaved rounds
+    bool box2d = false;
+    bool json = false;
+    std::string csv, plot;  ///< file names; empty: not asked for
+};
+
+/// What happened, as far as a player would tell: every contact in order, the first ball hit, what fell where.
+struct Outcome {
+    std::vector<std::string> contacts;
+    std::string first_contact;  ///< the ball that the first moving ball hits first, or ""
+    std::vector<int> pockets;   ///< per ball, -1: on the table
+};
+Outcome outcome_of(const Record& record);
+
+/// Distances between the final positions of the same ball in two runs [m].
+struct FinalError {
+    double largest = 0.0, median = 0.0;
+};
+FinalError final_error(const std::vector<Vec2>& a, const std::vector<Vec2>& b);
+std::vector<Vec2> final_positions(const Record& record);
+
+/// One setting of one shot. Times are of the whole simulation [ns], processor time of the thread.
+struct SceneAccuracyRow {
+    std::string method;   ///< march, tolerance, box2d
+    std::string setting;  ///< "N=1000", "1e-06", "60 Hz"
+    double value = 0.0;
+    double ns_min = 0.0, ns_median = 0.0, ns_max = 0.0;
+    double kernel_share = 0.0, cluster_share = 0.0;  ///< of a profiled run; 0 for box2d
+    FinalError error;                                ///< from the converged run
+    bool order_same = false, first_same = false, pocketed_same = false;
+    std::string failed;  ///< why the run could not be finished, or ""
+};
+
+struct SceneAccuracy {
+    double target = 0.0;
+    double gain = 0.0;       ///< final displacement over initial displacement, from a twin moved by 1e-12 m
+    double agreement = 0.0;  ///< largest final distance between the two converged runs [m]
+    bool outcome_agrees = false;  ///< of the two converged runs
+    bool converged = false;       ///< both agree, and far closer than the target: errors may be called errors
+    std::optional<double> recommended;  ///< by gain alone; nothing where double precision does not allow it
+    std::optional<double> loosest;      ///< measured here: met the target, as did every tighter one
+    std::size_t contacts = 0, ball_hits = 0;  ///< of the converged run; hits: of two balls or a cluster
+    std::string sentence;
+    std::vector<SceneAccuracyRow> rows;
+};
+
+/// The gain, from twins of the plan whose first moving ball starts kTwinStep to the side and ahead; the
+/// larger of the two.
+inline constexpr double kTwinStep = 1e-12;
+double gain_of(const Plan& plan, const Record& record);
+
+/// The loosest power of ten that keeps gain x tolerance x kFlight within the target; nothing where that is
+/// below the tightest tolerance, which is where double precision ends.
+std::optional<double> deserved_tolerance(double gain, double target);
+/// [m] An impact that errs by the share t of the speed errs by t times the way to the next one: up to about
+/// this.
+inline constexpr double kFlight = 1.0;
+
+/// A plan of the same scene with another setting; exactly one of the two.
+Plan with_tolerance(const Scene& scene, double tolerance);
+Plan with_substeps(const Scene& scene, int substeps);
+/// With every ball-ball impact solved by power series in extended precision, which shares no code with the
+/// kernels: the second converged method.
+Plan with_power_series(const Scene& scene);
+
+SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs& args);
+
+std::string scene_accuracy_text(const SceneAccuracy& result, const std::string& scene);
+std::string scene_accuracy_json(const SceneAccuracy& result);
+std::string scene_accuracy_csv(const SceneAccuracy& result);
+void plot_scene_accuracy(const SceneAccuracy& result, const std::string& scene, const std::string& path);
+
+/// Measures, writes what was asked for and prints. Returns the exit status.
+int run_accuracy_scene(const AccuracySceneArgs& args);
+
+}  // namespace carom::tools

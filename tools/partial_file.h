@@ -1,0 +1,44 @@
+// A text file that grows line by line and survives being killed.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace carom::tools {
+
+/// Lines are appended to `path`.<id>.part, and commit() renames it to `path`. Whoever opens the same path and
+/// id again goes on behind its complete lines; another id is another file. A lock keeps two programs apart.
+///
+/// What is not a regular file (/dev/null, a pipe) is written to directly and cannot be taken up.
+/// Every failure is a std::runtime_error that names the file and the reason.
+class PartialFile {
+  public:
+    PartialFile(const std::string& path, std::uint64_t id);
+    ~PartialFile();  ///< leaves the part where it is
+    PartialFile(const PartialFile&) = delete;
+    PartialFile& operator=(const PartialFile&) = delete;
+
+    long lines() const { return lines_; }                   ///< complete ones that were found
+    const std::string& last_line() const { return last_; }  ///< of those, without its end
+    const std::string& name() const { return name_; }       ///< of the file that grows
+    bool can_be_taken_up() const { return name_ != target_; }
+
+    void append(std::string_view text);  ///< whole lines
+    void flush();                        ///< what was appended survives a kill from here on
+    void commit();
+
+  private:
+    [[noreturn]] void fail(const std::string& what) const;
+    void take_up();
+
+    std::string path_;    // as asked for, for messages
+    std::string target_;  // symbolic links followed
+    std::string name_;
+    std::FILE* file_ = nullptr;
+    long lines_ = 0;
+    std::string last_;
+};
+
+}  // namespace carom::tools

@@ -1,0 +1,56 @@
+// Plots as SVG files, drawn by the program itself: nothing else needs to be installed.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace carom::tools {
+
+struct Axis {
+    std::string title;
+    bool logarithmic = false;
+    std::optional<double> low, high;  ///< default: what the points need
+};
+
+/// Points, joined by a line or not. On a logarithmic axis what is not above 0 is left out; nowhere is
+/// anything drawn that is not finite.
+struct Series {
+    std::string name;  ///< in the legend; empty: not there
+    std::vector<std::pair<double, double>> points;
+    bool line = true, dots = true, dashed = false;
+    int colour = -1;  ///< number in the palette; -1: the next one
+};
+
+/// A short stroke on the x axis for each value: events of one kind.
+struct Ticks {
+    std::string name;
+    std::vector<double> at;
+};
+
+/// A dashed line across the plot.
+struct Level {
+    std::string name;
+    double y = 0.0;
+};
+
+struct Plot {
+    std::string title;
+    std::vector<std::string> notes;  ///< under the title, one line each
+    Axis x, y;
+    std::vector<Series> series;
+    std::vector<Ticks> ticks;
+    std::vector<Level> levels;
+};
+
+/// The whole file. Text is escaped; equal plots give equal bytes.
+std::string plot_svg(const Plot& plot);
+
+/// Written under a temporary name and renamed. @throws std::runtime_error naming the file
+void write_plot(const Plot& plot, const std::string& path);
+
+/// Whether `--plot path` can be kept, asked before any work. Empty is fine. @throws UsageError
+void check_plot_path(const std::string& path);
+
+}  // namespace carom::tools
