@@ -92,14 +92,18 @@ void Shot::collect_cluster_at(int a, int b, double v_n) {
                 cluster_contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap});
         }
     }
-    std::stable_sort(cluster_contacts_.begin(), cluster_contacts_.end(),
-                     [this](const ClusterContact& p, const ClusterContact& q) {
-                         const auto place = [this](const ClusterContact& c) {
-                             return Vec2(planar(cluster_balls_[static_cast<std::size_t>(c.i)].r) +
-                                         planar(cluster_balls_[static_cast<std::size_t>(c.j)].r));
-                         };
-                         return before_place(place(p), place(q));
-                     });
+    // By place; insertion keeps the order of equals and needs no memory.
+    const auto place = [this](const ClusterContact& c) {
+        return Vec2(planar(cluster_balls_[static_cast<std::size_t>(c.i)].r) +
+                    planar(cluster_balls_[static_cast<std::size_t>(c.j)].r));
+    };
+    for (auto here = cluster_contacts_.begin(); here != cluster_contacts_.end(); ++here) {
+        const auto to = std::upper_bound(cluster_contacts_.begin(), here, *here,
+                                         [&place](const ClusterContact& p, const ClusterContact& q) {
+                                             return before_place(place(p), place(q));
+                                         });
+        std::rotate(to, here, here + 1);
+    }
 }
 
 // True if the impact was a cluster's; false leaves it to the pair kernel.
@@ -133,14 +137,13 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
         cost_.steps = steps;
         cost_.method = name(plan_.clusters);
     }
-    std::vector<int> members;
-    for (const ClusterBall& ball : cluster_balls_) members.push_back(ball.ball);
-    for (const int ball : members) free_ball(ball);
+    for (const ClusterBall& ball : cluster_balls_) free_ball(ball.ball);
     for (const ClusterBall& ball : cluster_balls_)
         begin(ball.ball, start_segment(now_, ball.r, ball.v, ball.w, motion_));
-    record_event(EventType::kBallCluster, c.a, c.b);
-    record_.events.back().detail = static_cast<int>(record_.clusters.size());
-    record_.clusters.push_back(std::move(members));
+    record_event(EventType::kBallCluster, c.a, c.b,
+                 static_cast<int>(record_.clusters.size() + log_cluster_.size()));
+    for (const ClusterBall& ball : cluster_balls_) log_member_.push_back(ball.ball);
+    log_cluster_.push_back(log_member_.size());
     return true;
 }
 

@@ -41,7 +41,7 @@ void Shot::find_parts(int ball) {
 }
 
 void Shot::detect_features(int ball) {
-    Candidate& first = feature_[static_cast<std::size_t>(ball)];
+    Candidate& first = mover_[static_cast<std::size_t>(ball)].feature;
     first = {};
     const Segment& s = now_of(ball);
     const int lines = static_cast<int>(plan_.cushions.size()),

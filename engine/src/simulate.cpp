@@ -48,13 +48,14 @@ void Shot::reserve_log() {
     const std::size_t segments = static_cast<std::size_t>(balls_) + kRoom;
     log_.reserve(segments);
     log_ball_.reserve(segments);
+    log_member_.reserve(kRoom);
+    log_cluster_.reserve(kRoom);
     record_.events.reserve(record_.events.size() + kRoom);
 }
 
 // All other memory of the loop is taken here.
 void Shot::first_candidates() {
     const auto count = static_cast<std::size_t>(balls_);
-    for (std::vector<Candidate>* list : {&own_, &feature_, &pair_, &first_}) list->resize(count);
     key_.assign(count, kNever);
     mover_.resize(count);
     changed_.reserve(count);
@@ -86,6 +87,12 @@ void Shot::finish() {
     for (std::size_t i = 0; i < count.size(); ++i) record_.tracks[i].segments.reserve(count[i]);
     for (std::size_t k = 0; k < log_.size(); ++k)
         record_.tracks[static_cast<std::size_t>(log_ball_[k])].segments.push_back(log_[k]);
+    std::size_t begin = 0;
+    for (const std::size_t end : log_cluster_) {
+        record_.clusters.emplace_back(log_member_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                      log_member_.begin() + static_cast<std::ptrdiff_t>(end));
+        begin = end;
+    }
     record_.duration = now_;
 }
 
