@@ -41,8 +41,8 @@ class Renewal:
         load, cores = os.getloadavg()[0], os.cpu_count()
         text = f"{cpu}, {cores} cores, {compiler}; load when this began: {load:.1f}."
         if load > 0.75 * cores:
-            text += (" **Other work ran beside it.** Processor times are then some tens of percent too long, and wall times (every "
-                     f"figure of a frame) about {max(load / cores, 1.5):.0f} times: read them as ratios, or measure again.")
+            text += (" **Other work ran beside it.** Wall times (every figure of a frame) are then far too long, processor times "
+                     "somewhat: read them as ratios, or measure again.")
         return text
 
     def kernel(self):
