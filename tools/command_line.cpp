@@ -343,7 +343,8 @@ void add_accuracy(CLI::App& app, Action& action) {
 
 void add_describe(CLI::App& app, Action& action) {
     auto format = std::make_shared<std::string>();
-    CLI::App* sub = app.add_subcommand("describe", "This program as a man page, or as completions for a shell");
+    CLI::App* sub =
+        app.add_subcommand("describe", "This program as a man page, or as completions for a shell");
     sub->add_option("FORMAT", *format, "What to print")
         ->type_name("NAME")
         ->check(CLI::IsMember({"man", "bash", "zsh"}))
@@ -397,7 +398,8 @@ int run(int argc, char** argv) {
     }
     if (!action)
         throw UsageError(
-            "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or describe; see carom "
+            "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or "
+            "describe; see carom "
             "--help");
     return action();
 }

@@ -111,6 +111,12 @@ void ClusterMap::keep_energy(double before) {
 
 long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                            const ClusterSettings& settings, double V) {
+    // A slow pair can be the first to touch where faster ones are about to: these set the scale, or their
+    // forces would need a million steps.
+    for (const ClusterContact& c : contacts) {
+        const Vec3 closing = balls[static_cast<std::size_t>(c.i)].v - balls[static_cast<std::size_t>(c.j)].v;
+        V = std::max(V, closing.x() * c.n.x() + closing.y() * c.n.y());
+    }
     load(balls, contacts, settings.R, V);
     const double before = energy();
     const kernel::ContactPhase phase{static_cast<int>(balls.size()),

@@ -44,8 +44,8 @@ double fifth_root(double x);
 class ClusterMap {
   public:
     /// Compliant: integrates the contact phase in its own time, scaled by the approach speed V [m/s] of the
-    /// triggering pair. Gives back velocities and spins. Returns the number of steps, or -1 if the contacts
-    /// did not part within kClusterTimeLimit.
+    /// triggering pair or of the fastest one. Gives back velocities and spins. Returns the number of steps,
+    /// or -1 if the contacts did not part within kClusterTimeLimit.
     long compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                    const ClusterSettings& settings, double V);
 

@@ -84,6 +84,7 @@ bool Complementarity::solve() {
         if (!factor()) break;
         solve_basic(false);
         solve_basic(true);
+        solve_basic(true);
         double largest = 0.0;
         for (const double x : z) largest = std::max(largest, std::abs(x));
         wrong.clear();

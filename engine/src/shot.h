@@ -136,6 +136,7 @@ class Shot {
     double rounding_of_held(const HeldContact& contact) const;
     void free_ball(int ball);
     void solve_group(int ball, bool transitions);
+    void record_transitions(const HeldGroup& group);
     bool release_past_ends(HeldGroup& group);
     void refresh_normal(HeldContact& contact) const;
     void sort_by_place(std::vector<HeldContact>& contacts) const;

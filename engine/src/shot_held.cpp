@@ -122,16 +122,9 @@ void Shot::solve_group(int ball, bool transitions) {
     }
     std::erase_if(held_, [&](const HeldContact& c) { return is_member(c.i); });
     sort_by_place(group.contacts);
-    if (transitions) {
-        for (const HeldBall& member : group.balls) {
-            const Segment& s = now_of(member.ball);
-            if (!(s.held && s.ends && s.start + s.duration <= now_)) continue;
-            const Segment after = start_segment(now_, member.r, member.v, member.w, motion_);
-            record_event(transition_type(s, after), member.ball, -1);
-        }
-    }
     bool any_released = release_past_ends(group);
     solve_held(group, plan_, motion_, now_);
+    if (transitions) record_transitions(group);
     for (const HeldContact& c : group.contacts) {
         if (c.released) {
             record_event(c.release_type(), c.i, c.partner, c.nose);
@@ -149,6 +142,18 @@ void Shot::solve_group(int ball, bool transitions) {
             });
             if (!still) begin(member.ball, start_segment(now_, member.r, member.v, member.w, motion_));
         }
+    }
+}
+
+// What ended, if it did: a ball that the group drives on at once has not stopped, and slips on without an event.
+void Shot::record_transitions(const HeldGroup& group) {
+    for (const HeldBall& member : group.balls) {
+        const Segment& s = now_of(member.ball);
+        if (!(s.held && s.ends && s.start + s.duration <= now_)) continue;
+        const bool goes_on = member.segment.state == s.state ||
+                             (s.state == MotionState::kRolling && translates(member.segment.state));
+        if (goes_on) continue;
+        record_event(transition_type(s, member.segment), member.ball, -1);
     }
 }
 

@@ -110,6 +110,7 @@ template <bool kProfile>
     double stop = plan_.scene.stop.time.value_or(kNever);
     if (options_.until) stop = std::min(stop, *options_.until);
     const std::int64_t most = plan_.scene.stop.events.value_or(-1);
+    [[maybe_unused]] EventCost quiet;  // of rounds that brought no event
     for (;;) {
         if (most >= 0 && static_cast<std::int64_t>(record_.events.size()) >= most) {
             record_.stopped = StopReason::kEvents;
@@ -133,13 +134,18 @@ template <bool kProfile>
         const auto detected = kProfile ? Clock::now() : Clock::time_point{};
         requeue();
         if constexpr (kProfile) {
-            // A sustained contact can bring several events at once: the first one carries the cost.
             const auto end = Clock::now();
-            cost_.resolve_ns = nanoseconds(found, resolved);
-            cost_.detect_ns = nanoseconds(start, found) + nanoseconds(resolved, end);
-            cost_.queue_ns = nanoseconds(start, found) - search_ns_ + nanoseconds(detected, end);
+            cost_.resolve_ns = quiet.resolve_ns + nanoseconds(found, resolved);
+            cost_.detect_ns = quiet.detect_ns + nanoseconds(start, found) + nanoseconds(resolved, end);
+            cost_.queue_ns =
+                quiet.queue_ns + nanoseconds(start, found) - search_ns_ + nanoseconds(detected, end);
+            cost_.kernel_ns += quiet.kernel_ns;
             record_.costs.resize(record_.events.size());
-            if (record_.events.size() > events_before) record_.costs[events_before] = cost_;
+            // A sustained contact can bring several events at once: the first one carries the cost. Or none:
+            // then the next event does.
+            const bool event = record_.events.size() > events_before;
+            if (event) record_.costs[events_before] = cost_;
+            quiet = event ? EventCost{} : cost_;
         }
         if (options_.progress) options_.progress(record_.events.size(), now_);
     }

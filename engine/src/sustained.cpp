@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 
 #include "carom/engine/tolerances.h"
@@ -24,23 +22,23 @@ void HeldSolver::run() {
     capture();
     make_directions();
     solve_forces(0.0);
+    if (hold_returning()) solve_forces(0.0);
     for (Link& link : links_) link.pressed = link.N > 0.0;
     // The normal turns while the balls move across each other; a margin keeps the third order from
     // penetrating.
-    double interval = turning_interval();
-    if (interval < kNever) solve_forces(interval);
-    write_segments();
-    // Directions that turn are taken at the middle of the interval: second order.
-    if (take_middle_directions()) {
-        interval = turning_interval();
-        solve_forces(interval < kNever ? interval : 0.0);
-        write_segments();
+    const double turning = turning_interval();
+    if (turning < kNever) solve_forces(turning);
+    const double interval = write_segments(kNever);
+    // Directions that turn are taken at the middle of the interval: second order. The interval may grow by
+    // that, but not beyond what the margin is made for. What rounding has pressed into each other is led out.
+    const bool turned = take_middle_directions();
+    const bool deep = interval < kNever && any_deep();
+    if (turned || deep || (turning < kNever && interval < 0.5 * turning)) {
+        const double longest = std::min(1.25 * interval, turning_interval());
+        solve_forces(longest < kNever ? longest : 0.0);
+        write_segments(longest);
     }
     mark_released();
-    if (getenv("DBG")) { printf("solve t %.17g noise %g\n", now_, noise_);
-      for (size_t k=0;k<bodies_.size();++k){auto&b=bodies_[k];auto&h=group_.balls[k];printf("  ball %d mode %d starts %d ch %d lifted %d v %.6g %.6g w %.6g %.6g %.6g a %.6g %.6g dir %.6g %.6g push %.6g %.6g dur %.6g ends %d\n",h.ball,(int)b.mode,b.starts,b.changes,b.lifted,h.v.x(),h.v.y(),h.w.x(),h.w.y(),h.w.z(),b.a.x(),b.a.y(),b.direction.x(),b.direction.y(),b.push.x(),b.push.y(),h.segment.duration,h.segment.ends);}
-      for (size_t c=0;c<links_.size();++c){auto&l=links_[c];auto&h=group_.contacts[c];printf("  link %d-%d cu %d nose %d n %.9g %.9g N %.6g rate %.6g gacc %.6g open %d margin %.3g curv %.3g fz %.3g\n",h.i,h.j,h.cushion,h.nose,l.n.x(),l.n.y(),l.N,gap_rate(l),gap_acceleration(l),l.open,l.margin,l.curving,l.friction_z);}
-    }
 }
 
 Vec2 HeldSolver::velocity(int index) const {
@@ -67,16 +65,20 @@ void HeldSolver::make_bodies() {
     settle();
 }
 
-// A rolling ball whose velocity is the rounding of its group's has stopped: the direction of such a velocity
-// means nothing, and rolling friction along it would drive the ball.
-void HeldSolver::settle() {
+// A rolling ball that friction stops at once has stopped: the direction of such a velocity, often the rounding of
+// its group's, means nothing, and rolling friction along it would drive the ball.
+bool HeldSolver::settle() {
+    const double slowest = std::max(noise_, kHoldRest * motion_.roll);
+    bool any = false;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         HeldBall& ball = group_.balls[k];
-        if (bodies_[k].mode != Mode::kRolling || length(planar(ball.v)) > noise_) continue;
+        if (bodies_[k].mode != Mode::kRolling || length(planar(ball.v)) > slowest) continue;
+        any = any || length(planar(ball.v)) > 0.0;
         bodies_[k].mode = Mode::kResting;
         ball.v = Vec3::Zero();
         ball.w.x() = ball.w.y() = 0.0;
     }
+    return any;
 }
 
 void HeldSolver::make_links() {
@@ -90,8 +92,26 @@ void HeldSolver::make_links() {
         link.i = body_of(c.i);
         link.j = c.j >= 0 ? body_of(c.j) : -1;
         link.n = c.n;
+        link.depth = std::max(0.0, overlap(c, link));
         links_.push_back(link);
     }
+}
+
+double HeldSolver::overlap(const HeldContact& c, const Link& link) const {
+    const Vec2 here = planar(group_.balls[static_cast<std::size_t>(link.i)].r);
+    if (link.j >= 0)
+        return 2.0 * motion_.R - length(planar(group_.balls[static_cast<std::size_t>(link.j)].r) - here);
+    if (c.cushion >= 0) {
+        const CushionLine& line = plan_.cushions[static_cast<std::size_t>(c.cushion)];
+        return motion_.R - std::abs(cross(line.direction, here - line.from));
+    }
+    const Nose& nose = plan_.noses[static_cast<std::size_t>(c.nose)];
+    return motion_.R + nose.radius - length(nose.center - here);
+}
+
+bool HeldSolver::any_deep() const {
+    return std::any_of(links_.begin(), links_.end(),
+                       [](const Link& l) { return !l.open && l.depth > kHoldDepth; });
 }
 
 // A contact ends once its gap opens by more than rounding: never at the same instant as it began, so that no
@@ -134,8 +154,8 @@ bool holds(double v_n, double a_c, double restitution) {
 
 double held_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
     const double speed = length(planar(v)), spin = length(Vec2(length(planar(w)), w.z()));
-    return std::max(kHoldRest * motion.roll, 8.0 * kClosingUlp * std::numeric_limits<double>::epsilon() *
-                                                 (speed + motion.R * spin));
+    return std::max(kHoldNoise * motion.roll, 8.0 * kClosingUlp * std::numeric_limits<double>::epsilon() *
+                                                  (speed + motion.R * spin));
 }
 
 void solve_held(HeldGroup& group, const Plan& plan, const MotionParams& motion, double now) {

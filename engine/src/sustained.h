@@ -20,7 +20,7 @@ namespace carom {
 bool holds(double v_n, double a_c, double restitution);
 
 /// Speed that counts as none in a held group [m/s]: what rounding makes of the velocities in a few sums of
-/// eight, or what rolling friction stops within kHoldRest.
+/// eight, or what rolling friction stops within kHoldNoise.
 double held_noise(const Vec3& v, const Vec3& w, const MotionParams& motion);
 
 struct HeldContact {

@@ -15,9 +15,11 @@ void HeldSolver::capture() {
     const std::vector<char> sticky = sticky_contacts();
     const bool any = std::any_of(sticky.begin(), sticky.end(), [](char s) { return s != 0; });
     if (!any || !project(sticky)) project(std::vector<char>(links_.size(), 0));
-    settle();
+    // What stops now is a wall to the others.
+    if (settle()) project(std::vector<char>(links_.size(), 0));
     for (Link& link : links_) {
         link.open = gap_rate(link) > noise_;
+        link.returning = 0.0;
         link.N = 0.0;
     }
 }
@@ -27,9 +29,9 @@ std::vector<char> HeldSolver::sticky_contacts() const {
     for (std::size_t c = 0; c < links_.size(); ++c) {
         const Link& link = links_[c];
         const double rate = gap_rate(link);
-        if (!(link.N > 0.0) || !(rate > 0.0)) continue;
+        if (!(link.N > 0.0)) continue;
         const double restitution = link.j >= 0 ? plan_.balls.e_b : plan_.balls.e_c;
-        sticky[c] = holds(rate, link.N * link.diagonal, restitution);
+        sticky[c] = rate <= 0.0 || holds(rate, link.N * link.diagonal, restitution);
     }
     return sticky;
 }

@@ -72,7 +72,7 @@ void HeldSolver::sum_forces() {
 // Acceleration of the gap with the present forces.
 double HeldSolver::gap_acceleration(const Link& link) const {
     const Vec2 other = link.j >= 0 ? body(link.j).a : Vec2::Zero();
-    return dot(link.n, other - body(link.i).a) + link.curving;
+    return dot(link.n, other - body(link.i).a) + link.curving + link.returning;
 }
 
 // Acceleration of a body by a force of 1 in the contact.
@@ -124,7 +124,8 @@ bool HeldSolver::solve_contacts_once(bool friction, bool margins) {
     }
     if (!problem.solve()) return false;
     for (std::size_t k = 0; k < active.size(); ++k) {
-        if (!(problem.z[k] <= kLargestHold * (drive + motion_.slide + motion_.roll))) return false;
+        if (!(problem.z[k] <= (margins ? kLargestLeadOut : kLargestHold) * (drive + motion_.slide + motion_.roll)))
+            return false;
         links_[active[k]].N = problem.z[k];
     }
     sum_forces();
@@ -219,22 +220,61 @@ bool HeldSolver::modes_hold() {
     return hold;
 }
 
+// The rate of v_t^2 / |r|, 3 v_t a_t / |r|, must not close the gap within the interval.
+double HeldSolver::margin_for(const Link& link, const Vec2& t, double distance, double interval) {
+    const double a = std::abs(t.y()), h = std::max(interval, kHoldLeadOut);
+    const double turning =
+        distance > 0.0 ? interval * a * (1.5 * std::abs(t.x()) + interval * a) / distance : 0.0;
+    return turning + (link.depth > kHoldDepth ? 2.0 * link.depth / (h * h) : 0.0);
+}
+
+// Whether the accelerations have come out so that the gap needs more than the margin that they were made for.
+bool HeldSolver::margin_falls_short(double interval) const {
+    for (std::size_t c = 0; c < links_.size(); ++c) {
+        if (links_[c].open) continue;
+        Vec2 t;
+        const double distance = across(c, t);
+        if (margin_for(links_[c], t, distance, interval) > 1.2 * links_[c].margin) return true;
+    }
+    return false;
+}
+
 // The contacts' share of the gap's acceleration that does not come from accelerations: |r|'' has v_t^2 / |r|
-// from the turning normal; its own rate, 3 v_t a_t / |r|, must not close the gap within the interval.
+// from the turning normal.
 void HeldSolver::curve(double interval) {
     for (std::size_t c = 0; c < links_.size(); ++c) {
         Link& link = links_[c];
         Vec2 t;
         const double distance = across(c, t);
         link.curving = distance > 0.0 ? t.x() * t.x() / distance : 0.0;
-        link.margin = distance > 0.0 && interval > 0.0
-                          ? 1.5 * interval * std::abs(t.x() * t.y()) / distance +
-                                interval * interval * t.y() * t.y() / distance
-                          : 0.0;
+        link.margin = interval > 0.0 ? margin_for(link, t, distance, interval) : 0.0;
     }
 }
 
+// A contact that opens, but is pressed together so that it would be closed again within the shortest interval,
+// does not end: its rate goes within that interval instead.
+bool HeldSolver::hold_returning() {
+    bool any = false;
+    for (Link& link : links_) {
+        if (!link.open) continue;
+        const double rate = gap_rate(link);
+        if (!(rate < -gap_acceleration(link) * kHoldShortest)) continue;
+        link.open = false;
+        link.returning = rate / kHoldShortest;
+        any = true;
+    }
+    return any;
+}
+
 void HeldSolver::solve_forces(double interval) {
+    constexpr int kPasses = 3;
+    for (int pass = 0; pass < kPasses; ++pass) {
+        solve_forces_once(interval);
+        if (!(interval > 0.0) || !margin_falls_short(interval)) break;
+    }
+}
+
+void HeldSolver::solve_forces_once(double interval) {
     curve(interval);
     for (Body& b : bodies_) {
         b.changes = 0;

@@ -103,7 +103,7 @@ double HeldSolver::time_of(std::size_t k, bool& gone) const {
     const double accurate = longest(kHoldError, [&](double h) { return strength * w * h * h * h / 12.0; });
     const double limit = std::max(kHoldShortest, std::min(accurate, 0.25 * size / rate));
     const double nearest = toward / rate;
-    gone = nearest > 0.0 && nearest <= limit;
+    gone = nearest > 0.0 && nearest <= limit && turning <= kHoldEnds * size * rate;
     return gone ? nearest : limit;
 }
 
@@ -134,12 +134,14 @@ double HeldSolver::opening_interval(const Link& link) const {
     if (link.open || link.pressed || link.N > 0.0) return kNever;
     const double opening = gap_acceleration(link);
     if (!(opening > kHoldOpening * motion_.slide)) return kNever;
-    const double tick = 8.0 * std::numeric_limits<double>::epsilon() * now_;
-    return std::max(4.0 * noise_ / opening, tick);
+    // A ball that starts has to get beyond what settle() takes for rest.
+    const double clear = 4.0 * std::max(noise_, kHoldRest * motion_.roll);
+    return (clear + std::max(0.0, -gap_rate(link))) / opening;
 }
 
-void HeldSolver::write_segments() {
-    double interval = turning_interval();
+// @return how long they last, at most `longest`
+double HeldSolver::write_segments(double longest) {
+    double interval = std::min(longest, turning_interval());
     std::vector<double> ends(bodies_.size(), kNever);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         const Body& b = bodies_[k];
@@ -170,11 +172,14 @@ void HeldSolver::write_segments() {
                                                     group_.balls[static_cast<std::size_t>(link.i)].segment));
         if (link.j >= 0) interval = std::min(interval, friction_flip(link));
         interval = std::min(interval, opening_interval(link));
+        if (link.returning > 0.0) interval = std::min(interval, kHoldShortest);
     }
+    interval = std::max(interval, kHoldTicks * std::numeric_limits<double>::epsilon() * now_);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         group_.balls[k].segment.duration = interval;
         group_.balls[k].segment.ends = ends[k] <= interval;
     }
+    return interval;
 }
 
 }  // namespace carom

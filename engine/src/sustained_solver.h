@@ -39,7 +39,9 @@ class HeldSolver {
         Vec2 n;
         double friction_z = 0.0;  // f_z / N, on ball i
         double curving = 0.0;     // what turning normals add to the acceleration of the gap
-        double margin = 0.0;      // what they may take away again within the interval
+        double depth = 0.0;       // m, by which the bodies overlap
+        double margin = 0.0;      // what the gap needs besides to end the interval at 0 or above
+        double returning = 0.0;   // opening rate / h of a contact that would be closed again within h
         double diagonal = 0.0;
         double N = 0.0;
         bool open = false;     // the gap is opening by more than rounding
@@ -48,8 +50,10 @@ class HeldSolver {
 
     // sustained.cpp
     void make_bodies();
-    void settle();
+    bool settle();
     void make_links();
+    double overlap(const HeldContact& contact, const Link& link) const;
+    bool any_deep() const;
     void mark_released();
     Vec2 velocity(int body) const;
     double gap_rate(const Link& link) const;
@@ -65,7 +69,11 @@ class HeldSolver {
     // sustained_forces.cpp
     void make_directions();
     void solve_forces(double interval);
+    void solve_forces_once(double interval);
+    static double margin_for(const Link& link, const Vec2& across, double distance, double interval);
+    bool margin_falls_short(double interval) const;
     void curve(double interval);
+    bool hold_returning();
     bool solve_contacts();
     bool solve_contacts_once(bool friction, bool margins);
     Vec2 response(const Link& link, int body, bool friction) const;
@@ -89,7 +97,7 @@ class HeldSolver {
     double friction_flip(const Link& link) const;
     double opening_interval(const Link& link) const;
     Vec2 spin_rate(std::size_t body) const;
-    void write_segments();
+    double write_segments(double longest);
 
     HeldGroup& group_;
     const Plan& plan_;

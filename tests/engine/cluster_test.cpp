@@ -134,6 +134,15 @@ TEST(Cluster, ScalesWithTheSpeed) {
         EXPECT_EQ(eight.balls[b].v, 8.0 * one.balls[b].v) << "no material constant in a touching rack";
 }
 
+// The pair that touches first may be a slow one; the fastest sets the scale of friction and of the steps.
+TEST(Cluster, SlowPairFirst) {
+    const Result slow = run(rack(1.0), settings(0.05, 0.2, 0.95), 1e-6),
+                 fast = run(rack(1.0), settings(0.05, 0.2, 0.95), 1.0);
+    EXPECT_EQ(slow.steps, fast.steps);
+    for (std::size_t b = 0; b < fast.balls.size(); ++b) EXPECT_EQ(slow.balls[b].v, fast.balls[b].v);
+    EXPECT_LE(fast.steps, 300) << "of a touching rack";
+}
+
 TEST(Cluster, ThreeBalls) {  // H2
     const double e[] = {1.0, 0.95, 0.9, 0.5}, cue[] = {-.2, -.17, -.14, .1},
                  object[] = {.692820, .675500, .658179, .519615};

@@ -1,7 +1,8 @@
-// Seeded scenes to rest without a violation, and the regressions they brought (support/random_scenes.h). The
-// aim of 10 000 scenes is not met: see kOpen.
+// 10 000 seeded scenes to rest without a violation, and the regressions they brought
+// (support/random_scenes.h).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -13,11 +14,10 @@ namespace {
 
 using namespace test;
 
-constexpr int kParts = 5, kScenes = 375;
+constexpr int kParts = 20, kScenes = 10000;
 
-// Not mended yet (docs/hard_cases.md, "Open"): a held group whose members stop or bounce again and again at
-// one instant.
-constexpr int kOpen[] = {157, 221};
+// Not mended yet (docs/hard_cases.md, "Open").
+constexpr int kOpen[] = {8145};
 
 class RandomScenes : public testing::TestWithParam<int> {};
 
@@ -40,7 +40,7 @@ TEST(RandomSceneScan, PrintsWhatFailsOrTakesLong) {
     unsigned long long from = 0, count = 0;
     ASSERT_EQ(std::sscanf(wanted, "%llu:%llu", &from, &count), 2) << "CAROM_RANDOM_SCENES=FROM:COUNT";
     using Clock = std::chrono::steady_clock;
-    const double slow_ms = 300.0, give_up_ms = 3000.0;
+    const double slow_ms = 300.0, give_up_ms = 1000.0;
     double total_ms = 0.0;
     int failed = 0;
     for (unsigned long long seed = from; seed < from + count; ++seed) {

@@ -74,6 +74,10 @@ inline constexpr double kHoldError = 2e-8;
 /// [rad] and [m] How far a normal may turn within one, and what gap its turning may leave.
 inline constexpr double kHoldTurn = 0.03;
 inline constexpr double kHoldGap = 1e-8;
+/// [m] and [s] An overlap deeper than this is led out within the interval, but in no less time than this: what
+/// rounding adds up in a long push would come near to 1e-12 m.
+inline constexpr double kHoldDepth = 2e-14;
+inline constexpr double kHoldLeadOut = 1e-3;
 /// [of the sliding acceleration] A gap that opens by less does not open: the rounding of the forces.
 inline constexpr double kHoldOpening = 1e-10;
 /// [-] Rounding of the forces, relative.
@@ -81,8 +85,10 @@ inline constexpr double kHoldRounding = 1e-9;
 /// [-] Part of itself by which each contact of a held group yields, to share the load of contacts that are
 /// more than the group needs.
 inline constexpr double kContactSoftness = 1e-12;
-/// [of what drives a group] Forces beyond this have no answer: what asks for them is left out.
+/// [of what drives a group] Forces beyond this have no answer: what asks for them is left out. The second: a
+/// wedge that has no room for margins.
 inline constexpr double kLargestHold = 1e6;
+inline constexpr double kLargestLeadOut = 1e4;
 /// [-] A held contact that opens at some rate is closed only if no ball changes by more than this many times
 /// the rate.
 inline constexpr double kStickyShare = 10.0;
@@ -90,9 +96,15 @@ inline constexpr double kStickyShare = 10.0;
 inline constexpr double kRestGives = 1e-4;
 /// [-] Times that a ball may change between rest, rolling and sliding in one solution.
 inline constexpr int kModeChanges = 8;
-/// [s] A held ball that its own rolling friction would stop within this time rests: it would stop again and
-/// again.
-inline constexpr double kHoldRest = 1e-12;
+/// [s] A held ball that its own rolling friction would stop within this time rests, or it would stop again and
+/// again; a speed that it would stop within the second counts as none at all.
+inline constexpr double kHoldRest = 1e-8;
+inline constexpr double kHoldNoise = 1e-12;
+/// [ulp of the time] No interval is shorter: the clock has to go on.
+inline constexpr double kHoldTicks = 8.0;
+/// [-] A slip or velocity that turns ends where it is nearest to nothing, if it comes as near as this share of
+/// itself; else it only turns.
+inline constexpr double kHoldEnds = 0.5;
 /// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the
 /// straight line.
 inline constexpr double kHoldStraight = 1e-9;
