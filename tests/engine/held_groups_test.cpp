@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "complementarity.h"
-#include "splitmix64.h"
 #include "support/random_scenes.h"
 
 namespace carom {
@@ -127,7 +126,7 @@ TEST(HeldGroups, CornerComesToRest) {
 
 // z >= 0, w = A z + q >= 0, z w = 0 for A = G G^T, with up to twice as many contacts as directions.
 TEST(Complementarity, RandomProblemsWithRedundantContacts) {
-    SplitMix64 rng(1);
+    test::SplitMix64 rng(1);
     for (int round = 0; round < 2000; ++round) {
         const std::size_t contacts = 1 + static_cast<std::size_t>(rng.uniform(0.0, 12.0)), ways = 6;
         std::vector<double> G(contacts * ways), drive(ways);
