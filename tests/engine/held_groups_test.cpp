@@ -83,8 +83,8 @@ TEST(HeldGroups, RowOfBouncesInNoTimeEnds) {
     }
 }
 
-// A pair begins to touch at 1e-12 m/s while a third ball is about to arrive at 1 m/s: the map of the cluster is
-// scaled by the fast one. Scaled by the slow one it blew up.
+// A pair begins to touch at 1e-12 m/s while a third ball is about to arrive at 1 m/s: the map of the cluster
+// is scaled by the fast one. Scaled by the slow one it blew up.
 TEST(HeldGroups, SlowTouchNextToAFastApproach) {
     Scene scene = empty_scene();
     const double R = scene.balls.R;
@@ -136,8 +136,7 @@ TEST(Complementarity, RandomProblemsWithRedundantContacts) {
         for (std::size_t r = 0; r < contacts; ++r) {
             for (std::size_t k = 0; k < ways; ++k) problem.q[r] += G[r * ways + k] * drive[k];
             for (std::size_t c = 0; c < contacts; ++c)
-                for (std::size_t k = 0; k < ways; ++k)
-                    problem.at(r, c) += G[r * ways + k] * G[c * ways + k];
+                for (std::size_t k = 0; k < ways; ++k) problem.at(r, c) += G[r * ways + k] * G[c * ways + k];
         }
         ASSERT_TRUE(problem.solve()) << round;
         double largest = 0.0;
