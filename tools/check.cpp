@@ -58,6 +58,11 @@ std::string report(const Plan& plan) {
     if (scene.balls.mu_b_more > 0.0)
         fmt::format_to(line, "          mu_b at a slip u: {} + {} exp(-{} u)\n", scene.balls.mu_b,
                        scene.balls.mu_b_more, scene.balls.mu_b_fall);
+    for (const BallStart& ball : scene.ball) {
+        if (ball.own)
+            fmt::format_to(line, "          of its own, ball {}: R {} m, mass {} kg\n", ball.id, ball.own->R,
+                           ball.own->m);
+    }
     if (scene.cue) {
         const Cue& cue = *scene.cue;
         fmt::format_to(line,

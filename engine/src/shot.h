@@ -145,7 +145,9 @@ class Shot {
     const Segment& now_of(int ball) const { return current_[static_cast<std::size_t>(ball)]; }
     Vec3 position_now(int ball) const { return position_at(now_of(ball), now_ - now_of(ball).start); }
     Vec3 velocity_now(int ball) const { return velocity_at(now_of(ball), now_ - now_of(ball).start); }
-    Vec3 spin_now(int ball) const { return spin_at(now_of(ball), now_ - now_of(ball).start, plan_.balls.R); }
+    Vec3 spin_now(int ball) const { return spin_at(now_of(ball), now_ - now_of(ball).start, radius(ball)); }
+    double radius(int ball) const { return plan_.sizes[static_cast<std::size_t>(ball)].R; }
+    const MotionParams& motion_of(int ball) const { return motion_[static_cast<std::size_t>(ball)]; }
     /// From one time to another, on the long side of its rounding.
     static double span(double from, double to) { return (to - from) + 0x1p-50 * to; }
     static double nanoseconds(Clock::time_point from, Clock::time_point to) {
@@ -154,7 +156,7 @@ class Shot {
 
     const Plan& plan_;
     const SimulateOptions& options_;
-    MotionParams motion_;
+    std::vector<MotionParams> motion_;  // per ball
     Record record_;
     double now_ = 0.0;
     int balls_ = 0;

@@ -117,17 +117,16 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     if (plan_.clusters == ClusterModel::kRigid) {
         steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
     } else {
-        const bool frictionless = plan_.scene.physics.ball_ball == BallBallModel::kElastic;
+        const bool frictionless = !plan_.ball_ball->reads_friction;
         const double mu_b = frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b);
-        const ClusterSettings settings{
-            p.R,
-            plan_.scene.physics.ball_ball == BallBallModel::kMathavan ? p.mu_s : 0.0,
-            mu_b,
-            frictionless ? 1.0 : p.e_b,
-            plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
-            kClusterEpsilon,
-            mu_b > 0.0 ? kClusterFrictionStep : kClusterStep,
-            plan_.contact_phase};
+        const ClusterSettings settings{p.R,
+                                       plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
+                                       mu_b,
+                                       frictionless ? 1.0 : p.e_b,
+                                       plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
+                                       kClusterEpsilon,
+                                       mu_b > 0.0 ? kClusterFrictionStep : kClusterStep,
+                                       plan_.contact_phase};
         steps = cluster_map_.compliant(cluster_balls_, cluster_contacts_, settings, v_n);
         // Friction and a wedge can keep balls pressed together without end: then as if they were rigid.
         if (steps < 0) steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
@@ -139,7 +138,7 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     }
     for (const ClusterBall& ball : cluster_balls_) free_ball(ball.ball);
     for (const ClusterBall& ball : cluster_balls_)
-        begin(ball.ball, start_segment(now_, ball.r, ball.v, ball.w, motion_));
+        begin(ball.ball, start_segment(now_, ball.r, ball.v, ball.w, motion_of(ball.ball)));
     record_event(EventType::kBallCluster, c.a, c.b,
                  static_cast<int>(record_.clusters.size() + log_cluster_.size()));
     for (const ClusterBall& ball : cluster_balls_) log_member_.push_back(ball.ball);

@@ -42,7 +42,7 @@ void extend(double r, double v, double a, double T, double margin, double& low, 
 Box Shot::swept(int ball, double from, double duration) const {
     const Segment& s = now_of(ball);
     const Vec3 r = position_at(s, from - s.start), v = velocity_at(s, from - s.start);
-    const double R = plan_.balls.R,
+    const double R = radius(ball),
                  margin = R * (1.0 + kBoxShare) + kBoxShare * (std::abs(r.x()) + std::abs(r.y()));
     Box box{};
     extend(r.x(), v.x(), s.a.x(), duration, margin, box.low_x, box.high_x);
@@ -79,9 +79,9 @@ Candidate Shot::pair(int a, const Path& mine, int b, double latest) const {
         std::min(mover_[static_cast<std::size_t>(a)].until, mover_[static_cast<std::size_t>(b)].until),
         latest);
     const Path one = from == s.start ? mine : path(a, from), two = path(b, from);
-    if (stays_apart(two.r - one.r, two.v - one.v, two.a - one.a, 2.0 * plan_.balls.R, span(from, until)))
-        return {};
-    const double t = time_to_ball(one, two, 2.0 * plan_.balls.R);
+    const double reach = contact_distance(radius(a), radius(b));
+    if (stays_apart(two.r - one.r, two.v - one.v, two.a - one.a, reach, span(from, until))) return {};
+    const double t = time_to_ball(one, two, reach);
     return {from + t, EventType::kBallBall, std::min(a, b), std::max(a, b), -1};
 }
 
@@ -114,7 +114,7 @@ void Shot::search_pairs(int ball) {
 void Shot::renew(int ball) {
     const auto i = static_cast<std::size_t>(ball);
     const Segment& s = now_of(ball);
-    const double R = plan_.balls.R;
+    const double R = radius(ball);
     Mover& mover = mover_[i];
     mover.surface = R * std::sqrt(s.w.x() * s.w.x() + s.w.y() * s.w.y() + s.w.z() * s.w.z());
     // A free ball rolls straight ahead; a held one is pushed aside.

@@ -8,8 +8,10 @@
 
 namespace carom {
 
-Shot::Shot(const Plan& plan, const SimulateOptions& options)
-    : plan_(plan), options_(options), motion_(motion_params(plan)) {}
+Shot::Shot(const Plan& plan, const SimulateOptions& options) : plan_(plan), options_(options) {
+    for (std::size_t i = 0; i < plan.sizes.size(); ++i)
+        motion_.push_back(motion_params(plan, static_cast<int>(i)));
+}
 
 void Shot::set_up(bool profile) {
     const Scene& scene = plan_.scene;
@@ -25,16 +27,18 @@ void Shot::set_up(bool profile) {
     for (const BallStart& ball : scene.ball) {
         BallTrack track;
         track.id = ball.id;
+        track.own = ball.own;
         record_.tracks.push_back(std::move(track));
         current_.emplace_back();
-        begin(static_cast<int>(current_.size()) - 1,
-              start_segment(0.0, ball.position, ball.velocity, ball.spin, motion_));
+        const int index = static_cast<int>(current_.size()) - 1;
+        begin(index, start_segment(0.0, ball.position, ball.velocity, ball.spin, motion_of(index)));
     }
     if (scene.cue) {
         for (int i = 0; i < balls_; ++i) {
             if (scene.ball[static_cast<std::size_t>(i)].id != scene.cue->ball) continue;
-            const StruckBall struck = strike(*scene.cue, plan_.balls, plan_.squirt);
-            begin(i, start_segment(0.0, now_of(i).r, struck.v, struck.w, motion_));
+            const StruckBall struck =
+                strike(*scene.cue, plan_.sizes[static_cast<std::size_t>(i)], plan_.squirt);
+            begin(i, start_segment(0.0, now_of(i).r, struck.v, struck.w, motion_of(i)));
             record_.events.push_back({0.0, EventType::kCueStrike, i, -1, -1});
             if (profile) record_.costs.push_back({0.0, 0.0, 0.0, 0, "point"});
         }

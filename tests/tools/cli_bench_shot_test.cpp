@@ -35,10 +35,14 @@ TEST(CliBenchShot, RowsAreWhole) {
     for (const Json& row : json.at("growth")) {
         const int n = row.at("n").get<int>();
         sizes.insert(n);
-        if (row.at("chosen").get<bool>()) EXPECT_TRUE(chosen.insert(n).second) << n;
+        if (row.at("chosen").get<bool>()) {
+            EXPECT_TRUE(chosen.insert(n).second) << n;
+        }
         EXPECT_TRUE(row.at("search") == "direct" || row.at("search") == "tree");
         EXPECT_GT(row.at("ns_min").get<double>(), 0.0);
-        if (n == 10000) EXPECT_LT(row.at("bytes_per_ball").get<double>(), 1000.0);
+        if (n == 10000) {
+            EXPECT_LT(row.at("bytes_per_ball").get<double>(), 1000.0);
+        }
     }
     EXPECT_EQ(sizes, (std::set<int>{16, 100, 300, 1000, 10000}));
     EXPECT_EQ(chosen, sizes);
