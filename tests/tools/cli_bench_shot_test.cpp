@@ -12,8 +12,8 @@ namespace {
 using Json = nlohmann::json;
 
 TEST(CliBenchShot, RowsAreWhole) {
-    const ProcessResult result = carom_isa(
-        "scalar", {"bench", "shot", "--json", "--seeds", "2", "--repeat", "1", "--events", "200"});
+    const ProcessResult result =
+        carom_isa("scalar", {"bench", "shot", "--json", "--seeds", "2", "--repeat", "1", "--events", "200"});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json json = Json::parse(result.out);
     EXPECT_GT(json.at("baseline_ns").get<double>(), 0.0);
