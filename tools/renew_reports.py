@@ -38,8 +38,12 @@ class Renewal:
     def machine(self):
         cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown")
         compiler = self.call("c++", "--version").split("\n")[0]
-        return (f"{cpu}, {os.cpu_count()} cores, {compiler}; load when this began: {os.getloadavg()[0]:.1f}."
-                + (" Other work ran beside it: compare figures of one table only." if os.getloadavg()[0] > 1.5 else ""))
+        load, cores = os.getloadavg()[0], os.cpu_count()
+        text = f"{cpu}, {cores} cores, {compiler}; load when this began: {load:.1f}."
+        if load > 0.75 * cores:
+            text += (" **Other work ran beside it.** Wall times (every figure of a frame) are then far too long, processor times "
+                     "somewhat: read them as ratios, or measure again.")
+        return text
 
     def kernel(self):
         result = json.loads(self.carom("accuracy", "kernel", "--json", "--count", 200 if self.quick else 2000,

@@ -153,7 +153,8 @@ void Shot::solve_group(int ball, bool transitions) {
     }
 }
 
-// What ended, if it did: a ball that the group drives on at once has not stopped, and slips on without an event.
+// What ended, if it did: a ball that the group drives on at once has not stopped, and slips on without an
+// event.
 void Shot::record_transitions(const HeldGroup& group) {
     for (const HeldBall& member : group.balls) {
         const Segment& s = now_of(member.ball);

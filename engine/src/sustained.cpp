@@ -65,8 +65,8 @@ void HeldSolver::make_bodies() {
     settle();
 }
 
-// A rolling ball that friction stops at once has stopped: the direction of such a velocity, often the rounding of
-// its group's, means nothing, and rolling friction along it would drive the ball.
+// A rolling ball that friction stops at once has stopped: the direction of such a velocity, often the
+// rounding of its group's, means nothing, and rolling friction along it would drive the ball.
 bool HeldSolver::settle() {
     const double slowest = std::max(noise_, kHoldRest * motion_.roll);
     bool any = false;
@@ -154,8 +154,8 @@ bool holds(double v_n, double a_c, double restitution) {
 
 double held_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
     const double speed = length(planar(v)), spin = length(Vec2(length(planar(w)), w.z()));
-    return std::max(kHoldNoise * motion.roll, 8.0 * kClosingUlp * std::numeric_limits<double>::epsilon() *
-                                                  (speed + motion.R * spin));
+    return std::max(kHoldNoise * motion.roll,
+                    8.0 * kClosingUlp * std::numeric_limits<double>::epsilon() * (speed + motion.R * spin));
 }
 
 void solve_held(HeldGroup& group, const Plan& plan, const MotionParams& motion, double now) {

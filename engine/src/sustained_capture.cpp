@@ -8,9 +8,9 @@
 
 namespace carom {
 
-// The velocities nearest to the present ones, in the metric of the masses, that close no contact (clusters.md,
-// equation 7): plastic. A pressed contact that opens so slowly that it would be closed again at once is
-// closed now.
+// The velocities nearest to the present ones, in the metric of the masses, that close no contact
+// (clusters.md, equation 7): plastic. A pressed contact that opens so slowly that it would be closed again at
+// once is closed now.
 void HeldSolver::capture() {
     const std::vector<char> sticky = sticky_contacts();
     const bool any = std::any_of(sticky.begin(), sticky.end(), [](char s) { return s != 0; });
@@ -36,8 +36,8 @@ std::vector<char> HeldSolver::sticky_contacts() const {
     return sticky;
 }
 
-// @return false if the sticky contacts cannot be closed without a change far greater than their rates (normals
-// that nearly agree, as from a jaw onto the cushion, would stop the ball): then nothing is changed.
+// @return false if the sticky contacts cannot be closed without a change far greater than their rates
+// (normals that nearly agree, as from a jaw onto the cushion, would stop the ball): then nothing is changed.
 bool HeldSolver::project(const std::vector<char>& sticky) {
     std::vector<std::size_t> active;
     for (std::size_t c = 0; c < links_.size(); ++c) {

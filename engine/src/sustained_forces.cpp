@@ -12,8 +12,7 @@ void HeldSolver::make_directions() {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         const HeldBall& ball = group_.balls[k];
         Body& b = bodies_[k];
-        const Vec2 along =
-            b.mode == Mode::kSliding ? cloth_slip(ball.v, ball.w, motion_.R) : planar(ball.v);
+        const Vec2 along = b.mode == Mode::kSliding ? cloth_slip(ball.v, ball.w, motion_.R) : planar(ball.v);
         const double size = length(along);
         b.starts = !(size > 0.0);  // then the direction is that of the forces
         if (!b.starts) b.direction = along / size;
@@ -124,7 +123,8 @@ bool HeldSolver::solve_contacts_once(bool friction, bool margins) {
     }
     if (!problem.solve()) return false;
     for (std::size_t k = 0; k < active.size(); ++k) {
-        if (!(problem.z[k] <= (margins ? kLargestLeadOut : kLargestHold) * (drive + motion_.slide + motion_.roll)))
+        if (!(problem.z[k] <=
+              (margins ? kLargestLeadOut : kLargestHold) * (drive + motion_.slide + motion_.roll)))
             return false;
         links_[active[k]].N = problem.z[k];
     }
@@ -136,7 +136,8 @@ bool HeldSolver::solve_contacts_once(bool friction, bool margins) {
 // Margins can ask for what a wedge cannot give, and friction can leave no answer at all (Painleve): then
 // without.
 bool HeldSolver::solve_contacts() {
-    const bool margins = std::any_of(links_.begin(), links_.end(), [](const Link& l) { return l.margin != 0.0; });
+    const bool margins =
+        std::any_of(links_.begin(), links_.end(), [](const Link& l) { return l.margin != 0.0; });
     const bool friction =
         std::any_of(links_.begin(), links_.end(), [](const Link& l) { return l.friction_z != 0.0; });
     if (solve_contacts_once(friction, margins)) return true;
@@ -200,15 +201,16 @@ bool HeldSolver::sliding_holds(Body& b) {
 }
 
 bool HeldSolver::turn_to(Body& b, const Vec2& drive, double size) {
-    if (dot(b.direction, drive) > 0.0 && std::abs(cross(b.direction, drive)) <= kHoldRounding * size) return true;
+    if (dot(b.direction, drive) > 0.0 && std::abs(cross(b.direction, drive)) <= kHoldRounding * size)
+        return true;
     if (b.changes >= kModeChanges) return true;
     ++b.changes;
     b.direction = drive / size;
     return false;
 }
 
-// Whether every ball can do what its mode says; where not, the mode or the direction changes, a bounded number
-// of times: a ball that finds no consistent mode rests, or keeps its direction.
+// Whether every ball can do what its mode says; where not, the mode or the direction changes, a bounded
+// number of times: a ball that finds no consistent mode rests, or keeps its direction.
 bool HeldSolver::modes_hold() {
     bool hold = true;
     for (Body& b : bodies_) {
@@ -251,8 +253,8 @@ void HeldSolver::curve(double interval) {
     }
 }
 
-// A contact that opens, but is pressed together so that it would be closed again within the shortest interval,
-// does not end: its rate goes within that interval instead.
+// A contact that opens, but is pressed together so that it would be closed again within the shortest
+// interval, does not end: its rate goes within that interval instead.
 bool HeldSolver::hold_returning() {
     bool any = false;
     for (Link& link : links_) {
@@ -289,8 +291,8 @@ void HeldSolver::solve_forces_once(double interval) {
         if (modes_hold()) break;
     }
     give_ = 0.0;
-    const bool any_rests = std::any_of(bodies_.begin(), bodies_.end(),
-                                       [](const Body& b) { return b.mode == Mode::kResting; });
+    const bool any_rests =
+        std::any_of(bodies_.begin(), bodies_.end(), [](const Body& b) { return b.mode == Mode::kResting; });
     if (any_rests) solve_contacts();
 }
 

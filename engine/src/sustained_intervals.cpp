@@ -47,9 +47,11 @@ double HeldSolver::turning_interval() const {
         const double pulls = length(body(link.i).a) + (link.j >= 0 ? length(body(link.j).a) : 0.0);
         if (std::abs(t.x()) <= kHoldStraight * speeds && std::abs(t.y()) <= kHoldStraight * pulls) continue;
         const double v = std::abs(t.x()), a = std::abs(t.y());
-        interval = std::min(interval, longest(kHoldTurn, [&](double h) { return h * (v + 0.5 * h * a) / distance; }));
-        interval =
-            std::min(interval, longest(kHoldGap, [&](double h) { return 0.5 * h * h * h * a * (v + h * a) / distance; }));
+        interval = std::min(interval,
+                            longest(kHoldTurn, [&](double h) { return h * (v + 0.5 * h * a) / distance; }));
+        interval = std::min(interval, longest(kHoldGap, [&](double h) {
+                                return 0.5 * h * h * h * a * (v + h * a) / distance;
+                            }));
     }
     return interval;
 }

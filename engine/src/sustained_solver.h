@@ -1,5 +1,5 @@
-// One solution of one held group (sustained.h): capture, forces, intervals. Split over sustained.cpp (the order
-// of steps), sustained_capture.cpp, sustained_forces.cpp and sustained_intervals.cpp.
+// One solution of one held group (sustained.h): capture, forces, intervals. Split over sustained.cpp (the
+// order of steps), sustained_capture.cpp, sustained_forces.cpp and sustained_intervals.cpp.
 #pragma once
 
 #include <vector>
@@ -20,10 +20,10 @@ class HeldSolver {
     struct Body {
         Mode mode = Mode::kResting;
         Vec2 direction =
-            Vec2::Zero();  // sliding: of the slip; rolling: of the velocity, or of the push that starts it
-        bool starts = false;         // direction is that of the forces: there is no slip, or no velocity, yet
-        bool lifted = false;         // its contacts carry its whole weight: no friction from the cloth
-        int changes = 0;             // of mode, in one solution
+            Vec2::Zero();     // sliding: of the slip; rolling: of the velocity, or of the push that starts it
+        bool starts = false;  // direction is that of the forces: there is no slip, or no velocity, yet
+        bool lifted = false;  // its contacts carry its whole weight: no friction from the cloth
+        int changes = 0;      // of mode, in one solution
         Vec2 push = Vec2::Zero();    // sum of contact forces
         Vec2 couple = Vec2::Zero();  // (T x z) / R of the contact torques
         double lift = 0.0;           // vertical contact force

@@ -45,9 +45,9 @@ inline constexpr double kLeastRestitution =
     0.1;  ///< stands for a smaller e in that rule, where no bounce is left at all
 
 /// [V] and [L/V] Regularisation of the friction in the compliant cluster map, which errs by about 2e-3 V in
-/// stick (docs/hard_cases.md), and its longest steps: without friction, where they err by 3e-7 V, and with it,
-/// where 2e-5 V (largest of 40 racks 8e-5 V) is far below the former. [L/V] The map goes on while a listed
-/// pair would touch within this time.
+/// stick (docs/hard_cases.md), and its longest steps: without friction, where they err by 3e-7 V, and with
+/// it, where 2e-5 V (largest of 40 racks 8e-5 V) is far below the former. [L/V] The map goes on while a
+/// listed pair would touch within this time.
 inline constexpr double kClusterEpsilon = 2e-3;
 inline constexpr double kClusterStep = 1.0 / 80.0;
 inline constexpr double kClusterFrictionStep = 1.0 / 16.0;
@@ -74,8 +74,8 @@ inline constexpr double kHoldError = 2e-8;
 /// [rad] and [m] How far a normal may turn within one, and what gap its turning may leave.
 inline constexpr double kHoldTurn = 0.03;
 inline constexpr double kHoldGap = 1e-8;
-/// [m] and [s] An overlap deeper than this is led out within the interval, but in no less time than this: what
-/// rounding adds up in a long push would come near to 1e-12 m.
+/// [m] and [s] An overlap deeper than this is led out within the interval, but in no less time than this:
+/// what rounding adds up in a long push would come near to 1e-12 m.
 inline constexpr double kHoldDepth = 2e-14;
 inline constexpr double kHoldLeadOut = 1e-3;
 /// [of the sliding acceleration] A gap that opens by less does not open: the rounding of the forces.
@@ -96,14 +96,14 @@ inline constexpr double kStickyShare = 10.0;
 inline constexpr double kRestGives = 1e-4;
 /// [-] Times that a ball may change between rest, rolling and sliding in one solution.
 inline constexpr int kModeChanges = 8;
-/// [s] A held ball that its own rolling friction would stop within this time rests, or it would stop again and
-/// again; a speed that it would stop within the second counts as none at all.
+/// [s] A held ball that its own rolling friction would stop within this time rests, or it would stop again
+/// and again; a speed that it would stop within the second counts as none at all.
 inline constexpr double kHoldRest = 1e-8;
 inline constexpr double kHoldNoise = 1e-12;
 /// [ulp of the time] No interval is shorter: the clock has to go on.
 inline constexpr double kHoldTicks = 8.0;
-/// [-] A slip or velocity that turns ends where it is nearest to nothing, if it comes as near as this share of
-/// itself; else it only turns.
+/// [-] A slip or velocity that turns ends where it is nearest to nothing, if it comes as near as this share
+/// of itself; else it only turns.
 inline constexpr double kHoldEnds = 0.5;
 /// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the
 /// straight line.
@@ -166,7 +166,7 @@ inline constexpr int kMaxTableParts = 4096;    ///< cushions, jaws and pockets o
 inline constexpr std::size_t kMaxFileSize = 4u << 20;  ///< [bytes] of a scene file
 /// [bytes] Of a record file: about 700 000 segments. Reading it takes some ten times as much memory.
 inline constexpr std::size_t kMaxRecordSize = std::size_t{256} << 20;
-inline constexpr std::size_t kMaxIdLength = 64;        ///< [bytes] of a ball's id
+inline constexpr std::size_t kMaxIdLength = 64;  ///< [bytes] of a ball's id
 inline constexpr int kVariationTrials = 100;  ///< shots of a variation, one of which has to be a valid scene
 
 }  // namespace carom
