@@ -130,7 +130,7 @@ Plan with_substeps(const Scene& scene, int substeps) {
 
 Plan with_power_series(const Scene& scene) {
     Plan plan = with_tolerance(scene, kernel::kTightestTolerance);
-    plan.by_tolerance = &by_power_series;
+    plan.impact.by_tolerance = &by_power_series;
     return plan;
 }
 

@@ -4,13 +4,13 @@
 #include <immintrin.h>
 
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <numeric>
 
 #include "bench/clock.h"
 #include "bench/five_states.h"
+#include "bench/machine.h"
 #include "carom/kernel/ladder.h"
 #include "carom/kernel/tolerance.h"
 #include "console.h"
@@ -271,13 +271,6 @@ double cost_of_a_probe() {
         costs.push_back(thread_ns() - start);
     }
     return median(costs);
-}
-
-std::string processor() {
-    std::ifstream info("/proc/cpuinfo");
-    for (std::string line; std::getline(info, line);)
-        if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-    return "unknown";
 }
 
 std::vector<Isa> chosen_isas() {

@@ -72,7 +72,7 @@ b2Body* add_ball(b2World& world, const BallState& state, const BallParams& balls
     fixture.shape = &circle;
     fixture.density = 1.0F;
     fixture.restitutionThreshold = 0.0F;
-    fixture.userData.pointer = static_cast<std::uintptr_t>(number + 1);
+    fixture.userData.pointer = static_cast<std::uintptr_t>(number) + 1;
     b2Body* body = world.CreateBody(&definition);
     body->CreateFixture(&fixture);
     return body;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <limits>
 
 #include "commands.h"
 #include "console.h"
@@ -57,6 +58,11 @@ std::string report(const Plan& plan) {
     if (scene.balls.mu_b_more > 0.0)
         fmt::format_to(line, "          mu_b at a slip u: {} + {} exp(-{} u)\n", scene.balls.mu_b,
                        scene.balls.mu_b_more, scene.balls.mu_b_fall);
+    for (const BallStart& ball : scene.ball) {
+        if (ball.own)
+            fmt::format_to(line, "          of its own, ball {}: R {} m, mass {} kg\n", ball.id, ball.own->R,
+                           ball.own->m);
+    }
     if (scene.cue) {
         const Cue& cue = *scene.cue;
         fmt::format_to(line,
@@ -70,6 +76,10 @@ std::string report(const Plan& plan) {
                    name(scene.physics.jaw_model()), name(scene.physics.clusters), plan.gravity);
     fmt::format_to(line, "kernel    {}\n", kernel_line(plan));
     fmt::format_to(line, "isa       {} (available: {})\n", kernel::name(plan.isa), available_isas());
+    fmt::format_to(line, "search    balls {}, table {}{}\n", name(plan.ball_search), name(plan.table_search),
+                   plan.box_travel < std::numeric_limits<double>::infinity()
+                       ? fmt::format("; boxes cover {} ball radii at first", plan.box_travel)
+                       : "; boxes reach to a ball's next own event");
     fmt::format_to(line, "stop      {}\n", stop_line(scene.stop));
     fmt::format_to(line, "render    {} fps, {}x{}, camera {}\n", scene.render.fps, scene.render.width,
                    scene.render.height, scene.render.camera);

@@ -11,6 +11,7 @@
 #include "accuracy_kernel.h"
 #include "accuracy_scene.h"
 #include "bench_kernel.h"
+#include "bench_shot.h"
 #include "carom/engine/scene.h"
 #include "carom/kernel/tolerance.h"
 #include "commands.h"
@@ -252,6 +253,30 @@ void add_bench_render(CLI::App& app, Action& action) {
     sub->callback([args, &action] { action = [args] { return run_bench_render(*args); }; });
 }
 
+void add_bench_shot(CLI::App& app, Action& action) {
+    auto args = std::make_shared<BenchShotOptions>();
+    CLI::App* sub = app.get_subcommand("bench")->add_subcommand(
+        "shot", "Whole breaks and shots in units of one baseline impact; growth with the number of balls");
+    sub->add_flag("--json", args->json, "Print JSON (default: off)");
+    sub->add_option("--seeds", args->seeds, "Seeds of every shot; a row is their median")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    sub->add_option("--repeat", args->repeats,
+                    "Interleaved rounds; a shot counts with its minimum (gases: a third of them)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    sub->add_option("--events", args->events, "Events of a gas at each size")
+        ->type_name("N")
+        ->check(CLI::Range(10, 10000000))
+        ->capture_default_str();
+    sub->add_flag("!--no-growth", args->growth,
+                  "Leave out the gases of 16 to 10000 balls (default: measured)");
+    sub->footer("One baseline impact is the plain double march at N = 1000, timed in the same run.");
+    sub->callback([args, &action] { action = [args] { return run_bench_shot(*args); }; });
+}
+
 void add_accuracy_kernel(CLI::App& accuracy, Action& action) {
     auto args = std::make_shared<AccuracyKernelArgs>();
     CLI::App* sub = accuracy.add_subcommand(
@@ -318,7 +343,8 @@ void add_accuracy(CLI::App& app, Action& action) {
 
 void add_describe(CLI::App& app, Action& action) {
     auto format = std::make_shared<std::string>();
-    CLI::App* sub = app.add_subcommand("describe", "This program as a man page, or as completions for a shell");
+    CLI::App* sub =
+        app.add_subcommand("describe", "This program as a man page, or as completions for a shell");
     sub->add_option("FORMAT", *format, "What to print")
         ->type_name("NAME")
         ->check(CLI::IsMember({"man", "bash", "zsh"}))
@@ -343,6 +369,7 @@ void add_commands(CLI::App& app, Action& action) {
     add_impact(app, action);
     add_bench(app, action);
     add_bench_render(app, action);
+    add_bench_shot(app, action);
     add_describe(app, action);
 }
 
@@ -371,7 +398,8 @@ int run(int argc, char** argv) {
     }
     if (!action)
         throw UsageError(
-            "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or describe; see carom "
+            "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or "
+            "describe; see carom "
             "--help");
     return action();
 }

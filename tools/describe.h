@@ -1,5 +1,5 @@
-// The program described for others to read: a man page, completions for bash and zsh. Made from the very options that are
-// parsed, so that they cannot drift apart.
+// The program described for others to read: a man page, completions for bash and zsh. Made from the very
+// options that are parsed, so that they cannot drift apart.
 #pragma once
 
 #include <string>

@@ -93,8 +93,9 @@ MarginRun one_run(const Plan& plan, const MarginArgs& args, double fps, const st
     MarginRun run;
     SimulateOptions options;
     options.profile = true;
+    options.progress = [](std::size_t, double) { throw_if_interrupted(); };
     const double start = wall_ms();
-    run.record = simulate_plan(plan, options);
+    run.record = simulate(plan, options);
     run.simulate_wall_ms = wall_ms() - start;
     const long frames = checked_frame_count(0.0, run.record.duration, fps);
     run.frames = costs_by_frame(run.record, 0.0, fps, frames);

@@ -46,7 +46,7 @@ std::string escaped(const std::string& text) {
 /// Turns values into pixels along one axis.
 class Scale {
   public:
-    Scale(const Axis& axis, std::vector<double> values, double from, double to)
+    Scale(const Axis& axis, const std::vector<double>& values, double from, double to)
         : logarithmic_(axis.logarithmic), from_(from), to_(to) {
         double low = INFINITY, high = -INFINITY;
         for (const double value : values) {

@@ -38,8 +38,12 @@ class Renewal:
     def machine(self):
         cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown")
         compiler = self.call("c++", "--version").split("\n")[0]
-        return (f"{cpu}, {os.cpu_count()} cores, {compiler}; load when this began: {os.getloadavg()[0]:.1f}."
-                + (" Other work ran beside it: compare figures of one table only." if os.getloadavg()[0] > 1.5 else ""))
+        load, cores = os.getloadavg()[0], os.cpu_count()
+        text = f"{cpu}, {cores} cores, {compiler}; load when this began: {load:.1f}."
+        if load > 0.75 * cores:
+            text += (" **Other work ran beside it.** Wall times (every figure of a frame) are then far too long, processor times "
+                     "somewhat: read them as ratios, or measure again.")
+        return text
 
     def kernel(self):
         result = json.loads(self.carom("accuracy", "kernel", "--json", "--count", 200 if self.quick else 2000,
@@ -61,13 +65,13 @@ class Renewal:
 
     def scene(self, path, image, *more):
         result = json.loads(self.carom("accuracy", path, "--box2d", "--json", "--plot", IMAGES / image, *more))
-        text = "| method | setting | ms (minimum, median) | kernel | clusters | final error (m) | outcome |\n|---|---|---|---|---|---|---|\n"
+        text = "| method | setting | us (minimum, median) | kernel | clusters | final error (m) | outcome |\n|---|---|---|---|---|---|---|\n"
         for r in result["rows"]:
             share = lambda x: "" if x is None else f"{100 * x:.0f} %"  # noqa: E731
             same = [w for w, k in (("order", "same_order"), ("first contact", "same_first_contact"), ("pockets", "same_pocketed"))
                     if r[k] is False]
             error = "-" if r["error_max"] is None else f"{r['error_max']:.1e}"
-            text += (f"| {r['method']} | {r['setting']} | {r['ns'] / 1e6:.3f}, {r['ns_median'] / 1e6:.3f} | {share(r['kernel_share'])} | "
+            text += (f"| {r['method']} | {r['setting']} | {r['ns'] / 1e3:.1f}, {r['ns_median'] / 1e3:.1f} | {share(r['kernel_share'])} | "
                      f"{share(r['cluster_share'])} | {error} | {'same' if not same else 'other ' + ', '.join(same)} |\n")
         return (text + f"\nGain {result['gain']:.1e}; the two converged runs end {result['agreement']:.1e} m apart.\n\n> "
                 + result["recommendation"] + "\n")
@@ -80,7 +84,7 @@ class Renewal:
 
     def experiments(self):
         out = self.call(sys.executable, ROOT / "tools/accuracy_experiments.py", "--program", self.build / "carom", "--count",
-                        10 if self.quick else 100, "--noise-count", 3 if self.quick else 25, "--images", IMAGES)
+                        20 if self.quick else 100, "--noise-count", 5 if self.quick else 25, "--images", IMAGES)
         return re.sub("^### ", "#### ", out.strip(), flags=re.M) + "\n"
 
     def detectors(self):

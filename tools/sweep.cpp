@@ -13,6 +13,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "commands.h"
 #include "console.h"
@@ -85,7 +86,7 @@ class Queue {
 
     void stop(std::exception_ptr error) {
         const std::lock_guard lock(mutex_);
-        if (!stopped_) error_ = error;
+        if (!stopped_) error_ = std::move(error);
         stopped_ = true;
         room_.notify_all();
         ready_.notify_one();
@@ -194,7 +195,7 @@ Variation read_variation(const SweepArgs& args) {
     try {
         return Variation(args.scene, args.vary, args.seed);
     } catch (const VariationError& error) {
-        throw UsageError(fmt::format("--vary {}", error.what()));
+        throw UsageError(fmt::format("--vary: {}", error.what()));
     }
 }
 

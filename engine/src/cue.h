@@ -12,6 +12,6 @@ struct StruckBall {
     double dropped_vertical;  ///< vertical speed that a planar scene drops [m/s]
 };
 /// @param squirt  whether the plan computes it at all
-StruckBall strike(const Cue& cue, const BallParams& balls, bool squirt = true);
+StruckBall strike(const Cue& cue, const BallSize& ball, bool squirt = true);
 
 }  // namespace carom

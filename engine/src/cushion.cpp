@@ -36,11 +36,11 @@ bool cushion_han_2005(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3
     const double P_x = k * S_x, P_y = k * S_y;
     const double P_X = -P_x * s - N * c, P_Z = P_x * c - N * s;
     const double turn = 2.5 / R;
-    const double new_v_X = v_X + P_X, new_v_Y = v_Y + P_y;
-    const double new_w_X = w_X - turn * P_y * s, new_w_Y = w_Y + turn * (P_X * s - P_Z * c),
-                 new_w_Z = w_Z + turn * P_y * c;
-    v = Vec3(new_v_X * X.x() + new_v_Y * Y.x(), new_v_X * X.y() + new_v_Y * Y.y(), 0.0);
-    w = Vec3(new_w_X * X.x() + new_w_Y * Y.x(), new_w_X * X.y() + new_w_Y * Y.y(), new_w_Z);
+    const double dw_X = -turn * P_y * s, dw_Y = turn * (P_X * s - P_Z * c), dw_Z = turn * P_y * c;
+    // Changes are added, so that nothing else is rounded: without friction, at ball height, these are the
+    // bits of the model smooth.
+    v = Vec3(v.x() + (P_X * X.x() + P_y * Y.x()), v.y() + (P_X * X.y() + P_y * Y.y()), 0.0);
+    w = Vec3(w.x() + (dw_X * X.x() + dw_Y * Y.x()), w.y() + (dw_X * X.y() + dw_Y * Y.y()), w.z() + dw_Z);
     return true;
 }
 

@@ -39,7 +39,8 @@ inline NoseContact nose_contact(const CushionContact& p, const Vec2& normal, con
     const Vec3 arm = -p.R * c.n;
     const Vec3 u = v + Vec3(w.y() * arm.z() - w.z() * arm.y(), w.z() * arm.x() - w.x() * arm.z(),
                             w.x() * arm.y() - w.y() * arm.x());
-    c.u_n = u.x() * c.n.x() + u.y() * c.n.y() + u.z() * c.n.z();
+    // The spin's share is at right angles to n; v_z is 0.
+    c.u_n = v.x() * c.n.x() + v.y() * c.n.y();
     c.u_t = u - c.u_n * c.n;
     c.speed_t = std::sqrt(c.u_t.x() * c.u_t.x() + c.u_t.y() * c.u_t.y() + c.u_t.z() * c.u_t.z());
     return c;
@@ -50,7 +51,7 @@ inline NoseContact nose_contact(const CushionContact& p, const Vec2& normal, con
 inline void apply_at_nose(const CushionContact& p, const NoseContact& c, double J_n, double J_t, Vec3& v,
                           Vec3& w) {
     const Vec3 t = c.speed_t > 0.0 ? Vec3(c.u_t * (-J_t / c.speed_t)) : Vec3(0.0, 0.0, 0.0);
-    v = Vec3(v.x() + J_n * c.n.x() + t.x(), v.y() + J_n * c.n.y() + t.y(), 0.0);
+    v = Vec3(v.x() + (J_n * c.n.x() + t.x()), v.y() + (J_n * c.n.y() + t.y()), 0.0);
     const double turn = -2.5 / p.R;  // dw = (5 / 2R) (-n x J_t)
     w = Vec3(w.x() + turn * (c.n.y() * t.z() - c.n.z() * t.y()),
              w.y() + turn * (c.n.z() * t.x() - c.n.x() * t.z()),

@@ -100,8 +100,8 @@ class Decisions {
     }
     Need ball_friction_needed() const {
         if (scene_.ball.size() < 2) return {false, "one ball only"};
-        if (scene_.physics.ball_ball == BallBallModel::kElastic)
-            return {false, "model elastic has no friction"};
+        if (!plan_.ball_ball->reads_friction)
+            return {false, fmt::format("model {} has no friction", plan_.ball_ball->name)};
         if (!p_.ball_friction()) return coefficient("mu_b", 0.0);
         if (!plan_.pairs) return {false, "no two balls can meet: " + reach_.why};
         if (p_.mu_b_more == 0.0) return coefficient("mu_b", p_.mu_b);
@@ -109,8 +109,8 @@ class Decisions {
     }
     Need cloth_in_impact() const {
         if (scene_.ball.size() < 2) return {false, "one ball only"};
-        if (scene_.physics.ball_ball != BallBallModel::kMathavan)
-            return {false, fmt::format("model {} does not read the cloth", name(scene_.physics.ball_ball))};
+        if (!plan_.ball_ball->reads_cloth)
+            return {false, fmt::format("model {} does not read the cloth", plan_.ball_ball->name)};
         if (p_.mu_s == 0.0 || !p_.ball_friction()) return {false, p_.mu_s == 0.0 ? "mu_s = 0" : "mu_b = 0"};
         if (!plan_.pairs) return {false, "no two balls can meet: " + reach_.why};
         return {true, "mu_s and mu_b > 0; without vertical slip it is 0 at that impact"};
@@ -132,8 +132,10 @@ class Decisions {
             return {false, "model smooth"};
         bool level = p_.f_c == 0.0 && straight.model != CushionModel::kMathavan2010 &&
                      jaw.model != CushionModel::kMathavan2010;
-        for (const Cushion& c : scene_.table.cushions) level = level && c.height == p_.R;
-        for (const Jaw& j : scene_.table.jaws) level = level && j.height == p_.R;
+        for (const BallSize& ball : plan_.sizes) {
+            for (const Cushion& c : scene_.table.cushions) level = level && c.height == ball.R;
+            for (const Jaw& j : scene_.table.jaws) level = level && j.height == ball.R;
+        }
         if (level) return {false, "f_c = 0 and the noses at ball height: smooth"};
         return {true, straight.model == jaw.model
                           ? fmt::format("model {}, f_c = {}", straight.name, p_.f_c)

@@ -32,13 +32,12 @@ Vec2 cloth_slip(const Vec3& v, const Vec3& w, double R) {
     return {v.x() - R * w.y(), v.y() + R * w.x()};
 }
 
-MotionParams motion_params(const BallParams& balls, double gravity) {
-    return {balls.R, balls.mu_s * gravity, balls.mu_r * gravity,
-            5.0 * balls.mu_sp * gravity / (2.0 * balls.R)};
+MotionParams motion_params(const BallParams& balls, double gravity, double R) {
+    return {R, balls.mu_s * gravity, balls.mu_r * gravity, 5.0 * balls.mu_sp * gravity / (2.0 * R)};
 }
 
-MotionParams motion_params(const Plan& plan) {
-    MotionParams p = motion_params(plan.balls, plan.gravity);
+MotionParams motion_params(const Plan& plan, int ball) {
+    MotionParams p = motion_params(plan.balls, plan.gravity, plan.sizes[static_cast<std::size_t>(ball)].R);
     p.sliding = plan.sliding;
     p.rolling = plan.rolling;
     p.spin_decay = plan.spin_decay;

@@ -36,9 +36,10 @@ struct MotionParams {
     bool rolling = true;     ///< some ball can roll on a cloth that brakes it
     bool spin_decay = true;  ///< some ball can have vertical spin that decays
 };
-MotionParams motion_params(const BallParams& balls, double gravity);
-/// With what a plan leaves out.
-MotionParams motion_params(const Plan& plan);
+/// @param R  radius of the ball
+MotionParams motion_params(const BallParams& balls, double gravity, double R);
+/// Of one ball, with what a plan leaves out.
+MotionParams motion_params(const Plan& plan, int ball);
 
 /// The segment that starts at time t with these velocities. The motion state follows from them: rolling when
 /// the slip is at most kRollingUlp ulp of |v| + R |w| (spin is then set to the rolling one), and so on.

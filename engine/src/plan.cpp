@@ -63,19 +63,26 @@ Plan make_plan(const Scene& scene, kernel::Isa isa) {
     plan.scene = scene;
     plan.balls = scene.balls;
     plan.gravity = scene.physics.gravity;
+    for (const BallStart& ball : scene.ball) plan.sizes.push_back(scene.size_of(ball));
+    plan.alike = scene.alike();
     add_geometry(scene.table, plan);
+    plan.ball_ball = &ball_ball_model(scene.physics.ball_ball);
     plan.cushion = &cushion_model(scene.physics.cushion);
     plan.jaw = &cushion_model(scene.physics.jaw_model());
     decide_effects(scene, plan);
     choose_search(plan);
     plan.isa = isa;
     plan.contact_phase = kernel::contact_phase_function(isa);
-    if (scene.physics.substeps)
-        plan.march = kernel::march_function(isa);
-    else
-        plan.by_tolerance = kernel::tolerance_function(isa);
-    if (scene.cue) {
-        const double vertical = strike(*scene.cue, scene.balls).dropped_vertical;
+    plan.impact.tolerance = scene.physics.tolerance;
+    if (scene.physics.substeps) {
+        plan.impact.march = kernel::march_function(isa);
+        plan.impact.substeps = *scene.physics.substeps;
+    } else {
+        plan.impact.by_tolerance = kernel::tolerance_function(isa);
+    }
+    for (const BallStart& ball : scene.ball) {
+        if (!scene.cue || scene.cue->ball != ball.id) continue;
+        const double vertical = strike(*scene.cue, scene.size_of(ball)).dropped_vertical;
         if (vertical > 0.0)
             plan.warnings.push_back(
                 fmt::format("the elevated cue would give the ball a vertical speed of {:.3g} m/s; the model "

@@ -88,7 +88,9 @@ std::vector<int> numbers_of(const Rack& rack, SplitMix64& random) {
     return out;
 }
 
-/// Balls with a spot of their own.
+/// Balls with a spot of their own. Snooker: baulk line 737 mm from the cushion, radius of the D 292 mm, black
+/// spot 324 mm from the top cushion (rules of the WPBSA, section 1). Three-cushion: 182.5 mm between the two
+/// spots of the start position (rules of the UMB). Both recalled, not read again.
 std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
     const Vec2 origin = table.corner;
     const double middle = table.width / 2.0, l = table.length;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/tolerances.h"
 #include "cue.h"
 #include "motion.h"
@@ -21,6 +22,7 @@ struct Start {
     Vec2 place;
     Vec3 v, w;
     Segment segment;
+    BallSize size;
 };
 
 double distance_to(const Cushion& c, const Vec2& p) {
@@ -33,18 +35,20 @@ class Bounds {
   public:
     explicit Bounds(const Scene& scene)
         : scene_(scene),
-          motion_(motion_params(scene.balls, scene.physics.gravity)),
+          motion_(motion_params(scene.balls, scene.physics.gravity, scene.balls.R)),
           time_(scene.stop.time.value_or(kInfinity)) {
         motion_.sliding = motion_.rolling = motion_.spin_decay = false;  // only the states are asked for
         for (const BallStart& ball : scene.ball) {
             Vec3 v = ball.velocity, w = ball.spin;
             if (scene.cue && scene.cue->ball == ball.id) {
-                const StruckBall struck = strike(*scene.cue, scene.balls);
+                const StruckBall struck = strike(*scene.cue, scene.size_of(ball));
                 v = struck.v;
                 w = struck.w;
             }
+            const BallSize size = scene.size_of(ball);
+            motion_.R = size.R;
             starts_.push_back(
-                {ball.position.head<2>(), v, w, start_segment(0.0, ball.position, v, w, motion_)});
+                {ball.position.head<2>(), v, w, start_segment(0.0, ball.position, v, w, motion_), size});
         }
     }
 
@@ -84,7 +88,7 @@ class Bounds {
     static double wide(double x) { return x * (1.0 + kReachMargin); }
 
     double alone(const Start& s) const {
-        const Vec2 u = cloth_slip(s.v, s.w, motion_.R);
+        const Vec2 u = cloth_slip(s.v, s.w, s.size.R);
         double speed = length(s.v.head<2>()), far = 0.0;
         if (s.segment.state == MotionState::kSliding) {
             if (motion_.slide == 0.0) return wide(speed > 0.0 ? speed * time_ : 0.0);
@@ -103,9 +107,12 @@ class Bounds {
         const bool gains = p.ball_ball == BallBallModel::kMathavan &&
                            (p.cloth_slip == ClothSlipSign::kAsPublished || coarse);
         if (gains || !(time_ < kInfinity)) return kInfinity;
-        double energy = 0.0;
+        // Per mass of the lightest ball, which could have all of it.
+        double lightest = kInfinity, energy = 0.0;
+        for (const Start& s : starts_) lightest = std::min(lightest, s.size.m);
         for (const Start& s : starts_)
-            energy += 0.5 * s.v.squaredNorm() + 0.2 * motion_.R * motion_.R * s.w.squaredNorm();
+            energy += (s.size.m / lightest) *
+                      (0.5 * s.v.squaredNorm() + 0.2 * s.size.R * s.size.R * s.w.squaredNorm());
         return wide(std::sqrt(2.0 * energy) * time_);
     }
 
@@ -114,7 +121,7 @@ class Bounds {
             for (std::size_t j = 0; j < i; ++j) {
                 if (radius[i] == 0.0 && radius[j] == 0.0) continue;  // both stay, even if they touch
                 if (length(starts_[i].place - starts_[j].place) <=
-                    wide(2.0 * motion_.R) + radius[i] + radius[j])
+                    wide(contact_distance(starts_[i].size.R, starts_[j].size.R)) + radius[i] + radius[j])
                     return true;
             }
         }
@@ -123,7 +130,7 @@ class Bounds {
     bool meets_cushion(const std::vector<double>& radius) const {
         for (std::size_t i = 0; i < starts_.size(); ++i) {
             if (radius[i] == 0.0) continue;
-            const double near = wide(motion_.R) + radius[i];
+            const double near = wide(starts_[i].size.R) + radius[i];
             for (const Cushion& c : scene_.table.cushions)
                 if (distance_to(c, starts_[i].place) <= near) return true;
             for (const Jaw& j : scene_.table.jaws)

@@ -148,7 +148,7 @@ BallState Record::state_at(int ball, double t) const {
     state.state = s.state;
     state.position = position_at(s, tau);
     state.velocity = velocity_at(s, tau);
-    state.spin = spin_at(s, tau, balls.R);
+    state.spin = spin_at(s, tau, size(ball).R);
     state.pocket = s.state == MotionState::kPocketed ? track.pocket : -1;
     return state;
 }

@@ -108,8 +108,10 @@ void write_tracks(const Record& record, OutputFile& file) {
     for (const BallTrack& track : record.tracks) {
         file.write(first ? "\n" : ",\n");
         first = false;
-        file.write(" {\"id\": " + dump(track.id) + ", \"pocket\": " + std::to_string(track.pocket) +
-                   ", \"segments\": [");
+        file.write(" {\"id\": " + dump(track.id) + ", \"pocket\": " + std::to_string(track.pocket));
+        if (track.own)
+            file.write(", \"radius\": " + dump(track.own->R) + ", \"mass\": " + dump(track.own->m));
+        file.write(", \"segments\": [");
         Lines lines(file, "  ");
         for (const Segment& segment : track.segments) lines.add(dump(segment_json(segment)));
         file.write("]}");

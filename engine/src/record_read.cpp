@@ -201,6 +201,8 @@ BallTrack read_track(const Node& node, const Table& table) {
     track.id = node.at("id").text();
     track.pocket =
         static_cast<int>(node.at("pocket").integer(-1, static_cast<std::int64_t>(table.pockets.size()) - 1));
+    if (node.has("radius") || node.has("mass"))
+        track.own = BallSize{node.at("radius").positive(), node.at("mass").positive()};
     const Node segments = node.at("segments");
     if (segments.size() == 0) segments.fail("a ball needs at least one segment");
     track.segments.reserve(segments.size());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
 #include "carom/engine/tolerances.h"
 #include "scene_sections.h"
@@ -41,11 +42,12 @@ void check_ids(const Section& top, const Scene& scene) {
 }
 
 void check_overlaps(const Section& top, const Scene& scene) {
-    const double diameter = 2.0 * scene.balls.R;
     for (std::size_t i = 0; i < scene.ball.size(); ++i) {
         const Vec2 p = planar(scene.ball[i]);
-        const double least = diameter - touch_tolerance(p);
+        const double R = scene.size_of(scene.ball[i]).R;
         for (std::size_t j = 0; j < i; ++j) {
+            const double diameter = contact_distance(R, scene.size_of(scene.ball[j]).R);
+            const double least = diameter - touch_tolerance(p);
             // Per axis first: most pairs are far apart.
             const Vec2 d = p - planar(scene.ball[j]);
             if (std::abs(d.x()) >= diameter || std::abs(d.y()) >= diameter) continue;
@@ -59,14 +61,13 @@ void check_overlaps(const Section& top, const Scene& scene) {
 }
 
 void check_reach(const Section& top, const Scene& scene) {
-    const double R = scene.balls.R;
     const auto refuse = [&](const BallStart& ball, const char* kind, const std::string& id, double depth) {
         top.fail(ball.where, fmt::format("ball {} reaches {:.4g} m into {} {}; move it away", quoted(ball.id),
                                          depth, kind, id));
     };
     for (const BallStart& ball : scene.ball) {
         const Vec2 p = planar(ball);
-        const double touch = touch_tolerance(p);
+        const double touch = touch_tolerance(p), R = scene.size_of(ball).R;
         for (const Cushion& c : scene.table.cushions) {
             const double depth = R - distance_to_segment(p, c);
             if (depth > touch) refuse(ball, "cushion", c.id, depth);
@@ -81,14 +82,50 @@ void check_reach(const Section& top, const Scene& scene) {
 /// A nose at or above the top of the ball meets nothing.
 void check_noses(const Section& top, const Scene& scene) {
     const auto check = [&](const char* kind, const std::string& id, double height) {
-        if (height < 2.0 * scene.balls.R) return;
-        top.fail(top.has("table") ? "table" : "balls",
-                 fmt::format("the nose of {} {} is {} m high, not below the top of a ball ({} m); "
-                             "use larger balls or a lower cushion",
-                             kind, id, height, 2.0 * scene.balls.R));
+        for (const BallStart& ball : scene.ball) {
+            const double R = scene.size_of(ball).R;
+            if (height < 2.0 * R) continue;
+            const std::string message = fmt::format(
+                "the nose of {} {} is {} m high, not below the top of a ball ({} m); "
+                "use larger balls or a lower cushion",
+                kind, id, height, 2.0 * R);
+            if (ball.own) top.fail(ball.where, message);
+            top.fail(top.has("table") ? "table" : "balls", message);
+        }
     };
     for (const Cushion& c : scene.table.cushions) check("cushion", c.id, c.height);
     for (const Jaw& j : scene.table.jaws) check("jaw", j.id, j.height);
+}
+
+/// Balls of their own size: where the models of this scene have formulas for them.
+void check_sizes(const Section& top, const Scene& scene) {
+    if (scene.alike()) return;
+    const BallBallModelInfo& model = ball_ball_model(scene.physics.ball_ball);
+    const bool rough = model.reads_friction && scene.balls.ball_friction();
+    const BallSize first = scene.size_of(scene.ball.front());
+    for (const BallStart& ball : scene.ball) {
+        const BallSize size = scene.size_of(ball);
+        if (size == first) continue;
+        const SourceLocation where = ball.own ? ball.where : scene.ball.front().where;
+        const auto refuse = [&](const std::string& why) {
+            top.fail(where, fmt::format("balls {} and {} differ in size: {}", quoted(scene.ball.front().id),
+                                        quoted(ball.id), why));
+        };
+        if (rough && size.R != first.R)
+            refuse(
+                "friction between balls of different radius acts on a tilted line of centres, for which "
+                "there is no formula here; set balls.mu_b = 0 or physics.ball_ball = \"elastic\"");
+        if (rough && !model.rough_masses)
+            refuse(
+                fmt::format("the model {} takes balls of one mass; use physics.ball_ball = \"inelastic\" or "
+                            "set balls.mu_b = 0",
+                            model.name));
+        if (scene.ball.size() > 2 && scene.physics.clusters != ClusterModel::kSequential)
+            refuse(
+                fmt::format("clusters = \"{}\" takes balls that are alike; set physics.clusters = "
+                            "\"sequential\"",
+                            name(scene.physics.clusters)));
+    }
 }
 
 /// The integration of mathavan_2010 has to end.
@@ -96,12 +133,16 @@ void check_cushion_model(const Section& top, const Scene& scene) {
     const BallParams& p = scene.balls;
     const auto check = [&](CushionModel model, const char* kind, const std::string& id, double height) {
         if (model != CushionModel::kMathavan2010) return;
-        if (mathavan_2010_ends({p.R, p.m, p.mu_s, p.e_c, p.f_c, height})) return;
-        top.fail(top.has("physics") ? "physics" : "balls",
-                 fmt::format("with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the "
-                             "model mathavan_2010; "
-                             "lower one of them or use another cushion model",
-                             p.f_c, p.mu_s, kind, id));
+        for (const BallStart& ball : scene.ball) {
+            const BallSize size = scene.size_of(ball);
+            if (mathavan_2010_ends({size.R, size.m, p.mu_s, p.e_c, p.f_c, height})) continue;
+            top.fail(
+                top.has("physics") ? "physics" : "balls",
+                fmt::format("with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the "
+                            "model mathavan_2010; "
+                            "lower one of them or use another cushion model",
+                            p.f_c, p.mu_s, kind, id));
+        }
     };
     for (const Cushion& c : scene.table.cushions) check(scene.physics.cushion, "cushion", c.id, c.height);
     for (const Jaw& j : scene.table.jaws) check(scene.physics.jaw_model(), "jaw", j.id, j.height);
@@ -125,11 +166,11 @@ struct Motions {
 
 Motions possible_motions(const Scene& scene) {
     Motions m;
-    const double R = scene.balls.R;
     const bool struck = scene.cue && scene.cue->speed > 0.0;
     m.travel = m.slip = struck;
     m.twist = struck && scene.cue->side != 0.0;
     for (const BallStart& ball : scene.ball) {
+        const double R = scene.size_of(ball).R;
         const double vx = ball.velocity.x(), vy = ball.velocity.y(), wx = ball.spin.x(), wy = ball.spin.y();
         m.travel = m.travel || vx != 0.0 || vy != 0.0 || wx != 0.0 || wy != 0.0;
         const double slip = Vec2(vx - R * wy, vy + R * wx).norm();
@@ -168,6 +209,7 @@ void check_scene(const Section& top, const Scene& scene) {
     if (scene.ball.empty()) top.fail(SourceLocation{}, "there is no ball; add a [[ball]] or a [rack]");
     check_ids(top, scene);
     check_noses(top, scene);
+    check_sizes(top, scene);
     check_cushion_model(top, scene);
     check_overlaps(top, scene);
     check_reach(top, scene);

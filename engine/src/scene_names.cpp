@@ -1,6 +1,7 @@
 // How models are spelt in files, and the text of a scene error.
 #include <fmt/format.h>
 
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
 #include "carom/engine/math.h"
 #include "carom/engine/scene.h"
@@ -17,16 +18,14 @@ double ball_friction(const BallParams& balls, double slip) {
     return balls.mu_b + balls.mu_b_more * exponential(-balls.mu_b_fall * slip);
 }
 
+bool Scene::alike() const {
+    for (const BallStart& start : ball)
+        if (!(size_of(start) == size_of(ball.front()))) return false;
+    return true;
+}
+
 const char* name(BallBallModel model) {
-    switch (model) {
-        case BallBallModel::kMathavan:
-            return "mathavan";
-        case BallBallModel::kInelastic:
-            return "inelastic";
-        case BallBallModel::kElastic:
-            return "elastic";
-    }
-    return "?";
+    return ball_ball_model(model).name;
 }
 
 const char* name(CushionModel model) {

@@ -54,13 +54,17 @@ void check_id(const Section& section, const std::string& id) {
     }
 }
 
-BallStart read_ball(const Section& s, double R) {
+BallStart read_ball(const Section& s, const BallSize& common) {
     BallStart ball;
+    BallSize size = common;
+    size.R = s.number("radius", size.R, at_least(kMinLength, kMaxLength, "m"));
+    size.m = s.number("mass", size.m, at_least(kMinMass, kMaxMass, "kg"));
+    if (!(size == common)) ball.own = size;
     ball.where = s.where();
     ball.id = s.text("id", "cue");
     check_id(s, ball.id);
     const Vec2 p = s.vec2("position", {0.635, 0.5}, "[x, y]", kCoordinate);
-    ball.position = {p.x(), p.y(), R};
+    ball.position = {p.x(), p.y(), size.R};
     const Vec2 v = s.vec2("velocity", Vec2::Zero(), "[vx, vy]", at_least(-kMaxSpeed, kMaxSpeed, "m/s"));
     ball.velocity = {v.x(), v.y(), 0.0};
     const auto w = s.numbers("spin", 3, "[wx, wy, wz]", at_least(-kMaxSpin, kMaxSpin, "rad/s"));
@@ -114,10 +118,10 @@ void read_ball_list(const Section& top, Scene& scene) {
     const auto tables = top.tables("ball");
     if (!tables) return;
     for (const toml::table* table : *tables) {
-        const Section s(*table, top.file(), "ball", {"id", "position", "velocity", "spin"});
+        const Section s(*table, top.file(), "ball", {"id", "position", "velocity", "spin", "radius", "mass"});
         if (scene.ball.size() == kMaxBalls)
             s.fail(s.where(), fmt::format("more than {} balls; leave some out", kMaxBalls));
-        scene.ball.push_back(read_ball(s, scene.balls.R));
+        scene.ball.push_back(read_ball(s, scene.balls.size()));
     }
 }
 

@@ -90,10 +90,12 @@ void write_balls(Out out, const Scene& scene) {
         fmt::format_to(out, "mu_b_fit = [{}, {}, {}]\n", p.mu_b, p.mu_b_more, p.mu_b_fall);
     else
         fmt::format_to(out, "mu_b = {}\n", p.mu_b);
-    for (const BallStart& ball : scene.ball)
+    for (const BallStart& ball : scene.ball) {
         fmt::format_to(out, "[[ball]]\nid = {}\nposition = {}\nvelocity = {}\nspin = {}\n", quote(ball.id),
                        point(Vec2(ball.position.head<2>())), point(Vec2(ball.velocity.head<2>())),
                        point(ball.spin));
+        if (ball.own) fmt::format_to(out, "radius = {}\nmass = {}\n", ball.own->R, ball.own->m);
+    }
 }
 
 void write_cue(Out out, const Cue& cue) {

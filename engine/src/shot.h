@@ -28,15 +28,20 @@ struct Candidate {
     std::uint32_t stamp = 0;  ///< of a pair: Mover::stamp of the partner when this was found
 };
 
-/// What detection keeps for a ball beside its segment.
-struct Mover {
-    double surface = 0.0;   ///< R |w| at the start of the segment [m/s]
-    double until = kNever;  ///< its box holds until then; later contacts are not looked for yet
+/// What detection keeps for a ball beside its segment: two cache lines.
+struct alignas(64) Mover {
+    double until = kNever;    ///< its box holds until then; later contacts are not looked for yet
+    double own = kNever;      ///< time of its transition
+    double surface = 0.0;     ///< R |w| at the start of the segment [m/s]
+    std::uint32_t stamp = 0;  ///< changes with the segment
+    std::uint32_t round = 0;  ///< last search in which the ball was new
+    /// First contact with another ball. It is kept until it comes up, even if the partner has changed
+    /// meanwhile: it is then not later than the true one.
+    Candidate pair;
+    Candidate feature;  ///< first contact with the table
     double refresh =
         kNever;           ///< then the box is renewed; kNever where an event of the ball's own comes first
     double travel = 0.0;  ///< [m] the way that the next box is to cover
-    std::uint32_t stamp = 0;  ///< changes with the segment
-    std::uint32_t round = 0;  ///< last search in which the ball was new
     bool straight = false, queued = false;
 };
 
@@ -72,6 +77,7 @@ class Shot {
     bool before_at_once(const Candidate& x, const Candidate& y) const;
     double closing(const Candidate& c) const;
     Vec2 place(const Candidate& c) const;
+    Candidate first_of(int ball) const;
     void changed(int ball);
     void requeue();
 
@@ -81,7 +87,7 @@ class Shot {
     Box swept(int ball, double from, double duration) const;
     Path path(int ball, double from) const;
     void bound(int ball, double from);
-    bool search_pairs(int ball);
+    void search_pairs(int ball);
     Candidate pair(int a, const Path& mine, int b, double latest) const;
     void offer(int ball, int partner, Candidate c);
     void look_again(int ball);
@@ -139,7 +145,9 @@ class Shot {
     const Segment& now_of(int ball) const { return current_[static_cast<std::size_t>(ball)]; }
     Vec3 position_now(int ball) const { return position_at(now_of(ball), now_ - now_of(ball).start); }
     Vec3 velocity_now(int ball) const { return velocity_at(now_of(ball), now_ - now_of(ball).start); }
-    Vec3 spin_now(int ball) const { return spin_at(now_of(ball), now_ - now_of(ball).start, plan_.balls.R); }
+    Vec3 spin_now(int ball) const { return spin_at(now_of(ball), now_ - now_of(ball).start, radius(ball)); }
+    double radius(int ball) const { return plan_.sizes[static_cast<std::size_t>(ball)].R; }
+    const MotionParams& motion_of(int ball) const { return motion_[static_cast<std::size_t>(ball)]; }
     /// From one time to another, on the long side of its rounding.
     static double span(double from, double to) { return (to - from) + 0x1p-50 * to; }
     static double nanoseconds(Clock::time_point from, Clock::time_point to) {
@@ -148,7 +156,7 @@ class Shot {
 
     const Plan& plan_;
     const SimulateOptions& options_;
-    MotionParams motion_;
+    std::vector<MotionParams> motion_;  // per ball
     Record record_;
     double now_ = 0.0;
     int balls_ = 0;
@@ -157,15 +165,13 @@ class Shot {
     std::vector<Segment> current_;  // per ball
     std::vector<Segment> log_;      // every segment begun in this run, in order; the record's at the end
     std::vector<int> log_ball_;
-    std::vector<int> touched_;  // balls whose motion the present event changed
+    std::vector<int> log_member_;           // balls of every cluster of this run
+    std::vector<std::size_t> log_cluster_;  // where each cluster's balls end
+    std::vector<int> touched_;              // balls whose motion the present event changed
     std::vector<HeldContact> held_;
     ClusterMap cluster_map_;
     std::vector<ClusterBall> cluster_balls_;
     std::vector<ClusterContact> cluster_contacts_;
-    // Per ball: its transition, its first contact with the table, its first contact with another ball, and
-    // the first of these. A pair is kept until it comes up, even if the partner has changed meanwhile: it is
-    // then not later than the ball's true next contact.
-    std::vector<Candidate> own_, feature_, pair_, first_;
     std::vector<double> key_;  // per ball: when the loop has to look at it
     std::vector<Mover> mover_;
     std::vector<int> changed_;  // balls whose place in the queue is to be found anew

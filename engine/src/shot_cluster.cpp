@@ -92,14 +92,18 @@ void Shot::collect_cluster_at(int a, int b, double v_n) {
                 cluster_contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap});
         }
     }
-    std::stable_sort(cluster_contacts_.begin(), cluster_contacts_.end(),
-                     [this](const ClusterContact& p, const ClusterContact& q) {
-                         const auto place = [this](const ClusterContact& c) {
-                             return Vec2(planar(cluster_balls_[static_cast<std::size_t>(c.i)].r) +
-                                         planar(cluster_balls_[static_cast<std::size_t>(c.j)].r));
-                         };
-                         return before_place(place(p), place(q));
-                     });
+    // By place; insertion keeps the order of equals and needs no memory.
+    const auto place = [this](const ClusterContact& c) {
+        return Vec2(planar(cluster_balls_[static_cast<std::size_t>(c.i)].r) +
+                    planar(cluster_balls_[static_cast<std::size_t>(c.j)].r));
+    };
+    for (auto here = cluster_contacts_.begin(); here != cluster_contacts_.end(); ++here) {
+        const auto to = std::upper_bound(cluster_contacts_.begin(), here, *here,
+                                         [&place](const ClusterContact& p, const ClusterContact& q) {
+                                             return before_place(place(p), place(q));
+                                         });
+        std::rotate(to, here, here + 1);
+    }
 }
 
 // True if the impact was a cluster's; false leaves it to the pair kernel.
@@ -113,17 +117,16 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     if (plan_.clusters == ClusterModel::kRigid) {
         steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
     } else {
-        const bool frictionless = plan_.scene.physics.ball_ball == BallBallModel::kElastic;
+        const bool frictionless = !plan_.ball_ball->reads_friction;
         const double mu_b = frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b);
-        const ClusterSettings settings{
-            p.R,
-            plan_.scene.physics.ball_ball == BallBallModel::kMathavan ? p.mu_s : 0.0,
-            mu_b,
-            frictionless ? 1.0 : p.e_b,
-            plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
-            kClusterEpsilon,
-            mu_b > 0.0 ? kClusterFrictionStep : kClusterStep,
-            plan_.contact_phase};
+        const ClusterSettings settings{p.R,
+                                       plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
+                                       mu_b,
+                                       frictionless ? 1.0 : p.e_b,
+                                       plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
+                                       kClusterEpsilon,
+                                       mu_b > 0.0 ? kClusterFrictionStep : kClusterStep,
+                                       plan_.contact_phase};
         steps = cluster_map_.compliant(cluster_balls_, cluster_contacts_, settings, v_n);
         // Friction and a wedge can keep balls pressed together without end: then as if they were rigid.
         if (steps < 0) steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
@@ -133,14 +136,13 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
         cost_.steps = steps;
         cost_.method = name(plan_.clusters);
     }
-    std::vector<int> members;
-    for (const ClusterBall& ball : cluster_balls_) members.push_back(ball.ball);
-    for (const int ball : members) free_ball(ball);
+    for (const ClusterBall& ball : cluster_balls_) free_ball(ball.ball);
     for (const ClusterBall& ball : cluster_balls_)
-        begin(ball.ball, start_segment(now_, ball.r, ball.v, ball.w, motion_));
-    record_event(EventType::kBallCluster, c.a, c.b);
-    record_.events.back().detail = static_cast<int>(record_.clusters.size());
-    record_.clusters.push_back(std::move(members));
+        begin(ball.ball, start_segment(now_, ball.r, ball.v, ball.w, motion_of(ball.ball)));
+    record_event(EventType::kBallCluster, c.a, c.b,
+                 static_cast<int>(record_.clusters.size() + log_cluster_.size()));
+    for (const ClusterBall& ball : cluster_balls_) log_member_.push_back(ball.ball);
+    log_cluster_.push_back(log_member_.size());
     return true;
 }
 

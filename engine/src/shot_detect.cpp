@@ -42,7 +42,7 @@ void extend(double r, double v, double a, double T, double margin, double& low, 
 Box Shot::swept(int ball, double from, double duration) const {
     const Segment& s = now_of(ball);
     const Vec3 r = position_at(s, from - s.start), v = velocity_at(s, from - s.start);
-    const double R = plan_.balls.R,
+    const double R = radius(ball),
                  margin = R * (1.0 + kBoxShare) + kBoxShare * (std::abs(r.x()) + std::abs(r.y()));
     Box box{};
     extend(r.x(), v.x(), s.a.x(), duration, margin, box.low_x, box.high_x);
@@ -56,7 +56,7 @@ void Shot::bound(int ball, double from) {
     const auto i = static_cast<std::size_t>(ball);
     Mover& mover = mover_[i];
     const Segment& s = now_of(ball);
-    mover.until = std::min(own_[i].time, feature_[i].time);
+    mover.until = std::min(mover.own, mover.feature.time);
     mover.refresh = kNever;
     if (mover.travel < kNever && translates(s.state)) {
         const Vec3 v = velocity_at(s, from - s.start);
@@ -79,45 +79,42 @@ Candidate Shot::pair(int a, const Path& mine, int b, double latest) const {
         std::min(mover_[static_cast<std::size_t>(a)].until, mover_[static_cast<std::size_t>(b)].until),
         latest);
     const Path one = from == s.start ? mine : path(a, from), two = path(b, from);
-    if (stays_apart(two.r - one.r, two.v - one.v, two.a - one.a, 2.0 * plan_.balls.R, span(from, until)))
-        return {};
-    const double t = time_to_ball(one, two, 2.0 * plan_.balls.R);
+    const double reach = contact_distance(radius(a), radius(b));
+    if (stays_apart(two.r - one.r, two.v - one.v, two.a - one.a, reach, span(from, until))) return {};
+    const double t = time_to_ball(one, two, reach);
     return {from + t, EventType::kBallBall, std::min(a, b), std::max(a, b), -1};
 }
 
 void Shot::offer(int ball, int partner, Candidate c) {
-    Candidate& mine = pair_[static_cast<std::size_t>(ball)];
+    Candidate& mine = mover_[static_cast<std::size_t>(ball)].pair;
     if (!before(c, mine)) return;
     mine = c;
     mine.stamp = mover_[static_cast<std::size_t>(partner)].stamp;
     changed(ball);
 }
 
-// All contacts of one ball, each offered to both. Returns whether any other ball's box is near.
-bool Shot::search_pairs(int ball) {
-    bool any = false;
+// All contacts of one ball, each offered to both.
+void Shot::search_pairs(int ball) {
     ball_boxes_.settle();
     const Path mine = path(ball, now_of(ball).start);
-    ball_boxes_.neighbours(ball, [this, ball, &mine, &any](int other) {
-        any = true;
+    ball_boxes_.neighbours(ball, [this, ball, &mine](int other) {
         // Of two new balls the first one has done it.
         if (mover_[static_cast<std::size_t>(other)].round == round_ && other < ball) return;
         if (held_together(ball, other)) return;
-        const double latest =
-            std::max(pair_[static_cast<std::size_t>(ball)].time, pair_[static_cast<std::size_t>(other)].time);
+        const double latest = std::max(mover_[static_cast<std::size_t>(ball)].pair.time,
+                                       mover_[static_cast<std::size_t>(other)].pair.time);
         const Candidate c = pair(ball, mine, other, latest);
         if (c.time == kNever) return;
         offer(ball, other, c);
         offer(other, ball, c);
     });
-    return any;
 }
 
 // A ball's own part after an event that touched it: its transition, the table, its box.
 void Shot::renew(int ball) {
     const auto i = static_cast<std::size_t>(ball);
     const Segment& s = now_of(ball);
-    const double R = plan_.balls.R;
+    const double R = radius(ball);
     Mover& mover = mover_[i];
     mover.surface = R * std::sqrt(s.w.x() * s.w.x() + s.w.y() * s.w.y() + s.w.z() * s.w.z());
     // A free ball rolls straight ahead; a held one is pushed aside.
@@ -127,8 +124,8 @@ void Shot::renew(int ball) {
     mover.until = mover.refresh = kNever;
     mover.round = round_;
     ++mover.stamp;
-    own_[i] = {s.start + s.duration, EventType::kSlideRoll, ball, -1, -1};
-    pair_[i] = {};
+    mover.own = s.start + s.duration;
+    mover.pair = {};
     detect_features(ball);
     if (plan_.pairs && in_play(s))
         bound(ball, s.start);
@@ -149,14 +146,17 @@ void Shot::redetect() {
 
 // Without an event: the ball's box has ended, or the contact that it was waiting for does not come.
 void Shot::look_again(int ball) {
-    const auto i = static_cast<std::size_t>(ball);
+    Mover& mover = mover_[static_cast<std::size_t>(ball)];
     ++round_;
-    pair_[i] = {};
-    const double refresh = mover_[i].refresh;
-    const bool ended = refresh <= first_[i].time;
-    if (ended) bound(ball, refresh);
-    // Where nobody is near, the next box covers twice the way.
-    if (!search_pairs(ball) && ended) mover_[i].travel *= 2.0;
+    const double refresh = mover.refresh;
+    const bool ended = refresh <= key_[static_cast<std::size_t>(ball)];
+    mover.pair = {};
+    if (ended) {
+        // Twice the way each time: a ball that meets nobody for ever is asked a finite number of times.
+        mover.travel *= 2.0;
+        bound(ball, refresh);
+    }
+    search_pairs(ball);
     changed(ball);
 }
 

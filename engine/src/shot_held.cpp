@@ -28,6 +28,10 @@ bool Shot::hold_instead(const HeldContact& contact, double v_n, double a_c, doub
     const bool rounding =
         (is_held(contact.i) || (contact.j >= 0 && is_held(contact.j))) && v_n <= rounding_of_held(contact);
     if (!rounding && !holds(v_n, a_c, restitution) && !rattles(contact)) return false;
+    if (contact.j >= 0 && !plan_.alike)
+        fail(
+            "two balls meet so slowly that they stay in contact, and there are balls of different size: that "
+            "contact is not modelled; make the balls alike");
     held_.push_back(contact);
     record_event(contact.hold_type(), contact.i, contact.partner, contact.nose);
     solve_group(contact.i, false);
@@ -54,7 +58,9 @@ bool Shot::rattles(const HeldContact& contact) const {
 }
 
 double Shot::rounding_of_held(const HeldContact& contact) const {
-    const auto of = [this](int ball) { return held_noise(velocity_now(ball), spin_now(ball), motion_); };
+    const auto of = [this](int ball) {
+        return held_noise(velocity_now(ball), spin_now(ball), motion_of(ball));
+    };
     double noise = of(contact.i);
     if (contact.j >= 0) noise = std::max(noise, of(contact.j));
     for (const HeldContact& c : held_) {
@@ -79,7 +85,7 @@ void Shot::free_ball(int ball) {
         if (c.j >= 0) partners.push_back(c.i == ball ? c.j : c.i);
     }
     // From here the ball's own segment counts as free; the caller replaces it.
-    begin(ball, start_segment(now_, position_now(ball), velocity_now(ball), spin_now(ball), motion_));
+    begin(ball, start_segment(now_, position_now(ball), velocity_now(ball), spin_now(ball), motion_of(ball)));
     for (const int partner : partners) {
         if (is_held(partner)) solve_group(partner, false);
     }
@@ -108,7 +114,7 @@ void Shot::solve_group(int ball, bool transitions) {
         member.w = spin_now(b);
         const Segment& s = now_of(b);
         if (transitions && s.held && s.ends && s.start + s.duration <= now_)
-            end_transition(member, s.state, plan_.balls.R);
+            end_transition(member, s.state, radius(b));
         group.balls.push_back(member);
     }
     const auto left_of = [](const Vec3& p, const Vec3& q) {
@@ -124,7 +130,7 @@ void Shot::solve_group(int ball, bool transitions) {
     std::erase_if(held_, [&](const HeldContact& c) { return is_member(c.i); });
     sort_by_place(group.contacts);
     bool any_released = release_past_ends(group);
-    solve_held(group, plan_, motion_, now_);
+    solve_held(group, plan_, motion_of(ball), now_);
     if (transitions) record_transitions(group);
     for (const HeldContact& c : group.contacts) {
         if (c.released) {
@@ -141,7 +147,8 @@ void Shot::solve_group(int ball, bool transitions) {
             const bool still = std::any_of(held_.begin(), held_.end(), [&](const HeldContact& c) {
                 return c.i == member.ball || c.j == member.ball;
             });
-            if (!still) begin(member.ball, start_segment(now_, member.r, member.v, member.w, motion_));
+            if (!still)
+                begin(member.ball, start_segment(now_, member.r, member.v, member.w, motion_of(member.ball)));
         }
     }
 }
@@ -181,7 +188,7 @@ bool Shot::release_past_ends(HeldGroup& group) {
 void Shot::sort_by_place(std::vector<HeldContact>& contacts) const {
     const auto place_of = [this](const HeldContact& c) {
         const Vec3 r = position_now(c.i);
-        return Vec2(r.x() + plan_.balls.R * c.n.x(), r.y() + plan_.balls.R * c.n.y());
+        return Vec2(r.x() + radius(c.i) * c.n.x(), r.y() + radius(c.i) * c.n.y());
     };
     std::sort(contacts.begin(), contacts.end(), [&](const HeldContact& p, const HeldContact& q) {
         const Vec2 a = place_of(p), b = place_of(q);

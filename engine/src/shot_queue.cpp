@@ -72,19 +72,26 @@ void Shot::changed(int ball) {
     changed_.push_back(ball);
 }
 
+// The first of a ball's transition, contact with the table and contact with another ball.
+Candidate Shot::first_of(int ball) const {
+    const Mover& mover = mover_[static_cast<std::size_t>(ball)];
+    Candidate first{mover.own, EventType::kSlideRoll, ball, -1, -1};
+    take_first(mover.feature, first);
+    take_first(mover.pair, first);
+    return first;
+}
+
 // Finds the places of the balls whose candidates changed.
 void Shot::requeue() {
     for (const int ball : changed_) {
-        const auto i = static_cast<std::size_t>(ball);
-        mover_[i].queued = false;
-        const Candidate* first = before(feature_[i], own_[i]) ? &feature_[i] : &own_[i];
-        if (before(pair_[i], *first)) first = &pair_[i];
-        first_[i] = *first;
-        key_[i] = std::min(first->time, mover_[i].refresh);
+        Mover& mover = mover_[static_cast<std::size_t>(ball)];
+        mover.queued = false;
+        key_[static_cast<std::size_t>(ball)] =
+            std::min(std::min(mover.own, mover.feature.time), std::min(mover.pair.time, mover.refresh));
     }
     const auto earlier = [this](int x, int y) {
-        const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
-        return key_[i] != key_[j] ? key_[i] < key_[j] : key_[i] != kNever && before(first_[i], first_[j]);
+        const double p = key_[static_cast<std::size_t>(x)], q = key_[static_cast<std::size_t>(y)];
+        return p != q ? p < q : p != kNever && before(first_of(x), first_of(y));
     };
     for (const int ball : changed_) queue_.update(ball, earlier);
     changed_.clear();
@@ -98,8 +105,8 @@ Candidate Shot::next() {
         const int ball = queue_.first();
         if (ball < 0) return {};
         const auto i = static_cast<std::size_t>(ball);
-        const Candidate& c = first_[i];
         if (key_[i] == kNever) return {};
+        const Candidate c = first_of(ball);
         const bool ended = mover_[i].refresh <= c.time;
         const bool stale = c.type == EventType::kBallBall &&
                            c.stamp != mover_[static_cast<std::size_t>(c.a == ball ? c.b : c.a)].stamp;

@@ -21,14 +21,13 @@ void Shot::record_event(EventType type, int a, int b, int detail) {
     const Vec3 apart = position_now(two) - position_now(one);
     const Vec2 y = Vec2(apart.x(), apart.y()) / length(Vec2(apart.x(), apart.y())), x(y.y(), -y.x());
     const Vec3 v = velocity_now(one) - velocity_now(two), w = spin_now(one) + spin_now(two);
-    const double along = x.x() * v.x() + x.y() * v.y() - p.R * w.z();
-    const double upward = p.R * (x.x() * w.x() + x.y() * w.y());
+    const double along = x.x() * v.x() + x.y() * v.y() - radius(one) * w.z();
+    const double upward = radius(one) * (x.x() * w.x() + x.y() * w.y());
     return ball_friction(p, length(Vec2(along, upward)));
 }
 
 template <bool kProfile>
 void Shot::resolve_ball_ball(const Candidate& c) {
-    const double R = plan_.balls.R;
     // Ball 1 is the one further left, then nearer: relabelling the balls changes no bit.
     const Vec3 ra = position_now(c.a), rb = position_now(c.b);
     const bool swap = rb.x() < ra.x() || (rb.x() == ra.x() && rb.y() < ra.y());
@@ -45,7 +44,8 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     const double v_n = contact.n.x() * (v1.x() - v2.x()) + contact.n.y() * (v1.y() - v2.y());
     const Vec2 pull = now_of(one).a - now_of(two).a;
     const double v_t = cross(contact.n, Vec2(v1.x() - v2.x(), v1.y() - v2.y()));
-    const double a_c = contact.n.x() * pull.x() + contact.n.y() * pull.y() - v_t * v_t / (2.0 * R);
+    const double a_c = contact.n.x() * pull.x() + contact.n.y() * pull.y() -
+                       v_t * v_t / contact_distance(radius(one), radius(two));
     if (hold_instead(contact, v_n, a_c, plan_.balls.e_b)) return;
     if (plan_.clusters != ClusterModel::kSequential && resolve_cluster<kProfile>(c, v_n)) return;
 
@@ -54,37 +54,32 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     const BallParams& p = plan_.balls;
     const Physics& physics = plan_.scene.physics;
     const double mu_s = plan_.cloth_in_impact ? p.mu_s : 0.0;
-    const kernel::ImpactParams params{p.R,
-                                      p.m,
+    const BallSize &size1 = plan_.sizes[static_cast<std::size_t>(one)],
+                   &size2 = plan_.sizes[static_cast<std::size_t>(two)];
+    const BallBallModelInfo& model = *plan_.ball_ball;
+    const kernel::ImpactParams params{size1.R,
+                                      size1.m,
                                       mu_s,
                                       mu_s,
                                       plan_.friction ? pair_friction(one, two) : 0.0,
-                                      p.e_b,
+                                      model.reads_restitution ? p.e_b : 1.0,
                                       physics.cloth_slip == ClothSlipSign::kAsPublished
                                           ? kernel::ClothSlip::kAsPublished
                                           : kernel::ClothSlip::kConsistent};
     kernel::ImpactResult result;
+    const bool equal = size1 == size2;
     const auto start = kProfile ? Clock::now() : Clock::time_point{};
-    switch (physics.ball_ball) {
-        case BallBallModel::kMathavan:
-            if (plan_.march != nullptr)
-                plan_.march(b1, b2, params, *physics.substeps, result);
-            else
-                plan_.by_tolerance(b1, b2, params, physics.tolerance, result);
-            break;
-        case BallBallModel::kInelastic:
-            kernel::collide_inelastic(b1, b2, params, result);
-            break;
-        case BallBallModel::kElastic:
-            kernel::collide_elastic(b1, b2, params, result);
-            break;
-    }
+    if (equal)
+        model.collide(plan_.impact, b1, b2, params, result);
+    else
+        collide_unequal(size1, size2, b1, b2, params, result);
     if constexpr (kProfile) {
         cost_.kernel_ns = nanoseconds(start, Clock::now());
         cost_.steps = result.steps;
-        cost_.method = physics.ball_ball != BallBallModel::kMathavan ? name(physics.ball_ball)
-                       : plan_.march != nullptr                      ? "march"
-                                                                     : kernel::name(result.method);
+        const bool mathavan = equal && model.model == BallBallModel::kMathavan;
+        cost_.method = !mathavan                       ? model.name
+                       : plan_.impact.march != nullptr ? "march"
+                                                       : kernel::name(result.method);
     }
     const auto id = [this](int ball) { return record_.tracks[static_cast<std::size_t>(ball)].id; };
     if (result.status != kernel::ImpactStatus::kOk && result.status != kernel::ImpactStatus::kNotApproaching)
@@ -93,8 +88,8 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     free_ball(one);
     free_ball(two);
     const auto vec = [](const double(&x)[3]) { return Vec3(x[0], x[1], x[2]); };
-    begin(one, start_segment(now_, r1, vec(result.v1), vec(result.w1), motion_));
-    begin(two, start_segment(now_, r2, vec(result.v2), vec(result.w2), motion_));
+    begin(one, start_segment(now_, r1, vec(result.v1), vec(result.w1), motion_of(one)));
+    begin(two, start_segment(now_, r2, vec(result.v2), vec(result.w2), motion_of(two)));
     if (result.status == kernel::ImpactStatus::kOk) record_event(EventType::kBallBall, c.a, c.b);
 }
 
@@ -111,7 +106,7 @@ void Shot::resolve_nose(const Candidate& c) {
         normal = out / length(out);
         height = nose.height;
         const double v_t = cross(normal, Vec2(v.x(), v.y()));
-        curving = v_t * v_t / (plan_.balls.R + nose.radius);
+        curving = v_t * v_t / (radius(c.a) + nose.radius);
     } else {
         const CushionLine& line = plan_.cushions[static_cast<std::size_t>(c.b)];
         normal = Vec2(-line.direction.y(), line.direction.x());
@@ -132,13 +127,14 @@ void Shot::resolve_nose(const Candidate& c) {
         return;
 
     const BallParams& p = plan_.balls;
+    const BallSize& size = plan_.sizes[static_cast<std::size_t>(c.a)];
     const CushionModelInfo& model = contact.jaw ? *plan_.jaw : *plan_.cushion;
-    if (!model.resolve({p.R, p.m, p.mu_s, p.e_c, p.f_c, height}, normal, v, w))
+    if (!model.resolve({size.R, size.m, p.mu_s, p.e_c, p.f_c, height}, normal, v, w))
         fail(fmt::format("the cushion model {} found no solution for the impact of ball {}; use another one",
                          model.name, record_.tracks[static_cast<std::size_t>(c.a)].id));
     if constexpr (kProfile) cost_.method = model.name;
     free_ball(c.a);
-    begin(c.a, start_segment(now_, r, v, w, motion_));
+    begin(c.a, start_segment(now_, r, v, w, motion_of(c.a)));
     record_event(c.type, c.a, c.b, c.nose);
 }
 
@@ -154,7 +150,7 @@ void Shot::resolve_transition(const Candidate& c) {
         solve_group(c.a, true);
         return;
     }
-    const Segment segment = now_of(c.a), after = after_transition(segment, motion_);
+    const Segment segment = now_of(c.a), after = after_transition(segment, motion_of(c.a));
     begin(c.a, after);
     record_event(transition_type(segment, after), c.a, -1);
 }
@@ -208,7 +204,7 @@ void Shot::fail(const std::string& why) const {
         const Segment& s = now_of(i);
         if (s.state == MotionState::kStationary || s.state == MotionState::kPocketed) continue;
         const double tau = std::max(0.0, now_ - s.start);
-        const Vec3 r = position_at(s, tau), v = velocity_at(s, tau), w = spin_at(s, tau, plan_.balls.R);
+        const Vec3 r = position_at(s, tau), v = velocity_at(s, tau), w = spin_at(s, tau, radius(i));
         text += fmt::format("  {} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n",
                             record_.tracks[static_cast<std::size_t>(i)].id, name(s.state), r.x(), r.y(),
                             v.x(), v.y(), w.x(), w.y(), w.z());

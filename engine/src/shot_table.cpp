@@ -41,7 +41,7 @@ void Shot::find_parts(int ball) {
 }
 
 void Shot::detect_features(int ball) {
-    Candidate& first = feature_[static_cast<std::size_t>(ball)];
+    Candidate& first = mover_[static_cast<std::size_t>(ball)].feature;
     first = {};
     const Segment& s = now_of(ball);
     const int lines = static_cast<int>(plan_.cushions.size()),
@@ -67,7 +67,7 @@ void Shot::detect_features(int ball) {
 // What lies beyond the first contact found so far cannot come before it: the window of the rejects.
 void Shot::offer_line(int ball, const Path& p, int line, Candidate& first) const {
     const CushionLine& c = plan_.cushions[static_cast<std::size_t>(line)];
-    const double from = now_of(ball).start, R = plan_.balls.R;
+    const double from = now_of(ball).start, R = radius(ball);
     if (stays_off_line(p, c.from, c.direction, R, std::min(p.horizon, span(from, first.time)))) return;
     if (held_to(ball, line, -1)) return;
     const double t = time_to_line(p, c.from, c.direction, c.length, R);
@@ -76,7 +76,7 @@ void Shot::offer_line(int ball, const Path& p, int line, Candidate& first) const
 
 void Shot::offer_nose(int ball, const Path& p, int nose, Candidate& first) const {
     const Nose& n = plan_.noses[static_cast<std::size_t>(nose)];
-    const double from = now_of(ball).start, reach = plan_.balls.R + n.radius;
+    const double from = now_of(ball).start, reach = radius(ball) + n.radius;
     if (stays_apart(p.r - n.center, p.v, p.a, reach, std::min(p.horizon, span(from, first.time)))) return;
     if (held_to(ball, -1, nose)) return;
     take_first({from + time_to_circle(p, n.center, reach), n.type, ball, n.index, nose}, first);

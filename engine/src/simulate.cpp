@@ -8,8 +8,10 @@
 
 namespace carom {
 
-Shot::Shot(const Plan& plan, const SimulateOptions& options)
-    : plan_(plan), options_(options), motion_(motion_params(plan)) {}
+Shot::Shot(const Plan& plan, const SimulateOptions& options) : plan_(plan), options_(options) {
+    for (std::size_t i = 0; i < plan.sizes.size(); ++i)
+        motion_.push_back(motion_params(plan, static_cast<int>(i)));
+}
 
 void Shot::set_up(bool profile) {
     const Scene& scene = plan_.scene;
@@ -25,16 +27,18 @@ void Shot::set_up(bool profile) {
     for (const BallStart& ball : scene.ball) {
         BallTrack track;
         track.id = ball.id;
+        track.own = ball.own;
         record_.tracks.push_back(std::move(track));
         current_.emplace_back();
-        begin(static_cast<int>(current_.size()) - 1,
-              start_segment(0.0, ball.position, ball.velocity, ball.spin, motion_));
+        const int index = static_cast<int>(current_.size()) - 1;
+        begin(index, start_segment(0.0, ball.position, ball.velocity, ball.spin, motion_of(index)));
     }
     if (scene.cue) {
         for (int i = 0; i < balls_; ++i) {
             if (scene.ball[static_cast<std::size_t>(i)].id != scene.cue->ball) continue;
-            const StruckBall struck = strike(*scene.cue, plan_.balls, plan_.squirt);
-            begin(i, start_segment(0.0, now_of(i).r, struck.v, struck.w, motion_));
+            const StruckBall struck =
+                strike(*scene.cue, plan_.sizes[static_cast<std::size_t>(i)], plan_.squirt);
+            begin(i, start_segment(0.0, now_of(i).r, struck.v, struck.w, motion_of(i)));
             record_.events.push_back({0.0, EventType::kCueStrike, i, -1, -1});
             if (profile) record_.costs.push_back({0.0, 0.0, 0.0, 0, "point"});
         }
@@ -48,13 +52,14 @@ void Shot::reserve_log() {
     const std::size_t segments = static_cast<std::size_t>(balls_) + kRoom;
     log_.reserve(segments);
     log_ball_.reserve(segments);
+    log_member_.reserve(kRoom);
+    log_cluster_.reserve(kRoom);
     record_.events.reserve(record_.events.size() + kRoom);
 }
 
 // All other memory of the loop is taken here.
 void Shot::first_candidates() {
     const auto count = static_cast<std::size_t>(balls_);
-    for (std::vector<Candidate>* list : {&own_, &feature_, &pair_, &first_}) list->resize(count);
     key_.assign(count, kNever);
     mover_.resize(count);
     changed_.reserve(count);
@@ -86,6 +91,12 @@ void Shot::finish() {
     for (std::size_t i = 0; i < count.size(); ++i) record_.tracks[i].segments.reserve(count[i]);
     for (std::size_t k = 0; k < log_.size(); ++k)
         record_.tracks[static_cast<std::size_t>(log_ball_[k])].segments.push_back(log_[k]);
+    std::size_t begin = 0;
+    for (const std::size_t end : log_cluster_) {
+        record_.clusters.emplace_back(log_member_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                      log_member_.begin() + static_cast<std::ptrdiff_t>(end));
+        begin = end;
+    }
     record_.duration = now_;
 }
 
@@ -103,6 +114,7 @@ template <bool kProfile>
     double stop = plan_.scene.stop.time.value_or(kNever);
     if (options_.until) stop = std::min(stop, *options_.until);
     const std::int64_t most = plan_.scene.stop.events.value_or(-1);
+    [[maybe_unused]] EventCost quiet;  // of rounds that brought no event
     for (;;) {
         if (most >= 0 && static_cast<std::int64_t>(record_.events.size()) >= most) {
             record_.stopped = StopReason::kEvents;
@@ -126,13 +138,18 @@ template <bool kProfile>
         const auto detected = kProfile ? Clock::now() : Clock::time_point{};
         requeue();
         if constexpr (kProfile) {
-            // A sustained contact can bring several events at once: the first one carries the cost.
             const auto end = Clock::now();
-            cost_.resolve_ns = nanoseconds(found, resolved);
-            cost_.detect_ns = nanoseconds(start, found) + nanoseconds(resolved, end);
-            cost_.queue_ns = nanoseconds(start, found) - search_ns_ + nanoseconds(detected, end);
+            cost_.resolve_ns = quiet.resolve_ns + nanoseconds(found, resolved);
+            cost_.detect_ns = quiet.detect_ns + nanoseconds(start, found) + nanoseconds(resolved, end);
+            cost_.queue_ns =
+                quiet.queue_ns + nanoseconds(start, found) - search_ns_ + nanoseconds(detected, end);
+            cost_.kernel_ns += quiet.kernel_ns;
             record_.costs.resize(record_.events.size());
-            if (record_.events.size() > events_before) record_.costs[events_before] = cost_;
+            // A sustained contact can bring several events at once: the first one carries the cost. Or none:
+            // then the next event does.
+            const bool event = record_.events.size() > events_before;
+            if (event) record_.costs[events_before] = cost_;
+            quiet = event ? EventCost{} : cost_;
         }
         if (options_.progress) options_.progress(record_.events.size(), now_);
     }

@@ -55,7 +55,8 @@ PocketTable seven_foot() {
 /// Nine-foot table. Playing surface 100 x 50 in; the mouths are the middle of what the WPA equipment
 /// specifications allow (corner 4.5 to 4.625 in, side 5 to 5.125 in), and so are the angles between rail and
 /// facing (corner 142, side 104 degrees; here they count from 135 and from 90). The nose, at 64 % of the
-/// ball's diameter, lies within their 62.5 to 64.5 %. Carried over from the seven-foot table: cushion width,
+/// ball's diameter, lies within their 62.5 to 64.5 %. The numbers of the WPA are recalled, not read again for
+/// this table. Carried over from the seven-foot table: cushion width,
 /// jaw radii, pocket radii and depths; they give shelves of 37.6 mm in the corners and 4 mm at the sides
 /// (specified: 25 to 57 mm, 0 to 9.5 mm).
 PocketTable nine_foot() {

@@ -27,15 +27,20 @@ Vec2 planar(const Vec3& a) {
     return {a.x(), a.y()};
 }
 
-double energy_of(const BallState& s, double R) {
-    return s.state == MotionState::kPocketed
-               ? 0.0
-               : 0.5 * s.velocity.squaredNorm() + 0.2 * R * R * s.spin.squaredNorm();
+// Over the mass that all balls have unless they have their own: 1 in most scenes.
+double mass(const Record& record, int ball) {
+    return record.size(ball).m / record.balls.m;
+}
+
+double energy_of(const Record& record, int ball, const BallState& s) {
+    if (s.state == MotionState::kPocketed) return 0.0;
+    const double R = record.size(ball).R;
+    return mass(record, ball) * (0.5 * s.velocity.squaredNorm() + 0.2 * R * R * s.spin.squaredNorm());
 }
 
 class Checker {
   public:
-    Checker(const Record& record, const Plan& plan) : record_(record), plan_(plan), R_(record.balls.R) {}
+    Checker(const Record& record, const Plan& plan) : record_(record), plan_(plan) {}
 
     std::optional<Violation> run() {
         check_finite();
@@ -57,7 +62,8 @@ class Checker {
             check_penetration(now);
             check_rolling(now);
             double energy = 0.0;
-            for (const BallState& s : now.balls) energy += energy_of(s, R_);
+            for (std::size_t i = 0; i < now.balls.size(); ++i)
+                energy += energy_of(record_, static_cast<int>(i), now.balls[i]);
             if (e.type == EventType::kCueStrike) last_energy = energy;
             if (keeps_energy() && energy > last_energy + 1e-12 * first_energy)
                 report("U4", fmt::format("energy rises from {:.17g} to {:.17g} J/kg", last_energy, energy));
@@ -69,13 +75,15 @@ class Checker {
     }
 
   private:
+    double R(std::size_t ball) const { return record_.size(static_cast<int>(ball)).R; }
+
     void report(const char* law, std::string message) {
         if (!found_) found_ = Violation{event_, law, std::move(message)};
     }
 
     bool keeps_energy() const {
         const Physics& physics = plan_.scene.physics;
-        return physics.ball_ball != BallBallModel::kMathavan ||
+        return !plan_.ball_ball->reads_cloth ||
                (physics.cloth_slip == ClothSlipSign::kConsistent && physics.substeps.value_or(100) >= 100);
     }
 
@@ -109,7 +117,7 @@ class Checker {
             const Vec2 r = planar(now.balls[i].position);
             for (std::size_t j = i + 1; j < now.balls.size(); ++j) {
                 if (now.balls[j].state == MotionState::kPocketed) continue;
-                const double gap = length(planar(now.balls[j].position) - r) - 2.0 * R_;
+                const double gap = length(planar(now.balls[j].position) - r) - contact_distance(R(i), R(j));
                 if (gap < -kTouchTolerance)
                     report("U3", fmt::format("balls {} and {} overlap by {:.3g} m", record_.tracks[i].id,
                                              record_.tracks[j].id, -gap));
@@ -118,13 +126,13 @@ class Checker {
             for (const CushionLine& line : plan_.cushions) {
                 const Vec2 offset = r - line.from;
                 const double foot = line.direction.dot(offset);
-                const double gap = std::abs(cross(line.direction, offset)) - R_;
+                const double gap = std::abs(cross(line.direction, offset)) - R(i);
                 if (foot >= 0.0 && foot <= line.length && gap < -kTouchTolerance)
                     report("U3",
                            fmt::format("ball {} is {:.3g} m deep in a cushion", record_.tracks[i].id, -gap));
             }
             for (const Nose& nose : plan_.noses) {
-                const double gap = length(r - nose.center) - nose.radius - R_;
+                const double gap = length(r - nose.center) - nose.radius - R(i);
                 if (gap < -kTouchTolerance)
                     report("U3", fmt::format("ball {} is {:.3g} m deep in a jaw or cushion end",
                                              record_.tracks[i].id, -gap));
@@ -136,7 +144,7 @@ class Checker {
         for (std::size_t i = 0; i < now.balls.size(); ++i) {
             const BallState& s = now.balls[i];
             if (s.state != MotionState::kRolling) continue;
-            if (length(cloth_slip(s.velocity, s.spin, R_)) > 1e-13 * length(planar(s.velocity)))
+            if (length(cloth_slip(s.velocity, s.spin, R(i))) > 1e-13 * length(planar(s.velocity)))
                 report("U7", fmt::format("ball {} rolls and slips", record_.tracks[i].id));
         }
     }
@@ -152,24 +160,27 @@ class Checker {
             if (!around(e.a, e.time, before1, after1) || !around(e.b, e.time, before2, after2)) continue;
             const Vec3 v1 = velocity_at(*before1, e.time - before1->start),
                        v2 = velocity_at(*before2, e.time - before2->start);
-            const Vec3 w1 = spin_at(*before1, e.time - before1->start, R_),
-                       w2 = spin_at(*before2, e.time - before2->start, R_);
-            const Vec3 n3 = (after2->r - after1->r).normalized();
-            const double scale = v1.norm() + v2.norm() + R_ * (w1.norm() + w2.norm());
-            const Vec3 change = after1->v + after2->v - v1 - v2;
-            const Vec3 dw1 = after1->w - w1, dw2 = after2->w - w2;
+            const double R1 = R(static_cast<std::size_t>(e.a)), R2 = R(static_cast<std::size_t>(e.b));
+            const double m1 = mass(record_, e.a), m2 = mass(record_, e.b);
+            const Vec3 w1 = spin_at(*before1, e.time - before1->start, R1),
+                       w2 = spin_at(*before2, e.time - before2->start, R2);
+            Vec3 n3 = after2->r - after1->r;
+            n3.z() = 0.0;
+            n3.normalize();
+            const double scale = m1 * (v1.norm() + R1 * w1.norm()) + m2 * (v2.norm() + R2 * w2.norm());
+            const Vec3 change = m1 * (after1->v - v1) + m2 * (after2->v - v2);
+            const Vec3 dw1 = m1 * R1 * (after1->w - w1), dw2 = m2 * R2 * (after2->w - w2);
             // The cloth gives at most mu_s of the vertical friction, which is at most mu_b of the normal
             // impulse, all the way.
             const double J_n =
-                std::max(std::abs((after1->v - v1).dot(n3)), std::abs((after2->v - v2).dot(n3)));
-            const bool cloth =
-                plan_.balls.mu_s > 0.0 && plan_.scene.physics.ball_ball == BallBallModel::kMathavan;
+                std::max(m1 * std::abs((after1->v - v1).dot(n3)), m2 * std::abs((after2->v - v2).dot(n3)));
+            const bool cloth = plan_.balls.mu_s > 0.0 && plan_.ball_ball->reads_cloth;
             const double limit =
                 cloth ? plan_.balls.mu_s * (plan_.balls.mu_b + plan_.balls.mu_b_more) * J_n : 0.0;
             if (change.norm() > limit + 64.0 * kUlp * scale)
                 report("U5",
                        fmt::format("the impact changes the pair's momentum by {:.3g} m/s", change.norm()));
-            const double rounding = 1e-12 * scale / R_;
+            const double rounding = 1e-12 * scale;
             if (!cloth && (std::abs(dw1.dot(n3)) > rounding || std::abs(dw2.dot(n3)) > rounding ||
                            (dw1 - dw2).norm() > rounding))
                 report(
@@ -202,7 +213,6 @@ class Checker {
 
     const Record& record_;
     const Plan& plan_;
-    double R_;
     std::size_t event_ = 0;
     std::optional<Violation> found_;
 };
@@ -212,7 +222,7 @@ class Checker {
 double energy_at(const Record& record, double t) {
     double energy = 0.0;
     for (std::size_t i = 0; i < record.tracks.size(); ++i)
-        energy += energy_of(record.state_at(static_cast<int>(i), t), record.balls.R);
+        energy += energy_of(record, static_cast<int>(i), record.state_at(static_cast<int>(i), t));
     return energy;
 }
 

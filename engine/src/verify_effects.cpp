@@ -14,7 +14,7 @@ namespace {
 
 class Skipped {
   public:
-    Skipped(const Record& record, const Plan& plan) : record_(record), plan_(plan), R_(record.balls.R) {}
+    Skipped(const Record& record, const Plan& plan) : record_(record), plan_(plan) {}
 
     std::optional<Violation> run() {
         const Scene& scene = plan_.scene;
@@ -25,6 +25,7 @@ class Skipped {
             const std::vector<Segment>& segments = record_.tracks[i].segments;
             for (std::size_t k = 0; k < segments.size() && !found_; ++k) {
                 ball_ = &record_.tracks[i].id;
+                R_ = record_.size(static_cast<int>(i)).R;
                 start_ = segments[k].start;
                 // A run that ends at rest leaves its last segments as they are for ever.
                 const double last = record_.stopped == StopReason::kAtRest ? kNever : record_.duration;
@@ -93,14 +94,15 @@ class Skipped {
         for (std::size_t j = 0; j < record_.tracks.size(); ++j) {
             if (static_cast<int>(j) == ball) continue;
             const Path other = path_of(record_.tracks[j].segments.front(), kNever);
-            if (path.moves && time_to_ball(path, other, 2.0 * R_) < kNever)
+            if (path.moves &&
+                time_to_ball(path, other, contact_distance(R_, record_.size(static_cast<int>(j)).R)) < kNever)
                 need("ball-ball impacts", "meets ball " + record_.tracks[j].id);
         }
     }
 
     const Record& record_;
     const Plan& plan_;
-    double R_;
+    double R_ = 0.0;  // of that ball
     const std::string* ball_ = nullptr;
     double start_ = 0.0;
     std::optional<Violation> found_;

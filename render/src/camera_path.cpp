@@ -57,7 +57,7 @@ Vec3 place_to_follow(const Record& record, int ball, double t) {
     const Segment& last = track.segments.back();
     if (last.state == MotionState::kPocketed && t > last.start) t = last.start;
     Vec3 place = record.state_at(ball, t).position;
-    place.z() = record.balls.R;
+    place.z() = record.size(ball).R;
     return place;
 }
 

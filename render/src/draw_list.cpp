@@ -72,7 +72,8 @@ DrawList Stage::at(double t, std::optional<FrameCost> cost) const {
         ball.center = state.position;
         ball.orientation = record_.orientation_at(static_cast<int>(i), t);
         // Two pixels at least: on a cloth of kilometres the balls would otherwise be lost.
-        ball.radius = std::max(record_.balls.R, 2.0 / std::max(list.camera.scale(state.position), 1e-12));
+        ball.radius = std::max(record_.size(static_cast<int>(i)).R,
+                               2.0 / std::max(list.camera.scale(state.position), 1e-12));
         ball.style = styles_[i];
         list.balls.push_back(ball);
     }

@@ -126,13 +126,13 @@ void add_outline(DrawList& list, std::size_t first, float wider) {
 }
 
 void add_spin(DrawList& list, const Record& record, double t) {
-    const double R = record.balls.R;
     const std::size_t first = list.lines.size();
     const float width = line_width(list, 2.6);
     const Rgba level{1.0F, 0.95F, 0.35F, 1.0F}, vertical{0.45F, 1.0F, 0.95F, 1.0F};
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         const BallState state = record.state_at(static_cast<int>(i), t);
         if (state.state == MotionState::kPocketed || state.state == MotionState::kStationary) continue;
+        const double R = record.size(static_cast<int>(i)).R;
         const Vec3 top = state.position + Vec3(0.0, 0.0, R);
         // The top of the ball moves with w x R z: a tenth of a second of it, at most ten radii.
         const Vec3 surface(R * state.spin.y(), -R * state.spin.x(), 0.0);
@@ -166,15 +166,15 @@ void add_ghost(DrawList& list, const Record& record, double t) {
         return record.state_at(ball, std::nextafter(next->time, -1.0)).velocity.norm();
     };
     const int striker = next->b >= 0 && speed(next->b) > speed(next->a) ? next->b : next->a;
+    const double R = record.size(striker).R;
     const Vec3 there = record.state_at(striker, next->time).position,
                here = record.state_at(striker, t).position;
     const Rgba color{1.0F, 1.0F, 1.0F, 0.85F};
     const float width = line_width(list, 1.6);
-    add_circle(list, there, record.balls.R, 0.0, 2.0 * kPi, width, color, true);
-    if ((there - here).norm() > 2.0 * record.balls.R) {
+    add_circle(list, there, R, 0.0, 2.0 * kPi, width, color, true);
+    if ((there - here).norm() > 2.0 * R) {
         const Vec3 along = (there - here).normalized();
-        list.lines.push_back(
-            {here + record.balls.R * along, there - record.balls.R * along, width, color, false});
+        list.lines.push_back({here + R * along, there - R * along, width, color, false});
     }
 }
 

@@ -240,6 +240,30 @@ TEST(Cushion, WithoutFrictionAtBallHeightEveryModelReflects) {
     }
 }
 
+// The closed forms then have the bits of the smooth model, along any direction of the nose.
+TEST(Cushion, WithoutFrictionAtBallHeightTheClosedFormsAreSmoothBitForBit) {
+    SplitMix64 rng(14);
+    for (int i = 0; i < 4000; ++i) {
+        Case x = random_case(rng, i % 4);
+        x.contact.f_c = 0.0;
+        x.contact.height = x.contact.R;
+        const double angle = rng.uniform(0.0, 6.2831853);
+        x.normal = Vec2(std::cos(angle), std::sin(angle));
+        const Vec2 v(x.v.x(), x.v.y());
+        x.v = Vec3(v.x() * x.normal.x() - v.y() * x.normal.y(), v.x() * x.normal.y() + v.y() * x.normal.x(),
+                   0.0);
+        Vec3 v_s = x.v, w_s = x.w;
+        resolve_cushion(CushionModel::kSmooth, x.contact, x.normal, v_s, w_s);
+        for (const CushionModel model :
+             {CushionModel::kHan2005, CushionModel::kImpulse, CushionModel::kStronge}) {
+            Vec3 w = x.w, u = x.v;
+            resolve_cushion(model, x.contact, x.normal, u, w);
+            EXPECT_EQ(u, v_s) << name(model) << " " << i;
+            EXPECT_EQ(w, w_s) << name(model) << " " << i;
+        }
+    }
+}
+
 // Signs that every model with friction owes (docs/physics.md, section 8): running side widens the rebound,
 // check side narrows it; topspin keeps a rolling ball from coming straight back as fast as e.
 TEST(Cushion, RunningAndCheckSide) {
@@ -333,8 +357,8 @@ TEST(Cushion, Mathavan2010KeepsItsTolerance) {
     }
     std::sort(off.begin(), off.end());
     // Half of these impacts are straight in or hardly approaching: their forces are constant, their errors 0.
-    std::printf("mathavan_2010: error of 75 %% below %.2g, 99 %% %.2g, 99.9 %% %.2g, worst %.2g\n", off[15000],
-                off[19800], off[19980], off.back());
+    std::printf("mathavan_2010: error of 75 %% below %.2g, 99 %% %.2g, 99.9 %% %.2g, worst %.2g\n",
+                off[15000], off[19800], off[19980], off.back());
     EXPECT_LE(off[15000], 2e-8);
     EXPECT_LE(off[19800], 1e-6);
     EXPECT_LE(off.back(), 5e-5);

@@ -70,6 +70,19 @@ const Case kCases[] = {
          s.physics.ball_ball = BallBallModel::kInelastic;
          s.balls.mu_b = 0.05;
      }},
+    {"throw:mathavan", "", "model mathavan, mu_b = 0.05, no friction on the cloth",
+     [](Scene& s) {
+         s.physics.ball_ball = BallBallModel::kMathavan;
+         s.balls.mu_b = 0.05;
+     }},
+    {"cloth_in_impact", "carom::kernel::tolerance_scalar",
+     "the same with mu_s = 0.2, and gravity 0: the cloth acts in impacts only",
+     [](Scene& s) {
+         s.physics.ball_ball = BallBallModel::kMathavan;
+         s.physics.gravity = 0.0;
+         s.balls.mu_b = 0.05;
+         s.balls.mu_s = 0.2;
+     }},
     {"cushion_friction", "carom::detail::cushion_han_2005", "han_2005, f_c = 0.2",
      [](Scene& s) {
          s.physics.cushion = CushionModel::kHan2005;

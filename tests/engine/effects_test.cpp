@@ -93,6 +93,8 @@ const Zero kZeros[] = {
          s.physics.ball_ball = BallBallModel::kInelastic;
      }},
     {"cloth_in_impact", [](Scene& s, SplitMix64&) { s.balls.mu_b = 0.0; }},
+    {"cloth_in_impact", [](Scene& s, SplitMix64&) { s.balls.mu_s = 0.0; }},
+    {"cloth_in_impact", [](Scene& s, SplitMix64&) { s.physics.ball_ball = BallBallModel::kInelastic; }},
     {"cushions",
      [](Scene& s, SplitMix64&) {
          s.table = box(900.0, 900.0, 0.036576);
@@ -106,7 +108,15 @@ const Zero kZeros[] = {
                                              CushionModel::kStronge};
          s.physics.cushion = kClosed[rng.next() % 3];
          s.balls.f_c = 0.0;
-         for (Cushion& c : s.table.cushions) c.height = s.balls.R;
+         // A rhomboid of diagonal noses with round jaws in two corners and a post in the middle.
+         const double R = s.balls.R;
+         const Vec2 corners[] = {{-0.31, 0.05}, {-0.12, 2.61}, {1.53, 2.37}, {1.29, -0.22}};
+         s.table.cushions.clear();
+         for (int k = 0; k < 4; ++k)
+             s.table.cushions.push_back({"c" + std::to_string(k), corners[k], corners[(k + 1) % 4], R});
+         s.table.jaws = {
+             {"j1", corners[1], 0.2, R}, {"j2", corners[3], 0.17, R}, {"j3", {0.6, 2.45}, 0.0, R}};
+         if (rng.next() % 2 == 0) s.physics.jaw = kClosed[rng.next() % 3];
      }},
     {"pockets",
      [](Scene& s, SplitMix64& rng) {

@@ -2,6 +2,7 @@
 // they state are those that the reader takes.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -256,6 +257,122 @@ TEST(SceneSchema, HasTheKeysDefaultsAndChoicesOfTheReader) {
         }
         EXPECT_EQ(keys, keys_of_reader(place)) << name;
     }
+}
+
+// A number as TOML, with all its digits.
+std::string digits(double x, bool integer) {
+    std::ostringstream out;
+    if (integer) {
+        out << static_cast<long long>(x);
+        return out.str();
+    }
+    out.precision(17);
+    out << x;
+    const std::string text = out.str();
+    return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+}
+
+// Whether the reader refuses a value for being out of its range; other rules may still refuse it.
+bool in_range(const std::string& head, const std::string& key, const std::string& value) {
+    const std::string message = error_of(head + key + " = " + value + "\n");
+    EXPECT_EQ(message.find("not valid TOML"), std::string::npos) << message;
+    EXPECT_EQ(message.find("must be a number"), std::string::npos) << message;
+    return message.find("is out of range") == std::string::npos;
+}
+
+// What a key needs in front of it to be read at all.
+std::string opening(const std::string& name, const std::string& key) {
+    for (const Place& place : kSections) {
+        if (name != place.name) continue;
+        std::string head = std::string(place.open) + "\n";
+        if (name == "rack" && key == "count") head += "game = \"line\"\n";
+        if (name == "rack" && key == "rows") head += "game = \"triangle\"\n";
+        if (name == "table.cushion" && key != "from") head += "from = [0, 0]\n";
+        if (name == "table.cushion" && key == "height") head += "to = [1, 0]\n";
+        if (name == "table.jaw" && key != "center") head += "center = [0, 0]\n";
+        if (name == "table.jaw" && key == "height") head += "radius = 1\n";
+        if (name == "table.pocket" && key != "center") head += "center = [0, 0]\n";
+        return name == "ball" ? head : "[[ball]]\n" + head;
+    }
+    return "";
+}
+
+// The value at a bound is accepted and the next one beyond it is not; without a bound anything is accepted.
+// `wrap` turns a number into the value of the key (an array, where only one element is tried).
+template <class Wrap>
+void expect_range(const std::string& head, const std::string& key, const Json& range, Wrap wrap) {
+    const bool integer = range.at("type") == "integer";
+    const auto try_side = [&](const char* inclusive, const char* exclusive, double outwards) {
+        const double far = integer ? 9.0e18 : 1e300;
+        if (range.contains(inclusive) || range.contains(exclusive)) {
+            const bool closed = range.contains(inclusive);
+            const double bound = range.at(closed ? inclusive : exclusive).get<double>();
+            const double inside =
+                closed ? bound : (integer ? bound - outwards : std::nextafter(bound, -outwards * far));
+            const double outside =
+                closed ? (integer ? bound + outwards : std::nextafter(bound, outwards * far)) : bound;
+            EXPECT_TRUE(in_range(head, key, wrap(digits(inside, integer))))
+                << key << " = " << digits(inside, integer);
+            EXPECT_FALSE(in_range(head, key, wrap(digits(outside, integer))))
+                << key << " = " << digits(outside, integer);
+        } else {
+            EXPECT_TRUE(in_range(head, key, wrap(digits(outwards * far, integer))))
+                << head << key << " has a bound that the schema does not state";
+        }
+    };
+    try_side("minimum", "exclusiveMinimum", -1.0);
+    try_side("maximum", "exclusiveMaximum", 1.0);
+}
+
+TEST(SceneSchema, RangesAreThoseOfTheReader) {
+    const Json schema = Json::parse(read_file("docs/scene.schema.json"));
+    int numbers = 0, arrays = 0;
+    for (const Place& place : kSections) {
+        const std::string name = place.name;
+        Json object = schema.at("properties");
+        if (name.rfind("table.", 0) == 0)
+            object = object.at("table").at("properties").at(name.substr(6));
+        else
+            object = object.at(name);
+        if (object.at("type") == "array") object = object.at("items");
+        for (const auto& [key, value] : object.at("properties").items()) {
+            const std::string head = opening(name, key), type = value.at("type");
+            if (type == "number" || type == "integer") {
+                expect_range(head, key, value, [](const std::string& x) { return x; });
+                ++numbers;
+            }
+            if (type != "array" || !value.at("items").contains("type") || name == "table") continue;
+            const Json& item = value.at("items");
+            const std::size_t count = value.at("minItems");
+            EXPECT_EQ(value.at("maxItems"), count) << key;
+            for (std::size_t k = 0; k < count; ++k) {
+                expect_range(head, key, item, [&](const std::string& x) {
+                    std::string text = "[";
+                    for (std::size_t j = 0; j < count; ++j)
+                        text += (j ? ", " : "") + (j == k ? x : std::string("1"));
+                    return text + "]";
+                });
+            }
+            for (const std::size_t wrong : {count - 1, count + 1}) {
+                std::string text = "[";
+                for (std::size_t j = 0; j < wrong; ++j) text += j ? ", 1" : "1";
+                EXPECT_NE(error_of(head + key + " = " + text + "]\n").find(" values; write "),
+                          std::string::npos)
+                    << key;
+            }
+            ++arrays;
+        }
+    }
+    EXPECT_GE(numbers, 31);
+    EXPECT_GE(arrays, 12);
+    const Json& id = schema.at("properties").at("ball").at("items").at("properties").at("id");
+    const auto with_id = [](std::size_t length) {
+        return error_of("[[ball]]\nid = \"" + std::string(length, 'x') + "\"\n");
+    };
+    EXPECT_EQ(with_id(id.at("minLength")), "");
+    EXPECT_EQ(with_id(id.at("maxLength")), "");
+    EXPECT_NE(with_id(id.at("minLength").get<std::size_t>() - 1), "");
+    EXPECT_NE(with_id(id.at("maxLength").get<std::size_t>() + 1), "");
 }
 
 }  // namespace

@@ -64,3 +64,6 @@ fi
 
 echo "== Program"
 "$work/carom/bin/carom" --version
+for file in man/man1/carom.1 bash-completion/completions/carom zsh/site-functions/_carom; do
+    [ -s "$work/carom/share/$file" ] || fail "share/$file is not installed"
+done

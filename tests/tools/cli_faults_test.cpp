@@ -54,6 +54,8 @@ TEST_F(Faults, AFileThatMayNotGrowIsNamedAndNotLeftHalf) {
         {"simulate", scene_, "--events"},
         {"simulate", scene_, "--sample-dt", "0.1", "--samples"},
         {"margin", scene_, "--no-render", "--csv"},
+        {"margin", scene_, "--no-render", "--trace"},
+        {"accuracy", scene_, "--repeat", "1", "--csv"},
         {"render", scene_, "--size", "320x180", "--at", "0.5", "-o"},
         {"render", scene_, "--size", "320x180", "--sheet", "2x2", "-o"},
     };
@@ -78,6 +80,8 @@ TEST_F(Faults, AFolderThatTakesNoFilesIsNamed) {
              {"simulate", scene_, "-o", "/proc/carom.json"},
              {"simulate", scene_, "--events", "/proc/carom.csv"},
              {"margin", scene_, "--no-render", "--csv", "/proc/carom.csv"},
+             {"margin", scene_, "--no-render", "--plot", "/proc/carom.svg"},
+             {"accuracy", scene_, "--repeat", "1", "--plot", "/proc/carom.svg"},
              {"render", scene_, "--at", "0.1", "--size", "64x36", "-o", "/proc/carom%d.png"}}) {
         const ProcessResult result = carom(command);
         EXPECT_EQ(result.status, 1) << command[0];
@@ -91,6 +95,7 @@ TEST_F(Faults, AReaderThatLeavesEndsEveryCommandQuietly) {
                                                {"simulate", scene_, "--json"},
                                                {"check", scene_},
                                                {"margin", scene_, "--no-render"},
+                                               {"accuracy", scene_, "--repeat", "1"},
                                                {"render", scene_, "--raw", "--size", "64x36"}}) {
         ProcessOptions options;
         options.close_output = true;

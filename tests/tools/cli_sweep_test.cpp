@@ -155,7 +155,7 @@ TEST(CliSweep, SaysWhatItNeeds) {
     EXPECT_EQ(error({"--vary", vary, "--count", "3", "--shard", "3/2"}),
               "carom: --shard 3/2: expected I/N with 1 <= I <= N, as in 2/4\n");
     EXPECT_EQ(error({"--vary", "cue.speed=uniform(2,1)", "--count", "3"}),
-              "carom: --vary cue.speed=uniform(2,1): uniform(a,b) needs a <= b\n");
+              "carom: --vary: cue.speed=uniform(2,1): uniform(a,b) needs a <= b\n");
     EXPECT_NE(error({"--vary", vary, "--count", "3x"}).find("--count"), std::string::npos);
     EXPECT_EQ(folder.names(), std::vector<std::string>{"s.toml"});
     const ProcessResult folder_asked =

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(Layers, NoIncludePointsUpwards) {
-    for (const char* layer : {"kernel", "engine", "render", "tools"}) {
+    for (const char* layer : {"kernel", "engine", "render", "capi", "tools"}) {
         ASSERT_TRUE(fs::exists(fs::path(CAROM_SOURCE_DIR) / layer)) << layer;
     }
     for (const std::string& violation : layer_violations(CAROM_SOURCE_DIR)) ADD_FAILURE() << violation;
@@ -33,6 +33,9 @@ class LayersSelfTest : public ::testing::Test {
         put("render/src/r.cpp", "#include <png.h>\n#include <GL/gl.h>\n#include \"carom/engine/e.h\"\n");
         put("tools/t.cpp", "#include <CLI/CLI.hpp>\n#include \"carom/render/r.h\"\n#include \"u.h\"\n");
         put("tools/u.h", "#pragma once\n");
+        put("capi/src/c.cpp",
+            "#include \"carom/carom.h\"\n#include \"c.h\"\n#include \"carom/engine/e.h\"\n");
+        put("capi/src/c.h", "#pragma once\n");
         put("tests/support/s.h", "#pragma once\n");
     }
 
@@ -69,6 +72,10 @@ TEST_F(LayersSelfTest, SeesEveryKindOfViolation) {
         {"render/src/r.cpp", "#import \"../../tools/u.h\"\n", "upwards to tools"},
         {"render/src/r.cpp", "#include \"carom/tools/u.h\"\n", "upwards to tools"},
         {"render/src/r.cpp", "#include \"gone.h\"\n", "cannot be resolved"},
+        {"capi/src/c.cpp", "#include \"carom/render/r.h\"\n", "upwards to render"},
+        {"capi/src/c.cpp", "#include \"../../tools/u.h\"\n", "upwards to tools"},
+        {"capi/CMakeLists.txt", "target_link_libraries(carom_c carom::render)\n", "links carom::render"},
+        {"render/src/r.cpp", "#include \"carom/carom.h\"\n", "outside the layers"},
         {"render/src/r.cpp", "#include HEADER\n", "not a literal name"},
         {"engine/CMakeLists.txt", "target_link_libraries(carom_engine PUBLIC carom::render)\n",
          "links carom::render"},

@@ -6,13 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
 #include "carom/engine/record.h"
 #include "carom/engine/scene.h"
-#include "carom/kernel/closed_forms.h"
 #include "carom/kernel/contact_phase.h"
-#include "carom/kernel/march.h"
-#include "carom/kernel/tolerance.h"
 
 namespace carom {
 
@@ -46,8 +44,10 @@ enum class Search : std::uint8_t { kDirect, kTree };
 const char* name(Search search);
 
 struct Plan {
-    Scene scene;         ///< ids, table and settings as read
-    BallParams balls{};  ///< as the scene, with the friction of skipped effects 0
+    Scene scene;                  ///< ids, table and settings as read
+    BallParams balls{};           ///< as the scene, with the friction of skipped effects 0
+    std::vector<BallSize> sizes;  ///< of every ball of the scene
+    bool alike = true;            ///< all of one size
     double gravity = 9.81;
     std::vector<CushionLine> cushions;
     std::vector<Nose> noses;
@@ -65,8 +65,8 @@ struct Plan {
     bool cloth_in_impact = true;  ///< the cloth acts during a ball-ball impact
     bool squirt = true;           ///< a struck ball leaves the line of aim
     kernel::Isa isa = kernel::Isa::kScalar;
-    kernel::MarchFunction march = nullptr;                 ///< set where the scene asks for substeps
-    kernel::ToleranceFunction by_tolerance = nullptr;      ///< set otherwise
+    const BallBallModelInfo* ball_ball = nullptr;
+    BallBallSettings impact;
     kernel::ContactPhaseFunction contact_phase = nullptr;  ///< of compliant clusters
     ClusterModel clusters =
         ClusterModel::kSequential;  ///< kSequential where fewer than three balls leave nothing to decide

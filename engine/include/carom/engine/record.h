@@ -89,6 +89,7 @@ struct BallTrack {
     std::vector<Segment>
         segments;  ///< ordered by start; a later one with the same start replaces the earlier
     int pocket = -1;
+    std::optional<BallSize> own;  ///< as BallStart::own
 };
 
 class Record {
@@ -108,6 +109,11 @@ class Record {
     double duration = 0.0;         ///< s
     double start_time = 0.0;  ///< s: what SimulateOptions::start_time said; all times here are relative to it
     StopReason stopped = StopReason::kAtRest;
+
+    /// Radius and mass of a ball.
+    BallSize size(int ball) const {
+        return tracks[static_cast<std::size_t>(ball)].own.value_or(balls.size());
+    }
 
     /// State of a ball at time t: the last segment that starts at or before t, in closed form. t before 0
     /// gives the start, t past the duration the state at the duration.

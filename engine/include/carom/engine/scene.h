@@ -30,6 +30,13 @@ class SceneError : public std::runtime_error {
     std::string message_;
 };
 
+/// What may differ from ball to ball.
+struct BallSize {
+    double R;  ///< radius [m]
+    double m;  ///< mass [kg]
+    bool operator==(const BallSize&) const = default;
+};
+
 /// Properties shared by all balls of a scene (SI; frictions and restitutions are numbers).
 struct BallParams {
     double R;      ///< radius [m]
@@ -45,6 +52,7 @@ struct BallParams {
     /// every speed.
     double mu_b_more = 0.0;
     double mu_b_fall = 0.0;  ///< [s/m]
+    BallSize size() const { return {R, m}; }
     bool ball_friction() const { return mu_b != 0.0 || mu_b_more != 0.0; }
 };
 
@@ -56,10 +64,11 @@ double ball_friction(const BallParams& balls, double slip);
 /// A ball at the start.
 struct BallStart {
     std::string id;
-    Vec3 position;                 ///< centre [m], z = R
+    Vec3 position;                 ///< centre [m], z = its radius
     Vec3 velocity = Vec3::Zero();  ///< [m/s], z = 0
     Vec3 spin = Vec3::Zero();      ///< [rad/s]
     SourceLocation where;          ///< where the file puts it ([rack] for a racked ball)
+    std::optional<BallSize> own;   ///< radius and mass of its own; nothing: those of all balls
 };
 
 struct Cue {
@@ -125,6 +134,9 @@ struct Scene {
     std::vector<EffectOverride> effects;
     Stop stop;
     RenderSettings render;
+    BallSize size_of(const BallStart& start) const { return start.own.value_or(balls.size()); }
+    /// Whether all balls have one radius and mass.
+    bool alike() const;
 };
 
 /// Reads and validates a scene file. @throws SceneError

@@ -127,14 +127,14 @@ inline constexpr int kStrongeGrid = 32;
 /// [share] Boxes that leave out far parts of the table are widened by this much: rounding stays inside.
 inline constexpr double kBoxShare = 1e-9;
 
-/// [-] From this many balls, or parts of the table, a tree of boxes is faster than a loop through all of
-/// them; measured by carom bench shot, docs/speed.md.
-inline constexpr std::size_t kTreeFromBalls = 300;
-inline constexpr std::size_t kTreeFromParts = 300;
+/// [-] From this many balls, or parts of the table, a tree of boxes is faster than a loop through all of them
+/// (docs/speed.md: measured crossings).
+inline constexpr std::size_t kTreeFromBalls = 600;
+inline constexpr std::size_t kTreeFromParts = 1000;
 /// [-] and [ball radii] From this many balls on, a ball's box covers only this way and is then renewed: what
 /// lies beyond is mostly never reached.
-inline constexpr std::size_t kShortBoxesFromBalls = 50;
-inline constexpr double kBoxTravel = 8.0;
+inline constexpr std::size_t kShortBoxesFromBalls = 32;
+inline constexpr double kBoxTravel = 3.0;
 
 /// [share of the jaw radius] A cushion end this close to a jaw's circle is rounded off by it and needs no tip
 /// of its own. The jaw is a full circle, so nothing can slip between the two.

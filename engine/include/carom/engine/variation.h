@@ -12,7 +12,7 @@
 
 namespace carom {
 
-/// A rule that cannot be read, or that gives no valid scene. what() begins with the rule.
+/// A rule that cannot be read; what() begins with it. Or rules that give no valid scene.
 class VariationError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;

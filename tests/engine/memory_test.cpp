@@ -1,0 +1,146 @@
+// What the event loop takes from the heap: operator new is replaced here and counts.
+#include <box2d/b2_dynamic_tree.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "support/gas.h"
+
+namespace {
+std::atomic<long> allocations{0}, bytes{0};
+
+void* counted(std::size_t size) {
+    ++allocations;
+    bytes += static_cast<long>(size);
+    if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
+    throw std::bad_alloc();
+}
+void* counted(std::size_t size, std::align_val_t align) {
+    ++allocations;
+    bytes += static_cast<long>(size);
+    const auto a = static_cast<std::size_t>(align);
+    if (void* p = std::aligned_alloc(a, (size + a - 1) / a * a)) return p;
+    throw std::bad_alloc();
+}
+}  // namespace
+
+void* operator new(std::size_t size) {
+    return counted(size);
+}
+void* operator new[](std::size_t size) {
+    return counted(size);
+}
+void* operator new(std::size_t size, std::align_val_t align) {
+    return counted(size, align);
+}
+void* operator new[](std::size_t size, std::align_val_t align) {
+    return counted(size, align);
+}
+void operator delete(void* p) noexcept {
+    std::free(p);
+}
+void operator delete[](void* p) noexcept {
+    std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+    std::free(p);
+}
+void operator delete[](void* p, std::size_t) noexcept {
+    std::free(p);
+}
+void operator delete(void* p, std::align_val_t) noexcept {
+    std::free(p);
+}
+void operator delete[](void* p, std::align_val_t) noexcept {
+    std::free(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+    std::free(p);
+}
+void operator delete[](void* p, std::size_t, std::align_val_t) noexcept {
+    std::free(p);
+}
+
+namespace carom {
+namespace {
+
+using namespace test;
+
+// Counts at the end of the first and of the last round of the loop: what lies between is the loop alone.
+struct LoopCount {
+    long first = -1, last = 0, first_bytes = 0;
+    std::size_t events = 0;
+
+    explicit LoopCount(const Plan& plan) {
+        SimulateOptions options;
+        options.progress = [this](std::size_t n, double) {
+            last = allocations;
+            if (first < 0) {
+                first = last;
+                first_bytes = bytes;
+            }
+            events = n;
+        };
+        const long before = bytes;
+        simulate(plan, options);
+        first_bytes -= before;
+    }
+    long in_loop() const { return last - first; }
+};
+
+Scene eight_ball_break(ClusterModel clusters) {
+    Scene scene = read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/eight_ball_break.toml");
+    scene.physics.clusters = clusters;
+    return scene;
+}
+
+TEST(Memory, NoAllocationInTheLoopOfABreak) {
+    const LoopCount count(plan_of(eight_ball_break(ClusterModel::kSequential)));
+    EXPECT_GT(count.events, 100u);
+    EXPECT_EQ(count.in_loop(), 0);
+}
+
+// The first cluster of a rack is the largest; later ones find its scratch memory.
+TEST(Memory, NoAllocationInTheLoopOfABreakWithClusters) {
+    const LoopCount count(plan_of(eight_ball_break(ClusterModel::kCompliant)));
+    EXPECT_GT(count.events, 50u);
+    EXPECT_EQ(count.in_loop(), 0);
+}
+
+TEST(Memory, NoAllocationInTheLoopOfAShot) {
+    for (const char* file : {"draw", "hello", "three_cushion", "stop"}) {
+        const LoopCount count(
+            plan_of(read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + file + ".toml")));
+        EXPECT_EQ(count.in_loop(), 0) << file;
+    }
+}
+
+// A long run doubles the log of segments and the list of events, and takes nothing else.
+TEST(Memory, ALongRunOnlyDoublesItsLog) {
+    for (const int n : {16, 100, 900}) {
+        const LoopCount count(plan_of(gas(n, 20000, 3)));
+        EXPECT_EQ(count.events, 20000u);
+        // Three lists that start with room for 256 or more: at most log2(40000 / 256) + 1 doublings each.
+        EXPECT_LE(count.in_loop(), 3 * 9) << n;
+        EXPECT_GT(count.in_loop(), 0) << n;
+    }
+}
+
+// Set-up is linear in the balls. What operator new gave out is counted, also what was given back; the nodes
+// of Box2D's tree come from malloc and are added: at most four a block of 64 boxes, for its list doubles.
+TEST(Memory, UnderAKilobyteABall) {
+    double per_ball[2];
+    int k = 0;
+    for (const int n : {2500, 10000}) {
+        const LoopCount count(plan_of(gas(n, 10, 3)));
+        per_ball[k++] = static_cast<double>(count.first_bytes) / n;
+    }
+    EXPECT_LT(per_ball[1] + 4.0 * sizeof(b2TreeNode) / 64.0, 1000.0);
+    EXPECT_LT(per_ball[1], 1.05 * per_ball[0]);
+    if (std::getenv("CAROM_RESIDUALS") != nullptr)
+        std::printf("bytes a ball: %.0f of 2500, %.0f of 10000\n", per_ball[0], per_ball[1]);
+}
+
+}  // namespace
+}  // namespace carom

@@ -1,0 +1,218 @@
+// Boxes, tournament and rejects only leave out: the events are the same to the last bit whichever way they
+// are looked for.
+#include <algorithm>
+#include <limits>
+
+#include "box_search.h"
+#include "carom/engine/tolerances.h"
+#include "detect.h"
+#include "event_queue.h"
+#include "support/gas.h"
+#include "support/random_scenes.h"
+
+namespace carom {
+namespace {
+
+using namespace test;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Box random_box(SplitMix64& rng) {
+    const double x = rng.uniform(-3.0, 3.0), y = rng.uniform(-3.0, 3.0);
+    Box box{x, y, x + rng.uniform(0.0, 0.5), y + rng.uniform(0.0, 0.5)};
+    if (rng.uniform() < 0.02) box = {-kInfinity, -kInfinity, kInfinity, kInfinity};
+    return box;
+}
+
+bool overlap(const Box& a, const Box& b) {
+    return a.low_x <= b.high_x && b.low_x <= a.high_x && a.low_y <= b.high_y && b.low_y <= a.high_y;
+}
+
+// Moves, removals and rebuilds; every overlap in double is found, and direct loop and tree find the same.
+TEST(BoxSearch, FindsEveryOverlap) {
+    for (const int count : {1, 5, 64, 65, 300}) {
+        BoxSearch direct, tree;
+        direct.set_up(count, Search::kDirect);
+        tree.set_up(count, Search::kTree);
+        SplitMix64 rng(static_cast<std::uint64_t>(count));
+        std::vector<Box> boxes(static_cast<std::size_t>(count));
+        std::vector<bool> in(boxes.size(), true);
+        const auto place = [&](int i) {
+            const auto k = static_cast<std::size_t>(i);
+            boxes[k] = random_box(rng);
+            in[k] = true;
+            direct.place(i, boxes[k]);
+            tree.place(i, boxes[k]);
+        };
+        for (int i = 0; i < count; ++i) place(i);
+        std::size_t found = 0, needed = 0;
+        for (int round = 0; round < 2000; ++round) {
+            const int i = static_cast<int>(rng.next() % static_cast<std::uint64_t>(count));
+            if (rng.uniform() < 0.1) {
+                in[static_cast<std::size_t>(i)] = false;
+                direct.remove(i);
+                tree.remove(i);
+            } else {
+                place(i);
+            }
+            direct.settle();
+            tree.settle();
+            const Box asked = random_box(rng);
+            std::vector<int> a, b;
+            direct.overlapping(asked, [&a](int k) { a.push_back(k); });
+            tree.overlapping(asked, [&b](int k) { b.push_back(k); });
+            EXPECT_TRUE(std::is_sorted(a.begin(), a.end()));
+            std::sort(b.begin(), b.end());
+            ASSERT_EQ(a, b);
+            for (int k = 0; k < count; ++k) {
+                if (!in[static_cast<std::size_t>(k)] || !overlap(asked, boxes[static_cast<std::size_t>(k)]))
+                    continue;
+                ++needed;
+                ASSERT_TRUE(std::binary_search(a.begin(), a.end(), k)) << count << " " << round;
+            }
+            for (const int k : a) ASSERT_TRUE(in[static_cast<std::size_t>(k)]);
+            found += a.size();
+        }
+        EXPECT_GE(found, needed);
+        EXPECT_LE(static_cast<double>(found), 1.001 * static_cast<double>(needed) + 1.0);
+    }
+}
+
+TEST(EventQueue, TheWinnerIsTheLeast) {
+    for (const int count : {1, 2, 3, 16, 100}) {
+        EventQueue queue;
+        queue.set_up(count);
+        std::vector<double> time(static_cast<std::size_t>(count));
+        const auto earlier = [&time](int i, int j) {
+            return time[static_cast<std::size_t>(i)] < time[static_cast<std::size_t>(j)];
+        };
+        SplitMix64 rng(7);
+        const auto change = [&](int i) {
+            time[static_cast<std::size_t>(i)] = rng.uniform() < 0.2 ? kInfinity : rng.uniform();
+        };
+        for (int i = 0; i < count; ++i) change(i);
+        for (int i = 0; i < count; ++i) queue.update(i, earlier);
+        for (int round = 0; round < 1000; ++round) {
+            // Several players change before any of them plays again, as after an event.
+            std::vector<int> changed;
+            for (int k = 0; k < 3; ++k) {
+                changed.push_back(static_cast<int>(rng.next() % static_cast<std::uint64_t>(count)));
+                change(changed.back());
+            }
+            for (const int i : changed) queue.update(i, earlier);
+            ASSERT_EQ(time[static_cast<std::size_t>(queue.first())],
+                      *std::min_element(time.begin(), time.end()));
+        }
+    }
+    EventQueue empty;
+    empty.set_up(0);
+    EXPECT_LT(empty.first(), 0);
+}
+
+// Random paths, many of them aimed so that they pass at about the reach.
+TEST(Rejects, NeverLeaveOutAContact) {
+    SplitMix64 rng(11);
+    int rejected = 0, contacts = 0;
+    const double R = 0.028575;
+    const auto vec = [&rng](double size) { return Vec2(rng.uniform(-size, size), rng.uniform(-size, size)); };
+    for (int k = 0; k < 200000; ++k) {
+        const bool rolls = rng.uniform() < 0.3;
+        Path ball{vec(0.5), vec(2.0), rolls ? Vec2(Vec2::Zero()) : vec(2.0), rng.uniform(0.01, 2.0),
+                  rolls,    true};
+        Path other{vec(0.5), Vec2::Zero(), Vec2::Zero(), kInfinity, true, false};
+        if (rng.uniform() < 0.5) {
+            // The place of the first ball at some time, and from there a diameter to any side, nearly.
+            const double t = rng.uniform() * ball.horizon, share = 1.0 + 1e-7 * rng.uniform(-5.0, 5.0);
+            const SinCos side = sin_cos_deg(rng.uniform(0.0, 360.0));
+            other.r = ball.r + t * (ball.v + 0.5 * t * ball.a) + 2.0 * R * share * Vec2(side.cos, side.sin);
+        }
+        const double window = rng.uniform() < 0.5 ? ball.horizon : rng.uniform() * ball.horizon;
+        const double t = time_to_ball(ball, other, 2.0 * R);
+        const bool apart = stays_apart(other.r - ball.r, other.v - ball.v, other.a - ball.a, 2.0 * R, window);
+        rejected += apart;
+        contacts += t <= window;
+        ASSERT_FALSE(apart && t <= window) << k << " " << t << " of " << window;
+        const Vec2 direction = Vec2(0.6, 0.8);
+        const double to_line = time_to_line(ball, other.r, direction, 0.7, R);
+        ASSERT_FALSE(stays_off_line(ball, other.r, direction, R, window) && to_line <= window) << k;
+    }
+    EXPECT_GT(rejected, 50000);
+    EXPECT_GT(contacts, 20000);
+}
+
+struct Way {
+    Search balls, table;
+    double travel;
+};
+const Way kWays[] = {{Search::kDirect, Search::kDirect, kInfinity},
+                     {Search::kTree, Search::kTree, kInfinity},
+                     {Search::kDirect, Search::kTree, 1.0},
+                     {Search::kTree, Search::kDirect, kBoxTravel}};
+
+Record run(const Scene& scene, const Way& way) {
+    Plan plan = plan_of(scene);
+    plan.ball_search = way.balls;
+    plan.table_search = way.table;
+    plan.box_travel = way.travel;
+    return simulate(plan);
+}
+
+TEST(Search, EveryWayGivesTheSameBitsInAGas) {
+    for (const int n : {4, 100, 900}) {
+        const Scene scene = gas(n, 3000, 5);
+        const std::string hash = run(scene, kWays[0]).hash();
+        for (const Way& way : kWays) EXPECT_EQ(run(scene, way).hash(), hash) << n << " " << way.travel;
+        EXPECT_EQ(simulate(plan_of(scene)).hash(), hash) << "as planned";
+    }
+}
+
+TEST(Search, EveryWayGivesTheSameBitsInRandomScenes) {
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        Scene scene = RandomScene(seed).make();
+        if (!scene.stop.time) scene.stop.events = 400;
+        const std::string hash = run(scene, kWays[0]).hash();
+        for (const Way& way : kWays) EXPECT_EQ(run(scene, way).hash(), hash) << "seed " << seed;
+    }
+}
+
+TEST(Search, ARunThatStoppedGoesOnWithTheSameBits) {
+    Scene scene = gas(400, 3000, 9);
+    for (const Way& way : kWays) {
+        const std::string whole = run(scene, way).hash();
+        Scene half = scene;
+        half.stop.events = 1234;
+        const Record so_far = run(half, way);
+        Plan plan = plan_of(scene);
+        plan.ball_search = way.balls == Search::kTree ? Search::kDirect : Search::kTree;
+        EXPECT_EQ(resume(plan, so_far).hash(), whole);
+    }
+}
+
+// Balls that fly apart for ever have no next event, and the search must say so.
+TEST(Search, BallsThatPartForGoodEndTheRun) {
+    Scene scene = frictionless();
+    for (int i = 0; i < 6; ++i) {
+        const SinCos away = sin_cos_deg(60.0 * i);
+        add_ball(scene, std::to_string(i), away.cos, away.sin, away.cos, away.sin);
+    }
+    // Two side by side, near each other for ever.
+    add_ball(scene, "left", 0.0, 0.0, 0.1, 0.1);
+    add_ball(scene, "right", 0.05, -0.05, 0.1, 0.1);
+    for (const Way& way : kWays) {
+        const Record record = run(scene, way);
+        EXPECT_EQ(record.stopped, StopReason::kAtRest);
+        EXPECT_TRUE(record.events.empty());
+    }
+}
+
+TEST(Search, ThePlanChoosesByCount) {
+    EXPECT_EQ(plan_of(gas(16, 10, 1)).ball_search, Search::kDirect);
+    EXPECT_EQ(plan_of(gas(16, 10, 1)).box_travel, kInfinity);
+    const Plan many = plan_of(gas(static_cast<int>(kTreeFromBalls), 10, 1));
+    EXPECT_EQ(many.ball_search, Search::kTree);
+    EXPECT_EQ(many.table_search, Search::kDirect);
+    EXPECT_EQ(many.box_travel, kBoxTravel);
+}
+
+}  // namespace
+}  // namespace carom

@@ -1,0 +1,29 @@
+// A gas without friction in a box of reflecting cushions: many events, and every ball meets every other.
+#pragma once
+
+#include "carom/engine/math.h"
+#include "support/hard_scenes.h"
+#include "support/random_impacts.h"
+
+namespace carom::test {
+
+/// n balls on a jittered square grid (n a square), 1 m/s in random directions; a fifth of the area is balls.
+inline Scene gas(int n, long events, std::uint64_t seed) {
+    Scene scene = frictionless();
+    scene.physics.clusters = ClusterModel::kSequential;
+    scene.stop.events = events;
+    int side = 1;
+    while (side * side < n) ++side;
+    const double cell = 4.0 * scene.balls.R;
+    scene.table = box(cell * side, cell * side, 0.036576);
+    SplitMix64 rng(seed);
+    for (int i = 0; i < n; ++i) {
+        const SinCos v = sin_cos_deg(rng.uniform(0.0, 360.0));
+        add_ball(scene, std::to_string(i + 1), cell * (i % side + rng.uniform(0.3, 0.7)),
+                 cell * (i / side + rng.uniform(0.3, 0.7)), v.cos, v.sin,
+                 rolling_spin(v.cos, v.sin, scene.balls.R));
+    }
+    return scene;
+}
+
+}  // namespace carom::test

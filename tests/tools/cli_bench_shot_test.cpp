@@ -1,0 +1,67 @@
+// carom bench shot: what it prints. Times are measured, and no test asserts one; events and bytes are counts.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST(CliBenchShot, RowsAreWhole) {
+    const ProcessResult result =
+        carom_isa("scalar", {"bench", "shot", "--json", "--seeds", "2", "--repeat", "1", "--events", "200"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const Json json = Json::parse(result.out);
+    EXPECT_GT(json.at("baseline_ns").get<double>(), 0.0);
+    EXPECT_EQ(json.at("machine").at("isa"), "scalar");
+    std::set<std::string> names;
+    for (const Json& row : json.at("rows")) {
+        names.insert(row.at("name"));
+        for (const char* number : {"cost_in_impacts", "cost_least", "cost_most", "ns_min", "ns_median",
+                                   "ns_per_event", "detect_ns", "resolve_ns", "kernel_ns", "queue_ns"})
+            EXPECT_GT(row.at(number).get<double>(), 0.0) << number;
+        const bool compliant = row.at("name") == "eight_ball_break compliant";
+        EXPECT_EQ(row.at("clusters").get<double>() > 0.0, compliant);
+        EXPECT_EQ(row.at("cluster_ns").get<double>() > 0.0, compliant);
+        EXPECT_GT(row.at("events").get<double>(), row.at("name") == "two_ball_shot" ? 5.0 : 50.0);
+    }
+    EXPECT_EQ(names, (std::set<std::string>{"eight_ball_break", "nine_ball_break",
+                                            "eight_ball_break compliant", "two_ball_shot"}));
+    std::set<int> sizes, chosen;
+    for (const Json& row : json.at("growth")) {
+        const int n = row.at("n").get<int>();
+        sizes.insert(n);
+        if (row.at("chosen").get<bool>()) {
+            EXPECT_TRUE(chosen.insert(n).second) << n;
+        }
+        EXPECT_TRUE(row.at("search") == "direct" || row.at("search") == "tree");
+        EXPECT_GT(row.at("ns_min").get<double>(), 0.0);
+        if (n == 10000) {
+            EXPECT_LT(row.at("bytes_per_ball").get<double>(), 1000.0);
+        }
+    }
+    EXPECT_EQ(sizes, (std::set<int>{16, 100, 300, 1000, 10000}));
+    EXPECT_EQ(chosen, sizes);
+}
+
+TEST(CliBenchShot, PrintsATable) {
+    const ProcessResult result =
+        carom_isa("scalar", {"bench", "shot", "--seeds", "1", "--repeat", "1", "--no-growth"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("two_ball_shot"), std::string::npos);
+    EXPECT_EQ(result.out.find("bytes/ball"), std::string::npos);
+}
+
+TEST(CliBenchShot, RefusesBadUsage) {
+    EXPECT_EQ(carom({"bench", "shot", "--seeds", "0"}).status, 2);
+    EXPECT_EQ(carom({"bench", "shot", "--events", "5"}).status, 2);
+    EXPECT_EQ(carom({"bench", "shot", "--what"}).status, 2);
+    EXPECT_EQ(carom_isa("v5", {"bench", "shot", "--no-growth"}).status, 2);
+}
+
+}  // namespace
+}  // namespace carom::test
