@@ -177,7 +177,7 @@ TEST_F(Faults, EveryLimitHasItsMessage) {
     has(message({"render", scene_, "-o", pattern(), "--size", "16385x10"}), "16384");
     has(message({"render", scene_, "-o", pattern(), "--fps", "1e300"}), "fps");
     has(message({"render", scene_, "-o", pattern(), "--fps", "99999", "--to", "1e9"}), "frames");
-    has(message({"render", scene_, "-o", pattern(), "--sheet", "100000x100000"}), "16384");
+    has(message({"render", scene_, "-o", pattern(), "--sheet", "100000x100000"}), "as in 4x3");
 }
 
 /// A name in a scene or a record is data: it never becomes a path.

@@ -89,7 +89,7 @@ struct BallTrack {
     std::vector<Segment>
         segments;  ///< ordered by start; a later one with the same start replaces the earlier
     int pocket = -1;
-    std::optional<BallSize> own;  ///< as BallStart::own
+    std::optional<BallSize> own = std::nullopt;  ///< as BallStart::own
 };
 
 class Record {

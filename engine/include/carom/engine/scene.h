@@ -64,11 +64,11 @@ double ball_friction(const BallParams& balls, double slip);
 /// A ball at the start.
 struct BallStart {
     std::string id;
-    Vec3 position;                 ///< centre [m], z = its radius
-    Vec3 velocity = Vec3::Zero();  ///< [m/s], z = 0
-    Vec3 spin = Vec3::Zero();      ///< [rad/s]
-    SourceLocation where;          ///< where the file puts it ([rack] for a racked ball)
-    std::optional<BallSize> own;   ///< radius and mass of its own; nothing: those of all balls
+    Vec3 position;                               ///< centre [m], z = its radius
+    Vec3 velocity = Vec3::Zero();                ///< [m/s], z = 0
+    Vec3 spin = Vec3::Zero();                    ///< [rad/s]
+    SourceLocation where;                        ///< where the file puts it ([rack] for a racked ball)
+    std::optional<BallSize> own = std::nullopt;  ///< radius and mass of its own; nothing: those of all balls
 };
 
 struct Cue {
@@ -119,8 +119,8 @@ struct Stop {
 struct RenderSettings {
     double fps = 60.0;
     int width = 1280, height = 720;
-    std::string camera = "top";       ///< top, rail, player or follow; not used where eye and target are set
-    std::optional<Vec3> eye, target;  ///< [m]; both or neither
+    std::string camera = "top";  ///< top, rail, player or follow; not used where eye and target are set
+    std::optional<Vec3> eye = std::nullopt, target = std::nullopt;  ///< [m]; both or neither
 };
 
 struct Scene {
