@@ -13,7 +13,7 @@ struct Malformed {
 
 const Malformed kScenes[] = {
     {"[[ball]]\nid = \"cue\"\ncolor = \"white\"\n",
-     ":3:1: unknown key \"color\" in [ball]; the keys there are id, position, velocity, spin"},
+     ":3:1: unknown key \"color\" in [ball]; the keys there are id, position, velocity, spin, radius, mass"},
     {"[[ball]]\nposition = [0.5, \"x\"]\n", ":2:18: ball.position[1] must be a number, not a string"},
     {"[balls]\nmass = -0.17\n[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n",
      ":2:8: balls.mass = -0.17 is out of range; it must be at least 1e-09 and at most 1000000 kg"},
