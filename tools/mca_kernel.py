@@ -2,8 +2,9 @@
 """Cycles, bottleneck and register use of the kernel's loops by llvm-mca.
 
 Compiles one loop a file with gcc (and clang where given), cuts its body out of the assembly at the marks of
-kernel/src/ladder/loop_marks.h, and simulates it with the way back to its top. The fall-through path alone is taken: code that
-the compiler moved out of line (a step that falls back, a lane that flips) is not part of it. llvm-mca 14 knows znver1..3 and, for AArch64, apple-m1.
+kernel/src/ladder/loop_marks.h, and simulates it with the way back to its top. The fall-through path alone is taken: code
+that the compiler moved out of line (a step that falls back, a lane that flips) is not part of it. llvm-mca 14 knows
+znver1..3 and, for AArch64, apple-m1.
 
     tools/mca_kernel.py [--cxx g++] [--json FILE]
 """
