@@ -100,7 +100,8 @@ def main():
     bars(folder, "compilers", "gcc 12 against clang 14, v3", by(data["compilers"]["rows"], "compiler", "ns"), "ns an impact",
          log=True)
     figure, axes = plt.subplots(figsize=(8, 5))
-    wanted = ("march baseline", "march combined", "march decoupled roots", "march summed", "march 2x4 lanes")
+    wanted = ("march baseline", "march combined", "march decoupled roots", "march summed", "march summed batch",
+              "march 2x4 lanes")
     for name in wanted:
         points = sorted((g["n"], g["ns_min"]) for g in data["bench"]["growth"] if g["name"] == name and g["isa"] == "v3")
         axes.plot([p[0] for p in points], [p[1] for p in points], marker="o", label=short(name))

@@ -2,8 +2,9 @@
 """Cycles, bottleneck and register use of the kernel's loops by llvm-mca.
 
 Compiles one loop a file with gcc (and clang where given), cuts its body out of the assembly at the marks of
-kernel/src/ladder/loop_marks.h, and simulates it. The fall-through path alone is taken: code that the compiler moved out of
-line (a step that falls back, a lane that flips) is not part of it. llvm-mca 14 knows znver1..3 and, for AArch64, apple-m1.
+kernel/src/ladder/loop_marks.h, and simulates it with the way back to its top. The fall-through path alone is taken: code
+that the compiler moved out of line (a step that falls back, a lane that flips) is not part of it. llvm-mca 14 knows
+znver1..3 and, for AArch64, apple-m1.
 
     tools/mca_kernel.py [--cxx g++] [--json FILE]
 """
@@ -34,6 +35,7 @@ void probe(const ImpactBatch& b, int n, const ImpactBatchResult& r) noexcept {{
 PLAIN = """#define CAROM_MARCH_NAME probe
 #include "march_impl.h"
 """
+SHORTEST = 15  # instructions; the shortest whole body, of the packed march, has 17
 # name, source, level, steps of one impact that one pass of the loop does
 LOOPS = [
     ("baseline", PLAIN, "v3", 1),
@@ -54,6 +56,8 @@ def assembly(cxx, source, level, folder):
     path.write_text(source)
     command = [cxx, "-std=c++20", "-O3", f"-march=x86-64-{level}", "-ffp-contract=off", "-DCAROM_LOOP_MARKS", "-w",
                f"-I{ROOT}/kernel/include", f"-I{ROOT}/kernel/src", "-S", "-o", "-", str(path)]
+    if source != PLAIN:  # as kernel/CMakeLists.txt builds the ladder
+        command.append("-fno-math-errno")
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
 
 
@@ -66,19 +70,42 @@ def arm_assembly(source, folder):
     return [line.replace("//", "#") if "LLVM-MCA" in line else line for line in run.stdout.splitlines()]
 
 
+def instructions(lines):
+    """Without labels, marks, and what belongs to the assembler."""
+    return [line for line in lines if re.match(r"\s+[a-z]", line) and not re.match(r"\s+\.", line)]
+
+
+def way_back(lines, labels, at, begin, budget=40):
+    """What runs from line `at` to the mark at `begin`, jumps followed; None where no short way leads there. It has the loop's
+    test, and the register moves that carry a step's result into the next: without them simulated steps would not wait for
+    each other."""
+    path = []
+    while at != begin:
+        if at >= len(lines) or len(path) > budget or re.match(r"\s+ret", lines[at]):
+            return None
+        jump = re.match(r"\s+(j[a-z]+)\s+(\S+)", lines[at])
+        path += instructions(lines[at:at + 1])
+        if jump and jump[2] in labels:
+            taken = way_back(lines, labels, labels[jump[2]], begin, budget - len(path))
+            if taken is not None or jump[1] == "jmp":
+                return None if taken is None else path + taken
+        at += 1
+    return path
+
+
 def body(lines):
-    """The longest marked stretch, without labels, marks, and what belongs to the assembler."""
-    best, current = [], None
-    for line in lines:
+    """The longest marked stretch, and what leads back from its end to its beginning."""
+    labels = {line.split(":")[0]: i for i, line in enumerate(lines) if re.match(r"\.?\w+:", line)}
+    best, begin, back = [], None, []
+    for i, line in enumerate(lines):
         if "LLVM-MCA-BEGIN" in line:
-            current = []
-        elif "LLVM-MCA-END" in line:
-            if current is not None and len(current) > len(best):
-                best = current
-            current = None
-        elif current is not None and re.match(r"\s+[a-z]", line) and not re.match(r"\s+\.", line):
-            current.append(line)
-    return best
+            begin = i
+        elif "LLVM-MCA-END" in line and begin is not None:
+            code = instructions(lines[begin:i])
+            if len(code) > len(best):
+                best, back = code, way_back(lines, labels, i, begin) or []
+            begin = None
+    return best + back
 
 
 def simulate(code, cpu, triple="x86_64-linux-gnu"):
@@ -114,7 +141,7 @@ def main():
         for cxx in args.cxx:
             for name, source, level, steps in LOOPS:
                 code = body(assembly(cxx, source, level, folder))
-                if len(code) < 30:
+                if len(code) < SHORTEST:
                     print(f"{name:<22}{cxx:<12} the compiler moved most of the loop out of line: left out", file=sys.stderr)
                     continue
                 for cpu in args.cpu:
