@@ -16,7 +16,8 @@ struct Complementarity {
     /// index (Murty's rule), which ends for every P-matrix (Judice and Pires, "A block principal pivoting
     /// algorithm for large-scale strictly monotone linear complementarity problems", 1994). The diagonal is
     /// raised by kContactSoftness of itself, so that contacts more than a group needs (a ball in three of
-    /// them) share their load evenly and have one answer; one step of refinement takes its effect out again.
+    /// them) share their load evenly and have one answer; refinement takes its effect out again, down to
+    /// rounding.
     /// @return false if no answer was found within the bound on pivots (A is no P-matrix); z is then 0
     bool solve();
 
@@ -33,10 +34,13 @@ struct Complementarity {
     bool factor();
     void back_substitute(std::vector<double>& x) const;
     void residual(std::vector<double>& w) const;
+    double worst_residual(const std::vector<double>& w) const;
+    void solve_basic(std::vector<double>& w);
+    void refine(std::vector<double>& w);
 
     std::vector<char> basic_;
     std::vector<std::size_t> index_, pivot_;
-    std::vector<double> lu_;
+    std::vector<double> lu_, part_, last_;
 };
 
 }  // namespace carom

@@ -138,7 +138,23 @@ double HeldSolver::opening_interval(const Link& link) const {
     if (!(opening > kHoldOpening * motion_.slide)) return kNever;
     // A ball that starts has to get beyond what settle() takes for rest.
     const double clear = 4.0 * std::max(noise_, kHoldRest * motion_.roll);
-    return (clear + std::max(0.0, -gap_rate(link))) / opening;
+    const double told = (clear + std::max(0.0, -gap_rate(link))) / opening;
+    // So has every other ball that the group starts: taken for rest again, it is a wall that stops this one
+    // in a narrow wedge, and all starts anew (random scene 3800). The gap meanwhile stays below what a
+    // turning normal may leave.
+    double started = 0.0;
+    for (const Body& b : bodies_) {
+        const double size = length(b.a);
+        if (b.mode == Mode::kRolling && b.starts && size > 0.0) started = std::max(started, clear / size);
+    }
+    return std::max(told, std::min(started, std::sqrt(2.0 * kHoldGap / opening)));
+}
+
+// Forces N that cancel leave an acceleration of some ulp of them: over h, that moves the gap by a h^2 / 2,
+// before the next capture takes the speed out; a h / 2 in the long run.
+double HeldSolver::rounding_interval(const Link& link) const {
+    const double a = 8.0 * std::numeric_limits<double>::epsilon() * link.N;
+    return a * kHoldLongest > 2.0 * kHoldDrift ? std::max(kHoldLeadOut, 2.0 * kHoldDrift / a) : kNever;
 }
 
 // @return how long they last, at most `longest`
@@ -173,7 +189,7 @@ double HeldSolver::write_segments(double longest) {
                 std::min(interval, time_to_line_end(plan_.cushions[static_cast<std::size_t>(contact.cushion)],
                                                     group_.balls[static_cast<std::size_t>(link.i)].segment));
         if (link.j >= 0) interval = std::min(interval, friction_flip(link));
-        interval = std::min(interval, opening_interval(link));
+        interval = std::min({interval, opening_interval(link), rounding_interval(link)});
         if (link.returning > 0.0) interval = std::min(interval, kHoldShortest);
     }
     interval = std::max(interval, kHoldTicks * std::numeric_limits<double>::epsilon() * now_);

@@ -96,6 +96,7 @@ class HeldSolver {
     double time_of(std::size_t body, bool& gone) const;
     double friction_flip(const Link& link) const;
     double opening_interval(const Link& link) const;
+    double rounding_interval(const Link& link) const;
     Vec2 spin_rate(std::size_t body) const;
     double write_segments(double longest);
 

@@ -78,6 +78,10 @@ inline constexpr double kHoldGap = 1e-8;
 /// what rounding adds up in a long push would come near to 1e-12 m.
 inline constexpr double kHoldDepth = 2e-14;
 inline constexpr double kHoldLeadOut = 1e-3;
+/// [m/s] The rounding of great forces (a narrow wedge) may move a gap by so much in the long run: its
+/// intervals are as much shorter, but not shorter than kHoldLeadOut (beyond 1e5 m/s^2 it may be more). Forces
+/// below some 2000 m/s^2 are not affected.
+inline constexpr double kHoldDrift = 1e-13;
 /// [of the sliding acceleration] A gap that opens by less does not open: the rounding of the forces.
 inline constexpr double kHoldOpening = 1e-10;
 /// [-] Rounding of the forces, relative.
