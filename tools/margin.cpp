@@ -9,10 +9,10 @@
 #include "bench/clock.h"
 #include "bench/rounds.h"
 #include "carom/engine/output_file.h"
+#include "carom/engine/temporary_folder.h"
 #include "console.h"
 #include "plot.h"
 #include "setup.h"
-#include "temporary_folder.h"
 
 namespace carom::tools {
 namespace {

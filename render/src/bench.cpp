@@ -1,12 +1,10 @@
 #include "carom/render/bench.h"
 
-#include <stdlib.h>
-
 #include <algorithm>
 #include <chrono>
 #include <ctime>
-#include <filesystem>
 
+#include "carom/engine/temporary_folder.h"
 #include "carom/render/png.h"
 #include "carom/render/renderer.h"
 #include "carom/render/sequence.h"
@@ -32,25 +30,6 @@ double median(std::vector<double> values) {
                      values.end());
     return values[values.size() / 2];
 }
-
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "carom_bench_XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) throw RenderError(name + ": cannot make a temporary folder");
-        path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    std::string file(const std::string& name) const { return (path_ / name).string(); }
-
-  private:
-    std::filesystem::path path_;
-};
 
 // One frame after the other, nothing else running in the process.
 void measure_stages(const Record& record, FrameSize size, int frames, Backend backend,

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace carom::tools {
+namespace carom {
 
 class TemporaryFolder {
   public:
@@ -31,4 +31,4 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
-}  // namespace carom::tools
+}  // namespace carom
