@@ -140,7 +140,7 @@ Case random_case(SplitMix64& rng, int kind) {
     const double speed = rng.uniform(0.05, 6.0), angle = kind == 2 ? 0.0 : rng.uniform(-1.5, 1.5);
     x.v = Vec3(-speed * std::cos(angle), speed * std::sin(angle), 0.0);
     if (kind == 3) x.v.x() *= 1e-6;
-    x.w = Vec3(rng.uniform(-60.0, 60.0), rng.uniform(-60.0, 60.0), rng.uniform(-60.0, 60.0));
+    x.w = Vec3{rng.uniform(-60.0, 60.0), rng.uniform(-60.0, 60.0), rng.uniform(-60.0, 60.0)};
     if (kind == 1 || kind == 2) x.w = Vec3(-x.v.y() / R, x.v.x() / R, kind == 1 ? x.w.z() : 0.0);
     return x;
 }

@@ -49,7 +49,7 @@ Scene random_scene(SplitMix64& rng) {
                      vy = moves ? rng.uniform(-3.0, 3.0) : 0.0;
         Vec3 w = rolling_spin(vx, vy, R);
         if (moves && rng.next() % 2 == 0)
-            w += Vec3(rng.uniform(-50.0, 50.0), rng.uniform(-50.0, 50.0), rng.uniform(-50.0, 50.0));
+            w += Vec3{rng.uniform(-50.0, 50.0), rng.uniform(-50.0, 50.0), rng.uniform(-50.0, 50.0)};
         add_ball(scene, std::to_string(i), x, y, vx, vy, w);
     }
     return scene;
@@ -239,8 +239,8 @@ TEST(Effects, ReachIsNeverTooShort) {
         scene.table.pockets.push_back({"p1", Vec2(-0.03, 1.2), 0.06, 0.08});
         const double speed = rng.uniform(0.05, 0.6), angle = rng.uniform(0.0, 6.28318);
         const double vx = speed * std::cos(angle), vy = speed * std::sin(angle);
-        add_ball(scene, "a", rng.uniform(0.2, 1.0), rng.uniform(0.2, 2.2), vx, vy,
-                 Vec3(rng.uniform(-20.0, 20.0), rng.uniform(-20.0, 20.0), 0.0));
+        const double x = rng.uniform(0.2, 1.0), y = rng.uniform(0.2, 2.2);
+        add_ball(scene, "a", x, y, vx, vy, Vec3{rng.uniform(-20.0, 20.0), rng.uniform(-20.0, 20.0), 0.0});
         if (i % 2) scene.ball[0].spin = rolling_spin(vx, vy, scene.balls.R);
         if (i % 3 == 0) scene.stop.time = rng.uniform(0.05, 1.0);
         add_ball(scene, "b", 0.1, 0.1);

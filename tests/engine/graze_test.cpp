@@ -39,10 +39,11 @@ TEST(Graze, HundredThousandPairs) {
         const int* kind = kinds[k % 5];
         Path one = random_path(rng, kind[0], 0.05 * std::pow(160.0, rng.uniform()));
         Path two = random_path(rng, kind[1], 0.05 * std::pow(160.0, rng.uniform()));
-        one.r = Vec2(rng.uniform(0.0, 1.0), rng.uniform(0.0, 2.0));
+        one.r = Vec2{rng.uniform(0.0, 1.0), rng.uniform(0.0, 2.0)};
         const double horizon = std::min({one.horizon, two.horizon, 20.0});
         one.horizon = std::min(one.horizon, 20.0);
-        const double depth = (rng.next() % 2 ? 1.0 : -1.0) * std::pow(10.0, rng.uniform(-16.0, -4.0));
+        const double side = rng.next() % 2 ? 1.0 : -1.0;
+        const double depth = side * std::pow(10.0, rng.uniform(-16.0, -4.0));
         set_to_graze(one, two, rng.uniform(0.05, 0.9) * horizon, depth, kReach, rng);
         if (length(two.r - one.r) <= kReach) continue;
         const double got = time_to_ball(one, two, kReach);

@@ -19,11 +19,12 @@ TEST_P(Breaks, NoneExplodes) {
     std::size_t most = 0;
     for (int i = 0; i < 250; ++i) {
         char text[400];
+        const double x = 0.635 + rng.uniform(-0.012, 0.012), speed = rng.uniform(5.0, 12.0);
         std::snprintf(text, sizeof text,
                       "[rack]\ngame = \"eight_ball\"\ngap = %.17g\nseed = %d\n[[ball]]\nid = "
                       "\"cue\"\nposition = [%.17g, 0.5]\n"
                       "velocity = [0, %.17g]\n",
-                      GetParam(), i + 1, 0.635 + rng.uniform(-0.012, 0.012), rng.uniform(5.0, 12.0));
+                      GetParam(), i + 1, x, speed);
         SCOPED_TRACE(text);
         const Record record = run_verified(parse_scene(text, "break.toml"));
         EXPECT_EQ(record.stopped, StopReason::kAtRest);

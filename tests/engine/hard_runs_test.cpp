@@ -115,9 +115,9 @@ TEST(HardRuns, TimeReversal) {
             bool free = true;
             for (const BallStart& b : scene.ball)
                 free = free && std::hypot(b.position.x() - x, b.position.y() - y) > 0.1;
-            if (free)
-                add_ball(scene, std::to_string(scene.ball.size()), x, y, rng.uniform(-1.0, 1.0),
-                         rng.uniform(-1.0, 1.0));
+            if (!free) continue;
+            const double vy = rng.uniform(-1.0, 1.0), vx = rng.uniform(-1.0, 1.0);
+            add_ball(scene, std::to_string(scene.ball.size()), x, y, vx, vy);
         }
         scene.stop.events = events;
         const Record forth = run_verified(scene);

@@ -114,7 +114,7 @@ TEST(Rejects, NeverLeaveOutAContact) {
     SplitMix64 rng(11);
     int rejected = 0, contacts = 0;
     const double R = 0.028575;
-    const auto vec = [&rng](double size) { return Vec2(rng.uniform(-size, size), rng.uniform(-size, size)); };
+    const auto vec = [&rng](double size) { return Vec2{rng.uniform(-size, size), rng.uniform(-size, size)}; };
     for (int k = 0; k < 200000; ++k) {
         const bool rolls = rng.uniform() < 0.3;
         Path ball{vec(0.5), vec(2.0), rolls ? Vec2(Vec2::Zero()) : vec(2.0), rng.uniform(0.01, 2.0),

@@ -97,6 +97,12 @@ class RandomScene {
         return {a.cos, a.sin};
     }
 
+    Vec3 spin() {
+        const double size = one_of<double>({1e-3, 10.0, 100.0, 400.0});
+        const double z = uniform(-1, 1), y = uniform(-1, 1), x = uniform(-1, 1);
+        return Vec3(x, y, z) * size;
+    }
+
     void place(const Vec2& r) {
         if (fits(r)) add_ball(scene_, std::to_string(scene_.ball.size()), r.x(), r.y());
     }
@@ -105,13 +111,17 @@ class RandomScene {
         const double R = scene_.balls.R;
         const Table& t = scene_.table;
         const double w = t.width > 0.0 ? t.width : 1.0, l = t.width > 0.0 ? t.length : 1.0;
-        const Vec2 anywhere(uniform(R, w - R), uniform(R, l - R));
+        // A draw a statement, here and below: in which order a call's arguments are drawn is the compiler's
+        // choice.
+        const double y = uniform(R, l - R), x = uniform(R, w - R);
+        const Vec2 anywhere(x, y);
         const int kind = whole(5);
         if (kind <= 1 && !scene_.ball.empty()) {  // touches another ball, or nearly
             const Vec3& p =
                 scene_.ball[static_cast<std::size_t>(whole(static_cast<int>(scene_.ball.size())))].position;
             const double gap = one_of<double>({0.0, 0.0, 1e-15, 1e-9, 1e-5});
-            place(Vec2(p.x(), p.y()) + (2.0 * R + gap) * direction());
+            const Vec2 towards = direction();
+            place(Vec2(p.x(), p.y()) + (2.0 * R + gap) * towards);
         } else if (kind == 2 && t.width > 0.0) {  // on a cushion, sometimes in a corner
             const double gap = one_of<double>({0.0, 0.0, 1e-12, 1e-7});
             const bool corner = chance(0.15);
@@ -154,16 +164,15 @@ class RandomScene {
             const bool last = &b == &scene_.ball.back();
             if (!chance(moving) && !(last && !any)) continue;
             any = true;
-            const Vec2 v =
-                direction() * one_of<double>({0.0, 1e-6, 0.05, 1.0, 5.0, 12.0}) * uniform(0.5, 1.0);
+            const double share = uniform(0.5, 1.0), speed = one_of<double>({0.0, 1e-6, 0.05, 1.0, 5.0, 12.0});
+            const Vec2 v = direction() * speed * share;
             b.velocity = Vec3(v.x(), v.y(), 0.0);
             switch (whole(3)) {
                 case 0:
                     b.spin = rolling_spin(v.x(), v.y(), R);
                     break;
                 case 1:
-                    b.spin = Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)) *
-                             one_of<double>({1e-3, 10.0, 100.0, 400.0});
+                    b.spin = spin();
                     break;
                 default:
                     break;

@@ -116,10 +116,11 @@ TEST(OutcomeOf, NamesContactsAndTheFirstBallHit) {
 
 Scene seeded_break(SplitMix64& rng, int seed) {
     char text[400];
+    const double x = 0.635 + rng.uniform(-0.012, 0.012), speed = rng.uniform(5.0, 12.0);
     std::snprintf(text, sizeof text,
                   "[rack]\ngame = \"eight_ball\"\ngap = 1e-4\njitter = 3e-5\nseed = %d\n[[ball]]\nid = "
                   "\"cue\"\nposition = [%.17g, 0.5]\nvelocity = [0, %.17g]\n",
-                  seed, 0.635 + rng.uniform(-0.012, 0.012), rng.uniform(5.0, 12.0));
+                  seed, x, speed);
     return parse_scene(text, "break.toml");
 }
 

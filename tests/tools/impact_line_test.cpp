@@ -200,9 +200,12 @@ TEST(ImpactLine, AnyChangedLineIsAnsweredInOneLine) {
     int refused = 0;
     for (int i = 0; i < 5000; ++i) {
         std::string line = wholes[rng.next() % 2];
-        for (std::uint64_t n = rng.next() % 3; n-- > 0;)
-            line.erase(rng.next() % line.size(), 1 + rng.next() % 8);
-        line[rng.next() % line.size()] = static_cast<char>(rng.next());
+        for (std::uint64_t n = rng.next() % 3; n-- > 0;) {
+            const std::size_t at = rng.next() % line.size(), length = 1 + rng.next() % 8;
+            line.erase(at, length);
+        }
+        const std::size_t at = rng.next() % line.size();
+        line[at] = static_cast<char>(rng.next());
         const ImpactAnswer answer = answer_impact(line, settings());
         const Json json = Json::parse(answer.json);  // throws if it is no JSON
         ASSERT_TRUE(json.is_object());

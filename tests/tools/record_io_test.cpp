@@ -279,9 +279,12 @@ TEST(RecordFile, AnyChangedByteIsReadOrRefused) {
     int refused = 0;
     for (int i = 0; i < 1000; ++i) {
         std::string bad = text;
-        for (std::uint64_t n = rng.next() % 3; n-- > 0;)
-            bad.erase(rng.next() % bad.size(), 1 + rng.next() % 20);
-        bad[rng.next() % bad.size()] = static_cast<char>(rng.next());
+        for (std::uint64_t n = rng.next() % 3; n-- > 0;) {
+            const std::size_t at = rng.next() % bad.size(), length = 1 + rng.next() % 20;
+            bad.erase(at, length);
+        }
+        const std::size_t at = rng.next() % bad.size();
+        bad[at] = static_cast<char>(rng.next());
         folder.write("r.json", bad);
         try {
             const Record record = read_record(path);

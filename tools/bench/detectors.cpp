@@ -94,12 +94,12 @@ std::vector<Pair> pairs(int count, bool grazing) {
                   random_path(rng, kind[1], 0.05 * std::pow(160.0, rng.uniform())),
                   0.0,
                   {}};
-        pair.one.r = Vec2(rng.uniform(0.0, 1.0), rng.uniform(0.0, 2.0));
+        pair.one.r = Vec2{rng.uniform(0.0, 1.0), rng.uniform(0.0, 2.0)};
         pair.horizon = std::min({pair.one.horizon, pair.two.horizon, 20.0});
         pair.one.horizon = std::min(pair.one.horizon, 20.0);
-        const double depth = grazing
-                                 ? (rng.next() % 2 ? 1.0 : -1.0) * std::pow(10.0, rng.uniform(-16.0, -4.0))
-                                 : rng.uniform(-1.0, kReach);
+        const double side = grazing && rng.next() % 2 == 0 ? -1.0 : 1.0;
+        const double depth =
+            grazing ? side * std::pow(10.0, rng.uniform(-16.0, -4.0)) : rng.uniform(-1.0, kReach);
         set_to_graze(pair.one, pair.two, rng.uniform(0.05, 0.9) * pair.horizon, depth, kReach, rng);
         if (length(pair.two.r - pair.one.r) <= kReach) continue;
         pair.truth = GrazeOracle(pair.one.r, pair.one.v, pair.one.a, pair.two.r, pair.two.v, pair.two.a,
