@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "carom/engine/tolerances.h"
 #include "motion.h"
 #include "roots.h"
 
@@ -199,16 +200,27 @@ double time_to_enter(double foot, double rate, double pull, double end, double h
 
 }  // namespace
 
+double end_rounding(const Vec2& r, double line_length) {
+    return kEndUlp * std::numeric_limits<double>::epsilon() *
+           (std::abs(r.x()) + std::abs(r.y()) + line_length);
+}
+
+bool past_end(double left, double rate, double pull, double rounding) {
+    if (std::abs(left) > rounding) return left < 0.0;
+    return rate < 0.0 || (rate == 0.0 && pull < 0.0);
+}
+
 double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, double line_length, double R) {
     if (!ball.moves) return kNever;
     const Vec2 normal(-direction.y(), direction.x());
     const Vec2 offset = ball.r - from;
     const double d0 = dot(normal, offset), d1 = dot(normal, ball.v), d2 = dot(normal, ball.a);
     const double noise = kNoise * (length(ball.v) + ball.surface);
+    const double rounding = end_rounding(ball.r, line_length);
     const auto foot_inside = [&](double t) {
-        const double foot =
-            dot(direction, offset) + t * (dot(direction, ball.v) + 0.5 * t * dot(direction, ball.a));
-        return foot >= 0.0 && foot <= line_length;
+        const double v = dot(direction, ball.v), pull = dot(direction, ball.a), rate = v + t * pull;
+        const double foot = dot(direction, offset) + t * (v + 0.5 * t * pull);
+        return !past_end(foot, rate, pull, rounding) && !past_end(line_length - foot, -rate, -pull, rounding);
     };
     double best = kNever;
     for (const double side : {1.0, -1.0}) {

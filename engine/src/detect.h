@@ -36,6 +36,14 @@ double time_to_circle(const Path& ball, const Vec2& center, double reach);
 /// @param direction unit, from -> to
 double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, double line_length, double R);
 
+/// How far from a cushion's end [m] a foot point may be by rounding, for a centre at r.
+double end_rounding(const Vec2& r, double line_length);
+
+/// Whether a foot point `left` [m] before a cushion's end has passed it. Within rounding its direction
+/// decides, so that a ball that runs off the end is not taken for one that arrives: what ends a contact here
+/// does not begin it. Beyond the end, its tip or the jaw takes over.
+bool past_end(double left, double rate, double pull, double rounding);
+
 /// Time until the centre enters a pocket's circle; 0 if it is inside.
 double time_to_pocket(const Path& ball, const Vec2& center, double radius);
 

@@ -28,15 +28,21 @@ void HeldSolver::run() {
     // penetrating.
     const double turning = turning_interval();
     if (turning < kNever) solve_forces(turning);
-    const double interval = write_segments(kNever);
+    double longest = kNever, interval = write_segments(longest);
     // Directions that turn are taken at the middle of the interval: second order. The interval may grow by
     // that, but not beyond what the margin is made for. What rounding has pressed into each other is led out.
     const bool turned = take_middle_directions();
     const bool deep = interval < kNever && any_deep();
     if (turned || deep || (turning < kNever && interval < 0.5 * turning)) {
-        const double longest = std::min(1.25 * interval, turning_interval());
+        longest = std::min(1.25 * interval, turning_interval());
         solve_forces(longest < kNever ? longest : 0.0);
-        write_segments(longest);
+        interval = write_segments(longest);
+    }
+    // A contact is let go by the forces that then move its balls: where a slow ball has just turned, those of
+    // the start would open it and those of the interval close it at once, again and again.
+    while (hold_returning()) {
+        solve_forces(longest < kNever ? longest : 0.0);
+        interval = write_segments(longest);
     }
     mark_released();
 }
@@ -127,8 +133,9 @@ void HeldSolver::mark_released() {
 double time_to_line_end(const CushionLine& line, const Segment& s) {
     const double x = dot(line.direction, planar(s.r) - line.from);
     const double v = dot(line.direction, planar(s.v)), a = dot(line.direction, s.a);
-    const auto leaves = [](double left, double rate, double pull) {
-        if (left <= 0.0 && (rate < 0.0 || (rate == 0.0 && pull < 0.0))) return 0.0;
+    const double rounding = end_rounding(planar(s.r), line.length);
+    const auto leaves = [rounding](double left, double rate, double pull) {
+        if (past_end(left, rate, pull, rounding)) return 0.0;
         return first_descent_quadratic(left, rate, pull, kNever);
     };
     return std::min(leaves(x, v, a), leaves(line.length - x, -v, -a));

@@ -14,9 +14,14 @@
 
 namespace carom::test {
 
+/// The order in which the numbers of a vector are drawn, and those of a speed: the same seed gives two
+/// scenes, of two families that have nothing else in common.
+enum class DrawOrder { kLastFirst, kFirstFirst };
+
 class RandomScene {
   public:
-    explicit RandomScene(std::uint64_t seed) : rng_(seed), scene_(empty_scene()) {}
+    explicit RandomScene(std::uint64_t seed, DrawOrder order = DrawOrder::kLastFirst)
+        : rng_(seed), scene_(empty_scene()), order_(order) {}
 
     Scene make() {
         choose_table();
@@ -30,6 +35,7 @@ class RandomScene {
 
   private:
     double uniform(double lo, double hi) { return rng_.uniform(lo, hi); }
+    bool last_first() const { return order_ == DrawOrder::kLastFirst; }
     bool chance(double p) { return uniform(0.0, 1.0) < p; }
     int whole(int n) { return std::min(n - 1, static_cast<int>(uniform(0.0, static_cast<double>(n)))); }
     template <class T>
@@ -97,10 +103,36 @@ class RandomScene {
         return {a.cos, a.sin};
     }
 
+    // A draw a statement, here and below: in which order a call's arguments are drawn is the compiler's
+    // choice.
     Vec3 spin() {
-        const double size = one_of<double>({1e-3, 10.0, 100.0, 400.0});
-        const double z = uniform(-1, 1), y = uniform(-1, 1), x = uniform(-1, 1);
-        return Vec3(x, y, z) * size;
+        const auto size = [this] { return one_of<double>({1e-3, 10.0, 100.0, 400.0}); };
+        const double first = last_first() ? size() : uniform(-1, 1);
+        const double second = uniform(-1, 1), third = uniform(-1, 1);
+        if (last_first()) {
+            const double x = uniform(-1, 1);
+            return Vec3(x, third, second) * first;
+        }
+        return Vec3(first, second, third) * size();
+    }
+
+    Vec2 velocity() {
+        const auto speed = [this] { return one_of<double>({0.0, 1e-6, 0.05, 1.0, 5.0, 12.0}); };
+        if (last_first()) {
+            const double share = uniform(0.5, 1.0), v = speed();
+            return direction() * v * share;
+        }
+        const Vec2 along = direction();
+        const double v = speed();
+        return along * v * uniform(0.5, 1.0);
+    }
+
+    Vec2 point(const Vec2& low, const Vec2& high) {
+        const int first = last_first() ? 1 : 0, second = 1 - first;
+        Vec2 p;
+        p[first] = uniform(low[first], high[first]);
+        p[second] = uniform(low[second], high[second]);
+        return p;
     }
 
     void place(const Vec2& r) {
@@ -111,10 +143,7 @@ class RandomScene {
         const double R = scene_.balls.R;
         const Table& t = scene_.table;
         const double w = t.width > 0.0 ? t.width : 1.0, l = t.width > 0.0 ? t.length : 1.0;
-        // A draw a statement, here and below: in which order a call's arguments are drawn is the compiler's
-        // choice.
-        const double y = uniform(R, l - R), x = uniform(R, w - R);
-        const Vec2 anywhere(x, y);
+        const Vec2 anywhere = point(Vec2(R, R), Vec2(w - R, l - R));
         const int kind = whole(5);
         if (kind <= 1 && !scene_.ball.empty()) {  // touches another ball, or nearly
             const Vec3& p =
@@ -164,8 +193,7 @@ class RandomScene {
             const bool last = &b == &scene_.ball.back();
             if (!chance(moving) && !(last && !any)) continue;
             any = true;
-            const double share = uniform(0.5, 1.0), speed = one_of<double>({0.0, 1e-6, 0.05, 1.0, 5.0, 12.0});
-            const Vec2 v = direction() * speed * share;
+            const Vec2 v = velocity();
             b.velocity = Vec3(v.x(), v.y(), 0.0);
             switch (whole(3)) {
                 case 0:
@@ -182,6 +210,7 @@ class RandomScene {
 
     SplitMix64 rng_;
     Scene scene_;
+    DrawOrder order_;
     int tries_ = 0;
 };
 

@@ -65,6 +65,10 @@ inline constexpr double kTouchUlp = 64.0 * 2.220446049250313e-16;
 /// [-] Sweeps of the rigid projection; a rack of 15 takes about 500.
 inline constexpr long kRigidSweeps = 100000;
 
+/// [ulp of the coordinates and the length] Foot points nearer than this to a cushion's end are at it: four
+/// roundings of position, end and projection.
+inline constexpr double kEndUlp = 4.0;
+
 /// [s] Longest and shortest interval over which a sustained contact keeps the directions of its forces where
 /// they turn.
 inline constexpr double kHoldLongest = 5e-2;
