@@ -18,7 +18,9 @@ void HeldSolver::run() {
     make_bodies();
     make_links();
     make_directions();
+    may_stop_ = true;
     solve_forces(0.0);  // which resting balls give way: the others take the capture like a wall
+    may_stop_ = false;
     capture();
     make_directions();
     solve_forces(0.0);
@@ -28,7 +30,7 @@ void HeldSolver::run() {
     // penetrating.
     const double turning = turning_interval();
     if (turning < kNever) solve_forces(turning);
-    double longest = kNever, interval = write_segments(longest);
+    double longest = kNever, interval = write_segments(longest, false);
     // Directions that turn are taken at the middle of the interval: second order. The interval may grow by
     // that, but not beyond what the margin is made for. What rounding has pressed into each other is led out.
     const bool turned = take_middle_directions();
@@ -36,14 +38,11 @@ void HeldSolver::run() {
     if (turned || deep || (turning < kNever && interval < 0.5 * turning)) {
         longest = std::min(1.25 * interval, turning_interval());
         solve_forces(longest < kNever ? longest : 0.0);
-        interval = write_segments(longest);
     }
-    // A contact is let go by the forces that then move its balls: where a slow ball has just turned, those of
-    // the start would open it and those of the interval close it at once, again and again.
-    while (hold_returning()) {
-        solve_forces(longest < kNever ? longest : 0.0);
-        interval = write_segments(longest);
-    }
+    // A contact is let go by the forces that then move its balls: those of the start could open it and those
+    // of the interval close it at once, again and again.
+    while (hold_returning()) solve_forces(longest < kNever ? longest : 0.0);
+    write_segments(longest, true);
     mark_released();
 }
 

@@ -12,6 +12,7 @@ namespace carom {
 // (clusters.md, equation 7): plastic. A pressed contact that opens so slowly that it would be closed again at
 // once is closed now.
 void HeldSolver::capture() {
+    stop_slow();
     const std::vector<char> sticky = sticky_contacts();
     const bool any = std::any_of(sticky.begin(), sticky.end(), [](char s) { return s != 0; });
     if (!any || !project(sticky)) project(std::vector<char>(links_.size(), 0));
@@ -21,6 +22,16 @@ void HeldSolver::capture() {
         link.open = gap_rate(link) > noise_;
         link.returning = 0.0;
         link.N = 0.0;
+    }
+}
+
+// What friction stops within the shortest interval has stopped.
+void HeldSolver::stop_slow() {
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        if (bodies_[k].mode != Mode::kResting) continue;
+        HeldBall& ball = group_.balls[k];
+        ball.v = Vec3::Zero();
+        ball.w.x() = ball.w.y() = 0.0;
     }
 }
 

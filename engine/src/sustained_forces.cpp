@@ -15,7 +15,13 @@ void HeldSolver::make_directions() {
         const Vec2 along = b.mode == Mode::kSliding ? cloth_slip(ball.v, ball.w, motion_.R) : planar(ball.v);
         const double size = length(along);
         b.starts = !(size > 0.0);  // then the direction is that of the forces
-        if (!b.starts) b.direction = along / size;
+        b.due = Vec2::Zero();
+        if (b.starts) continue;
+        b.direction = along / size;
+        if (b.mode == Mode::kRolling && size < kHoldSlow * motion_.roll * kHoldShortest) {
+            b.starts = true;
+            b.due = along / kHoldShortest;
+        }
     }
     for (Link& link : links_) {
         if (link.j < 0) continue;
@@ -156,12 +162,12 @@ bool HeldSolver::change_mode(Body& b, Mode mode) {
 
 // A ball at rest stays while (5/7) |F| <= mu_r g, with the forces of what it leans on.
 bool HeldSolver::resting_holds(Body& b) {
-    const Vec2 force = b.push + b.couple;
-    const double size = length(force), rounding = kHoldRounding * (motion_.slide + length(b.push));
-    if ((5.0 / 7.0) * size <= motion_.roll + rounding) return true;
+    const Vec2 drive = b.due + (5.0 / 7.0) * (b.push + b.couple);
+    const double size = length(drive), rounding = kHoldRounding * (motion_.slide + length(b.push));
+    if (size <= motion_.roll + rounding) return true;
     if (!change_mode(b, Mode::kRolling)) return true;
     b.starts = true;
-    b.direction = force / size;
+    b.direction = drive / size;
     return false;
 }
 
@@ -178,14 +184,18 @@ bool HeldSolver::rolling_holds(Body& b) {
         return false;
     }
     if (!b.starts) return true;
-    const Vec2 force = b.push + b.couple;
-    const double size = length(force);
-    if ((5.0 / 7.0) * size <= motion_.roll || b.changes >= kModeChanges) {
+    // Of a slow ball friction takes the direction at the end of the shortest interval, v + h a: at its start
+    // it would turn the ball over within less, now this way, now that.
+    const Vec2 drive = b.due + (5.0 / 7.0) * (b.push + b.couple);
+    const double size = length(drive);
+    const bool moves = b.due.x() != 0.0 || b.due.y() != 0.0;
+    if (size <= motion_.roll && moves && !may_stop_) return turn_to(b, b.due, length(b.due));
+    if (size <= motion_.roll || (!moves && b.changes >= kModeChanges)) {
         b.mode = Mode::kResting;
         b.changes = kModeChanges;  // for good
         return false;
     }
-    return turn_to(b, force, size);
+    return turn_to(b, drive, size);
 }
 
 // A ball that starts to slip slips along what drives the slip.

@@ -157,8 +157,8 @@ double HeldSolver::rounding_interval(const Link& link) const {
     return a * kHoldLongest > 2.0 * kHoldDrift ? std::max(kHoldLeadOut, 2.0 * kHoldDrift / a) : kNever;
 }
 
-// @return how long they last, at most `longest`
-double HeldSolver::write_segments(double longest) {
+// @return how long they last, at most `longest`; `opening`: and until a contact that opens is let go
+double HeldSolver::write_segments(double longest, bool opening) {
     double interval = std::min(longest, turning_interval());
     std::vector<double> ends(bodies_.size(), kNever);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -189,7 +189,8 @@ double HeldSolver::write_segments(double longest) {
                 std::min(interval, time_to_line_end(plan_.cushions[static_cast<std::size_t>(contact.cushion)],
                                                     group_.balls[static_cast<std::size_t>(link.i)].segment));
         if (link.j >= 0) interval = std::min(interval, friction_flip(link));
-        interval = std::min({interval, opening_interval(link), rounding_interval(link)});
+        if (opening) interval = std::min(interval, opening_interval(link));
+        interval = std::min(interval, rounding_interval(link));
         if (link.returning > 0.0) interval = std::min(interval, kHoldShortest);
     }
     interval = std::max(interval, kHoldTicks * std::numeric_limits<double>::epsilon() * now_);

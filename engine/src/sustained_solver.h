@@ -21,7 +21,9 @@ class HeldSolver {
         Mode mode = Mode::kResting;
         Vec2 direction =
             Vec2::Zero();     // sliding: of the slip; rolling: of the velocity, or of the push that starts it
-        bool starts = false;  // direction is that of the forces: there is no slip, or no velocity, yet
+        bool starts = false;  // direction is that of the forces: there is no slip, or no velocity, yet, or
+                              // so little that friction would turn it over within the shortest interval
+        Vec2 due = Vec2::Zero();  // rolling and slow: velocity / kHoldShortest
         bool lifted = false;  // its contacts carry its whole weight: no friction from the cloth
         int changes = 0;      // of mode, in one solution
         Vec2 push = Vec2::Zero();    // sum of contact forces
@@ -65,6 +67,7 @@ class HeldSolver {
     bool project(const std::vector<char>& sticky);
     std::vector<char> sticky_contacts() const;
     void kick(int body, const Vec2& dv);
+    void stop_slow();
 
     // sustained_forces.cpp
     void make_directions();
@@ -98,7 +101,7 @@ class HeldSolver {
     double opening_interval(const Link& link) const;
     double rounding_interval(const Link& link) const;
     Vec2 spin_rate(std::size_t body) const;
-    double write_segments(double longest);
+    double write_segments(double longest, bool opening);
 
     HeldGroup& group_;
     const Plan& plan_;
@@ -108,6 +111,7 @@ class HeldSolver {
     std::vector<Link> links_;
     double give_ = 0.0;   // mobility of balls at rest
     double noise_ = 0.0;  // m/s: what rounding makes of the group's speeds in a few sums of eight
+    bool may_stop_ = false;  // slow balls that friction stops within the shortest interval stop now
 };
 
 inline double dot(const Vec2& a, const Vec2& b) {

@@ -108,6 +108,9 @@ inline constexpr int kModeChanges = 8;
 /// and again; a speed that it would stop within the second counts as none at all.
 inline constexpr double kHoldRest = 1e-8;
 inline constexpr double kHoldNoise = 1e-12;
+/// [of kHoldShortest] A held ball that its own rolling friction would stop within this time takes the
+/// direction of its friction from where its forces lead it; an explicit step would be unstable.
+inline constexpr double kHoldSlow = 4.0;
 /// [ulp of the time] No interval is shorter: the clock has to go on.
 inline constexpr double kHoldTicks = 8.0;
 /// [-] A slip or velocity that turns ends where it is nearest to nothing, if it comes as near as this share
