@@ -120,11 +120,11 @@ void Shot::resolve_nose(const Candidate& c) {
     contact.jaw = c.type == EventType::kBallJaw;
     contact.partner = c.b;
     contact.n = -normal;
-    const Vec2 pull = now_of(c.a).a;
     const double v_n = -(normal.x() * v.x() + normal.y() * v.y());
-    if (hold_instead(contact, v_n, -(normal.x() * pull.x() + normal.y() * pull.y()) - curving,
-                     plan_.balls.e_c))
-        return;
+    const auto pressing = [&](const Vec2& pull) {
+        return -(normal.x() * pull.x() + normal.y() * pull.y()) - curving;
+    };
+    if (hold_instead(contact, v_n, pressing(now_of(c.a).a), plan_.balls.e_c)) return;
 
     const BallParams& p = plan_.balls;
     const BallSize& size = plan_.sizes[static_cast<std::size_t>(c.a)];
@@ -132,9 +132,13 @@ void Shot::resolve_nose(const Candidate& c) {
     if (!model.resolve({size.R, size.m, p.mu_s, p.e_c, p.f_c, height}, normal, v, w))
         fail(fmt::format("the cushion model {} found no solution for the impact of ball {}; use another one",
                          model.name, record_.tracks[static_cast<std::size_t>(c.a)].id));
+    const Segment after = start_segment(now_, r, v, w, motion_of(c.a));
+    // A ball that rolls in slowly is braked; what brings it back, and ends the bounce, is the spin that it
+    // keeps.
+    if (holds(v_n, motion_of(c.a).slide, p.e_c) && hold_instead(contact, v_n, pressing(after.a), p.e_c)) return;
     if constexpr (kProfile) cost_.method = model.name;
     free_ball(c.a);
-    begin(c.a, start_segment(now_, r, v, w, motion_of(c.a)));
+    begin(c.a, after);
     record_event(c.type, c.a, c.b, c.nose);
 }
 

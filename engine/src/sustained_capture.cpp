@@ -25,14 +25,29 @@ void HeldSolver::capture() {
     }
 }
 
-// What friction stops within the shortest interval has stopped.
+// What friction stops within the shortest interval has stopped. Not where that would stop others: a wall that
+// comes to rest in front of a ball that has all but passed it, in a narrow wedge, jams that ball.
 void HeldSolver::stop_slow() {
+    double fastest = 0.0;
+    std::vector<std::size_t> stopped;
+    const std::vector<HeldBall> before = group_.balls;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        if (bodies_[k].mode != Mode::kResting) continue;
         HeldBall& ball = group_.balls[k];
+        const double speed = length(planar(ball.v));
+        if (bodies_[k].mode != Mode::kResting || speed == 0.0) continue;
+        fastest = std::max(fastest, speed);
+        stopped.push_back(k);
         ball.v = Vec3::Zero();
         ball.w.x() = ball.w.y() = 0.0;
     }
+    if (stopped.empty()) return;
+    project(std::vector<char>(links_.size(), 0));
+    double largest = 0.0;
+    for (std::size_t k = 0; k < bodies_.size(); ++k)
+        largest = std::max(largest, length(planar(group_.balls[k].v) - planar(before[k].v)));
+    if (largest <= kStickyShare * fastest) return;
+    group_.balls = before;
+    for (const std::size_t k : stopped) bodies_[k].mode = Mode::kRolling;
 }
 
 std::vector<char> HeldSolver::sticky_contacts() const {

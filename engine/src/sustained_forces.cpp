@@ -50,7 +50,7 @@ void HeldSolver::accelerate() {
                 b.a = (5.0 / 7.0) * (b.push + b.couple) - motion_.roll * b.direction;
                 break;
             case Mode::kResting:
-                b.a = give_ * (b.push + b.couple);
+                b.a = give_ * (b.push + b.couple) - b.due;
                 break;
         }
     }
@@ -189,8 +189,12 @@ bool HeldSolver::rolling_holds(Body& b) {
     const Vec2 drive = b.due + (5.0 / 7.0) * (b.push + b.couple);
     const double size = length(drive);
     const bool moves = b.due.x() != 0.0 || b.due.y() != 0.0;
-    if (size <= motion_.roll && moves && !may_stop_) return turn_to(b, b.due, length(b.due));
-    if (size <= motion_.roll || (!moves && b.changes >= kModeChanges)) {
+    if (size <= motion_.roll && moves) {
+        // It stops within that interval, if the forces that come of stopping it so soon leave it there too.
+        if (may_stop_ && b.changes < kStopTries && change_mode(b, Mode::kResting)) return false;
+        return turn_to(b, b.due, length(b.due));
+    }
+    if (!moves && (size <= motion_.roll || b.changes >= kModeChanges)) {
         b.mode = Mode::kResting;
         b.changes = kModeChanges;  // for good
         return false;

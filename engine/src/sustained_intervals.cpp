@@ -150,6 +150,13 @@ double HeldSolver::opening_interval(const Link& link) const {
     return std::max(told, std::min(started, std::sqrt(2.0 * kHoldGap / opening)));
 }
 
+// What the capture could not take out of a narrow wedge (its answer is beyond rounding) is not left to close
+// the gap for long.
+double HeldSolver::closing_interval(const Link& link) const {
+    const double rate = gap_rate(link);
+    return !link.open && rate < -noise_ ? std::max(kHoldShortest, -kHoldDepth / rate) : kNever;
+}
+
 // Forces N that cancel leave an acceleration of some ulp of them: over h, that moves the gap by a h^2 / 2,
 // before the next capture takes the speed out; a h / 2 in the long run.
 double HeldSolver::rounding_interval(const Link& link) const {
@@ -190,7 +197,7 @@ double HeldSolver::write_segments(double longest, bool opening) {
                                                     group_.balls[static_cast<std::size_t>(link.i)].segment));
         if (link.j >= 0) interval = std::min(interval, friction_flip(link));
         if (opening) interval = std::min(interval, opening_interval(link));
-        interval = std::min(interval, rounding_interval(link));
+        interval = std::min({interval, rounding_interval(link), closing_interval(link)});
         if (link.returning > 0.0) interval = std::min(interval, kHoldShortest);
     }
     interval = std::max(interval, kHoldTicks * std::numeric_limits<double>::epsilon() * now_);

@@ -100,6 +100,7 @@ class HeldSolver {
     double friction_flip(const Link& link) const;
     double opening_interval(const Link& link) const;
     double rounding_interval(const Link& link) const;
+    double closing_interval(const Link& link) const;
     Vec2 spin_rate(std::size_t body) const;
     double write_segments(double longest, bool opening);
 
