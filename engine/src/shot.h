@@ -108,6 +108,11 @@ class Shot {
     void resolve_ball_ball(const Candidate& c);
     template <bool kProfile>
     void resolve_nose(const Candidate& c);
+    struct Nearing {
+        HeldContact contact;
+        double v_n = 0.0, a_c = 0.0;  // closing speed and acceleration, positive together
+    };
+    Nearing nearing(int one, int two) const;
     double pair_friction(int one, int two) const;
     void resolve_pocket(const Candidate& c);
     void resolve_transition(const Candidate& c);
@@ -124,6 +129,7 @@ class Shot {
     // shot_cluster.cpp
     template <bool kProfile>
     bool resolve_cluster(const Candidate& c, double v_n);
+    bool hold_in_cluster(double v_n);
     double collect_cluster(int a, int b, double v_n);
     void collect_cluster_at(int a, int b, double v_n);
 

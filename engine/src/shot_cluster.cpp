@@ -106,11 +106,26 @@ void Shot::collect_cluster_at(int a, int b, double v_n) {
     }
 }
 
-// True if the impact was a cluster's; false leaves it to the pair kernel.
+// A slow cluster may hold a contact that is pressed together, behind the one that met first: held, it drives
+// that one too. Bounced off together they would meet again and again.
+bool Shot::hold_in_cluster(double v_n) {
+    if (!holds(v_n, 2.0 * motion_of(cluster_balls_.front().ball).slide, plan_.balls.e_b)) return false;
+    for (const ClusterContact& c : cluster_contacts_) {
+        const int one = cluster_balls_[static_cast<std::size_t>(c.i)].ball,
+                  two = cluster_balls_[static_cast<std::size_t>(c.j)].ball;
+        if (c.gap > 0.0 || held_together(one, two)) continue;
+        const Nearing pair = nearing(one, two);
+        if (pair.v_n > 0.0 && hold_instead(pair.contact, pair.v_n, pair.a_c, plan_.balls.e_b)) return true;
+    }
+    return false;
+}
+
+// True if the impact was a cluster's, or a contact of it is held now; false leaves it to the pair kernel.
 template <bool kProfile>
 bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     v_n = collect_cluster(c.a, c.b, v_n);
     if (cluster_balls_.size() < 3) return false;
+    if (hold_in_cluster(v_n)) return true;
     const BallParams& p = plan_.balls;
     const auto start = kProfile ? Clock::now() : Clock::time_point{};
     long steps;

@@ -26,6 +26,23 @@ void Shot::record_event(EventType type, int a, int b, int detail) {
     return ball_friction(p, length(Vec2(along, upward)));
 }
 
+// Two balls in touch: how fast they close, and how hard they are driven together.
+Shot::Nearing Shot::nearing(int one, int two) const {
+    const Vec3 r = position_now(two) - position_now(one), v = velocity_now(one) - velocity_now(two);
+    const Vec2 apart(r.x(), r.y());
+    Nearing pair;
+    pair.contact.i = one;
+    pair.contact.j = two;
+    pair.contact.partner = two;
+    const Vec2 n = apart / length(apart);
+    pair.contact.n = n;
+    pair.v_n = n.x() * v.x() + n.y() * v.y();
+    const Vec2 pull = now_of(one).a - now_of(two).a;
+    const double v_t = cross(n, Vec2(v.x(), v.y()));
+    pair.a_c = n.x() * pull.x() + n.y() * pull.y() - v_t * v_t / contact_distance(radius(one), radius(two));
+    return pair;
+}
+
 template <bool kProfile>
 void Shot::resolve_ball_ball(const Candidate& c) {
     // Ball 1 is the one further left, then nearer: relabelling the balls changes no bit.
@@ -35,19 +52,9 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     const Vec3 &r1 = swap ? rb : ra, &r2 = swap ? ra : rb;
     const Vec3 v1 = velocity_now(one), v2 = velocity_now(two), w1 = spin_now(one), w2 = spin_now(two);
 
-    const Vec2 apart(r2.x() - r1.x(), r2.y() - r1.y());
-    HeldContact contact;
-    contact.i = one;
-    contact.j = two;
-    contact.partner = two;
-    contact.n = apart / length(apart);
-    const double v_n = contact.n.x() * (v1.x() - v2.x()) + contact.n.y() * (v1.y() - v2.y());
-    const Vec2 pull = now_of(one).a - now_of(two).a;
-    const double v_t = cross(contact.n, Vec2(v1.x() - v2.x(), v1.y() - v2.y()));
-    const double a_c = contact.n.x() * pull.x() + contact.n.y() * pull.y() -
-                       v_t * v_t / contact_distance(radius(one), radius(two));
-    if (hold_instead(contact, v_n, a_c, plan_.balls.e_b)) return;
-    if (plan_.clusters != ClusterModel::kSequential && resolve_cluster<kProfile>(c, v_n)) return;
+    const Nearing pair = nearing(one, two);
+    if (hold_instead(pair.contact, pair.v_n, pair.a_c, plan_.balls.e_b)) return;
+    if (plan_.clusters != ClusterModel::kSequential && resolve_cluster<kProfile>(c, pair.v_n)) return;
 
     const kernel::Ball b1{{r1.x(), r1.y(), r1.z()}, {v1.x(), v1.y(), v1.z()}, {w1.x(), w1.y(), w1.z()}};
     const kernel::Ball b2{{r2.x(), r2.y(), r2.z()}, {v2.x(), v2.y(), v2.z()}, {w2.x(), w2.y(), w2.z()}};
