@@ -142,7 +142,8 @@ void Shot::resolve_nose(const Candidate& c) {
     const Segment after = start_segment(now_, r, v, w, motion_of(c.a));
     // A ball that rolls in slowly is braked; what brings it back, and ends the bounce, is the spin that it
     // keeps.
-    if (holds(v_n, motion_of(c.a).slide, p.e_c) && hold_instead(contact, v_n, pressing(after.a), p.e_c)) return;
+    if (holds(v_n, motion_of(c.a).slide, p.e_c) && hold_instead(contact, v_n, pressing(after.a), p.e_c))
+        return;
     if constexpr (kProfile) cost_.method = model.name;
     free_ball(c.a);
     begin(c.a, after);

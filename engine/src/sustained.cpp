@@ -35,7 +35,7 @@ void HeldSolver::run() {
     // that, but not beyond what the margin is made for. What rounding has pressed into each other is led out.
     const bool turned = take_middle_directions();
     const bool deep = interval < kNever && any_deep();
-    if (turned || deep || (turning < kNever && interval < 0.5 * turning)) {
+    if (turned || deep || any_stuck() || (turning < kNever && interval < 0.5 * turning)) {
         longest = std::min(1.25 * interval, turning_interval());
         solve_forces(longest < kNever ? longest : 0.0);
     }

@@ -31,7 +31,11 @@ void HeldSolver::make_directions() {
         const double s_x = dot(planar(bi.v) - planar(bj.v), t) - motion_.R * (bi.w.z() + bj.w.z());
         const double s_z = motion_.R * (dot(planar(bi.w), t) + dot(planar(bj.w), t));
         const double slip = length(Vec2(s_x, s_z));
-        link.friction_z = slip > 0.0 ? -ball_friction(plan_.balls, slip) * s_z / slip : 0.0;
+        link.slip_z = s_z;
+        link.slip_x = s_x;
+        link.friction = slip > 0.0 ? ball_friction(plan_.balls, slip) : 0.0;
+        link.friction_z = slip > 0.0 ? -link.friction * s_z / slip : 0.0;
+        link.stuck = false;
     }
 }
 
@@ -149,7 +153,10 @@ bool HeldSolver::solve_contacts() {
     if (solve_contacts_once(friction, margins)) return true;
     if (margins && solve_contacts_once(friction, false)) return true;
     if (!friction) return false;
-    for (Link& link : links_) link.friction_z = 0.0;
+    for (Link& link : links_) {
+        link.friction_z = 0.0;
+        link.stuck = false;
+    }
     return solve_contacts_once(false, false);
 }
 
@@ -283,11 +290,48 @@ bool HeldSolver::hold_returning() {
 }
 
 void HeldSolver::solve_forces(double interval) {
-    constexpr int kPasses = 3;
+    constexpr int kPasses = 4;
     for (int pass = 0; pass < kPasses; ++pass) {
         solve_forces_once(interval);
-        if (!(interval > 0.0) || !margin_falls_short(interval)) break;
+        const bool slips = stick(interval);
+        if (!slips && (!(interval > 0.0) || !margin_falls_short(interval))) break;
     }
+}
+
+// Rate of the slip that the vertical friction between two balls acts on.
+double HeldSolver::slip_rate(const Link& link) const {
+    const Vec2 t(link.n.y(), -link.n.x());
+    return motion_.R *
+           dot(spin_rate(static_cast<std::size_t>(link.i)) + spin_rate(static_cast<std::size_t>(link.j)), t);
+}
+
+// Friction that would turn the slip over within the interval ends it there instead: taken at the slip of the
+// end, s + h (rate without friction) + h k N f, with k what a force of 1 makes of it. Taken at that of the
+// start it would drive the slip to and fro, and with great forces gain energy.
+// @return whether a friction has changed, so that the forces have to be found anew
+bool HeldSolver::stick(double interval) {
+    const double h = std::max(interval, kHoldShortest);
+    const auto ease = [](const Body& b) {
+        return b.mode == Mode::kSliding ? 2.5 : (b.mode == Mode::kRolling ? 5.0 / 7.0 : 0.0);
+    };
+    bool changed = false;
+    for (Link& link : links_) {
+        if (link.j < 0 || link.open || !(link.N > 0.0) || (link.friction_z == 0.0 && !link.stuck)) continue;
+        const double end = link.slip_z + h * slip_rate(link);
+        if (!link.stuck && !(end * link.slip_z < 0.0)) continue;
+        const double effect = h * (ease(body(link.i)) + ease(body(link.j))) * link.N;
+        if (!(effect > 0.0)) continue;
+        const double share = link.friction * effect / (link.friction * effect + std::abs(link.slip_x));
+        const double f = std::clamp(share * (link.friction_z - end / effect), -link.friction, link.friction);
+        changed = changed || std::abs(f - link.friction_z) > kStickAccuracy * link.friction;
+        link.friction_z = f;
+        link.stuck = true;
+    }
+    return changed;
+}
+
+bool HeldSolver::any_stuck() const {
+    return std::any_of(links_.begin(), links_.end(), [](const Link& l) { return l.stuck; });
 }
 
 void HeldSolver::solve_forces_once(double interval) {

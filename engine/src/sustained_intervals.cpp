@@ -122,7 +122,7 @@ Vec2 HeldSolver::spin_rate(std::size_t k) const {
 
 // The vertical friction keeps its direction until the slip s_z changes sign.
 double HeldSolver::friction_flip(const Link& link) const {
-    if (link.friction_z == 0.0 || link.N == 0.0) return kNever;
+    if (link.friction_z == 0.0 || link.N == 0.0 || link.stuck) return kNever;
     const Segment &si = group_.balls[static_cast<std::size_t>(link.i)].segment,
                   &sj = group_.balls[static_cast<std::size_t>(link.j)].segment;
     const Vec2 t(link.n.y(), -link.n.x());

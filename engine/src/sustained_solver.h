@@ -23,9 +23,9 @@ class HeldSolver {
             Vec2::Zero();     // sliding: of the slip; rolling: of the velocity, or of the push that starts it
         bool starts = false;  // direction is that of the forces: there is no slip, or no velocity, yet, or
                               // so little that friction would turn it over within the shortest interval
-        Vec2 due = Vec2::Zero();  // rolling and slow: velocity / kHoldShortest
-        bool lifted = false;  // its contacts carry its whole weight: no friction from the cloth
-        int changes = 0;      // of mode, in one solution
+        Vec2 due = Vec2::Zero();     // rolling and slow: velocity / kHoldShortest
+        bool lifted = false;         // its contacts carry its whole weight: no friction from the cloth
+        int changes = 0;             // of mode, in one solution
         Vec2 push = Vec2::Zero();    // sum of contact forces
         Vec2 couple = Vec2::Zero();  // (T x z) / R of the contact torques
         double lift = 0.0;           // vertical contact force
@@ -39,11 +39,14 @@ class HeldSolver {
     struct Link {
         int i, j;
         Vec2 n;
-        double friction_z = 0.0;  // f_z / N, on ball i
-        double curving = 0.0;     // what turning normals add to the acceleration of the gap
-        double depth = 0.0;       // m, by which the bodies overlap
-        double margin = 0.0;      // what the gap needs besides to end the interval at 0 or above
-        double returning = 0.0;   // opening rate / h of a contact that would be closed again within h
+        double friction_z = 0.0;            // f_z / N, on ball i
+        double slip_z = 0.0, slip_x = 0.0;  // m/s, between two balls: upward, and along the cloth
+        double friction = 0.0;              // coefficient at that slip
+        bool stuck = false;                 // friction_z is what ends slip_z within the interval
+        double curving = 0.0;               // what turning normals add to the acceleration of the gap
+        double depth = 0.0;                 // m, by which the bodies overlap
+        double margin = 0.0;                // what the gap needs besides to end the interval at 0 or above
+        double returning = 0.0;  // opening rate / h of a contact that would be closed again within h
         double diagonal = 0.0;
         double N = 0.0;
         bool open = false;     // the gap is opening by more than rounding
@@ -73,6 +76,9 @@ class HeldSolver {
     void make_directions();
     void solve_forces(double interval);
     void solve_forces_once(double interval);
+    bool stick(double interval);
+    bool any_stuck() const;
+    double slip_rate(const Link& link) const;
     static double margin_for(const Link& link, const Vec2& across, double distance, double interval);
     bool margin_falls_short(double interval) const;
     void curve(double interval);
@@ -110,8 +116,8 @@ class HeldSolver {
     double now_;
     std::vector<Body> bodies_;
     std::vector<Link> links_;
-    double give_ = 0.0;   // mobility of balls at rest
-    double noise_ = 0.0;  // m/s: what rounding makes of the group's speeds in a few sums of eight
+    double give_ = 0.0;      // mobility of balls at rest
+    double noise_ = 0.0;     // m/s: what rounding makes of the group's speeds in a few sums of eight
     bool may_stop_ = false;  // slow balls that friction stops within the shortest interval stop now
 };
 

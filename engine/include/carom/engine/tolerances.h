@@ -106,6 +106,8 @@ inline constexpr double kRestGives = 1e-4;
 inline constexpr int kModeChanges = 8;
 /// [-] Changes after which a slow ball is no longer tried at rest.
 inline constexpr int kStopTries = 4;
+/// [of the coefficient] To which the friction that ends a slip is solved.
+inline constexpr double kStickAccuracy = 1e-3;
 /// [s] A held ball that its own rolling friction would stop within this time rests, or it would stop again
 /// and again; a speed that it would stop within the second counts as none at all.
 inline constexpr double kHoldRest = 1e-8;
