@@ -55,15 +55,20 @@ double HeldSolver::gap_rate(const Link& link) const {
     return dot(link.n, other - velocity(link.i));
 }
 
+HeldSolver::Mode HeldSolver::mode_of(const HeldBall& ball) const {
+    const MotionState state = start_segment(now_, ball.r, ball.v, ball.w, motion_).state;
+    return state == MotionState::kSliding   ? Mode::kSliding
+           : state == MotionState::kRolling ? Mode::kRolling
+                                            : Mode::kResting;
+}
+
 void HeldSolver::make_bodies() {
     for (HeldBall& ball : group_.balls) {
         const Segment s = start_segment(now_, ball.r, ball.v, ball.w, motion_);
         ball.v = s.v;
         ball.w = s.w;  // a rolling ball's spin is exactly the rolling one
         Body body;
-        body.mode = s.state == MotionState::kSliding   ? Mode::kSliding
-                    : s.state == MotionState::kRolling ? Mode::kRolling
-                                                       : Mode::kResting;
+        body.mode = mode_of(ball);
         bodies_.push_back(body);
         noise_ = std::max(noise_, held_noise(ball.v, ball.w, motion_));
     }

@@ -12,6 +12,7 @@ void HeldSolver::make_directions() {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         const HeldBall& ball = group_.balls[k];
         Body& b = bodies_[k];
+        if (b.mode == Mode::kSliding) b.mode = mode_of(ball);  // the capture may have ended its slip
         const Vec2 along = b.mode == Mode::kSliding ? cloth_slip(ball.v, ball.w, motion_.R) : planar(ball.v);
         const double size = length(along);
         b.starts = !(size > 0.0);  // then the direction is that of the forces
@@ -140,7 +141,10 @@ bool HeldSolver::solve_contacts_once(bool friction, bool margins) {
     }
     sum_forces();
     accelerate();
-    return true;
+    // Two walls leave no room for margins, and the softness answers with great forces that mean nothing.
+    return !margins || std::none_of(active.begin(), active.end(), [this](std::size_t c) {
+        return gap_acceleration(links_[c]) < -kHoldRounding * (motion_.slide + links_[c].N);
+    });
 }
 
 // Margins can ask for what a wedge cannot give, and friction can leave no answer at all (Painleve): then

@@ -55,6 +55,7 @@ class HeldSolver {
 
     // sustained.cpp
     void make_bodies();
+    Mode mode_of(const HeldBall& ball) const;
     bool settle();
     void make_links();
     double overlap(const HeldContact& contact, const Link& link) const;
