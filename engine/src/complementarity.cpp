@@ -14,6 +14,7 @@ constexpr int kBlockTries = 8;
 // Beyond two refinements: each takes the softness divided by the smallest eigenvalue off the residual, so
 // more than this many help only where the matrix is singular to rounding.
 constexpr int kMoreRefinements = 20;
+constexpr double kSlowRow = 0.25, kSlowestRow = 0.9999;  // ratio of successive refinements
 constexpr double kSumUlp = 4.0;  // of a row: a residual that is no more than the rounding of its sum
 }  // namespace
 
@@ -93,7 +94,9 @@ void Complementarity::solve_basic(std::vector<double>& w) {
     if (left <= kSumUlp * std::numeric_limits<double>::epsilon()) return;
     for (int more = 0; more < kMoreRefinements && left > std::numeric_limits<double>::epsilon(); ++more) {
         last_ = z;
+        before_ = part_;
         refine(w);
+        extrapolate(w);
         const double now = worst_residual(w);
         if (!(now < left)) {
             z = last_;
@@ -102,6 +105,20 @@ void Complementarity::solve_basic(std::vector<double>& w) {
         if (!(now <= 0.5 * left)) return;
         left = now;
     }
+}
+
+// Where the smallest eigenvalue is below the softness, each refinement takes out the same small share of what
+// is left: the last two tell the sum of the row.
+void Complementarity::extrapolate(std::vector<double>& w) {
+    double both = 0.0, square = 0.0;
+    for (std::size_t k = 0; k < part_.size(); ++k) {
+        both += before_[k] * part_[k];
+        square += before_[k] * before_[k];
+    }
+    if (!(both > kSlowRow * square) || !(both < kSlowestRow * square)) return;
+    const double more = both / (square - both);
+    for (std::size_t k = 0; k < index_.size(); ++k) z[index_[k]] += more * part_[k];
+    residual(w);
 }
 
 void Complementarity::refine(std::vector<double>& w) {

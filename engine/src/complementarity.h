@@ -37,10 +37,11 @@ struct Complementarity {
     double worst_residual(const std::vector<double>& w) const;
     void solve_basic(std::vector<double>& w);
     void refine(std::vector<double>& w);
+    void extrapolate(std::vector<double>& w);
 
     std::vector<char> basic_;
     std::vector<std::size_t> index_, pivot_;
-    std::vector<double> lu_, part_, last_;
+    std::vector<double> lu_, part_, before_, last_;
 };
 
 }  // namespace carom
