@@ -113,6 +113,8 @@ class Shot {
         double v_n = 0.0, a_c = 0.0;  // closing speed and acceleration, positive together
     };
     Nearing nearing(int one, int two) const;
+    bool is_slow(double v_n) const;
+    static double pressing(const Vec2& n, const Segment& one, const Segment& two);
     double pair_friction(int one, int two) const;
     void resolve_pocket(const Candidate& c);
     void resolve_transition(const Candidate& c);
@@ -129,7 +131,7 @@ class Shot {
     // shot_cluster.cpp
     template <bool kProfile>
     bool resolve_cluster(const Candidate& c, double v_n);
-    bool hold_in_cluster(double v_n);
+    bool hold_in_cluster(bool after);
     double collect_cluster(int a, int b, double v_n);
     void collect_cluster_at(int a, int b, double v_n);
 

@@ -107,14 +107,18 @@ void Shot::collect_cluster_at(int a, int b, double v_n) {
 }
 
 // A slow cluster may hold a contact that is pressed together, behind the one that met first: held, it drives
-// that one too. Bounced off together they would meet again and again.
-bool Shot::hold_in_cluster(double v_n) {
-    if (!holds(v_n, 2.0 * motion_of(cluster_balls_.front().ball).slide, plan_.balls.e_b)) return false;
+// that one too. Bounced off together they would meet again and again. `after`: pressed by what the balls do
+// after the impact.
+bool Shot::hold_in_cluster(bool after) {
+    const auto segment = [this](const ClusterBall& b) {
+        return start_segment(now_, b.r, b.v, b.w, motion_of(b.ball));
+    };
     for (const ClusterContact& c : cluster_contacts_) {
-        const int one = cluster_balls_[static_cast<std::size_t>(c.i)].ball,
-                  two = cluster_balls_[static_cast<std::size_t>(c.j)].ball;
-        if (c.gap > 0.0 || held_together(one, two)) continue;
-        const Nearing pair = nearing(one, two);
+        const ClusterBall &p = cluster_balls_[static_cast<std::size_t>(c.i)],
+                          &q = cluster_balls_[static_cast<std::size_t>(c.j)];
+        if (c.gap > 0.0 || held_together(p.ball, q.ball)) continue;
+        Nearing pair = nearing(p.ball, q.ball);
+        if (after) pair.a_c = pressing(pair.contact.n, segment(p), segment(q));
         if (pair.v_n > 0.0 && hold_instead(pair.contact, pair.v_n, pair.a_c, plan_.balls.e_b)) return true;
     }
     return false;
@@ -125,7 +129,8 @@ template <bool kProfile>
 bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     v_n = collect_cluster(c.a, c.b, v_n);
     if (cluster_balls_.size() < 3) return false;
-    if (hold_in_cluster(v_n)) return true;
+    const bool slow = is_slow(v_n);
+    if (slow && hold_in_cluster(false)) return true;
     const BallParams& p = plan_.balls;
     const auto start = kProfile ? Clock::now() : Clock::time_point{};
     long steps;
@@ -151,6 +156,7 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
         cost_.steps = steps;
         cost_.method = name(plan_.clusters);
     }
+    if (slow && hold_in_cluster(true)) return true;
     for (const ClusterBall& ball : cluster_balls_) free_ball(ball.ball);
     for (const ClusterBall& ball : cluster_balls_)
         begin(ball.ball, start_segment(now_, ball.r, ball.v, ball.w, motion_of(ball.ball)));

@@ -37,10 +37,22 @@ Shot::Nearing Shot::nearing(int one, int two) const {
     const Vec2 n = apart / length(apart);
     pair.contact.n = n;
     pair.v_n = n.x() * v.x() + n.y() * v.y();
-    const Vec2 pull = now_of(one).a - now_of(two).a;
     const double v_t = cross(n, Vec2(v.x(), v.y()));
-    pair.a_c = n.x() * pull.x() + n.y() * pull.y() - v_t * v_t / contact_distance(radius(one), radius(two));
+    pair.a_c = n.dot(now_of(one).a - now_of(two).a) - v_t * v_t / contact_distance(radius(one), radius(two));
     return pair;
+}
+
+// Whether two balls close so slowly that friction alone might end their bounce before the contact has ended.
+bool Shot::is_slow(double v_n) const {
+    return holds(v_n, 2.0 * motion_.front().slide, plan_.balls.e_b);
+}
+
+// How hard two balls would be driven together after an impact: by what ends its bounce. Before it, slow balls
+// that roll are braked, and seem to part.
+double Shot::pressing(const Vec2& n, const Segment& one, const Segment& two) {
+    const double v_t = cross(n, Vec2(one.v.x() - two.v.x(), one.v.y() - two.v.y()));
+    const Vec3 apart = two.r - one.r;
+    return n.dot(one.a - two.a) - v_t * v_t / length(Vec2(apart.x(), apart.y()));
 }
 
 template <bool kProfile>
@@ -92,11 +104,16 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     if (result.status != kernel::ImpactStatus::kOk && result.status != kernel::ImpactStatus::kNotApproaching)
         fail(fmt::format("the impact of {} and {} could not be computed: {}", id(one), id(two),
                          kernel::describe(result.status)));
+    const auto vec = [](const double(&x)[3]) { return Vec3(x[0], x[1], x[2]); };
+    const Segment after1 = start_segment(now_, r1, vec(result.v1), vec(result.w1), motion_of(one)),
+                  after2 = start_segment(now_, r2, vec(result.v2), vec(result.w2), motion_of(two));
+    if (is_slow(pair.v_n) &&
+        hold_instead(pair.contact, pair.v_n, pressing(pair.contact.n, after1, after2), p.e_b))
+        return;
     free_ball(one);
     free_ball(two);
-    const auto vec = [](const double(&x)[3]) { return Vec3(x[0], x[1], x[2]); };
-    begin(one, start_segment(now_, r1, vec(result.v1), vec(result.w1), motion_of(one)));
-    begin(two, start_segment(now_, r2, vec(result.v2), vec(result.w2), motion_of(two)));
+    begin(one, after1);
+    begin(two, after2);
     if (result.status == kernel::ImpactStatus::kOk) record_event(EventType::kBallBall, c.a, c.b);
 }
 

@@ -133,18 +133,37 @@ bool HeldSolver::solve_contacts_once(bool friction, bool margins) {
         }
     }
     if (!problem.solve()) return false;
+    drive += motion_.slide + motion_.roll;
+    bool possible = true;
     for (std::size_t k = 0; k < active.size(); ++k) {
-        if (!(problem.z[k] <=
-              (margins ? kLargestLeadOut : kLargestHold) * (drive + motion_.slide + motion_.roll)))
-            return false;
-        links_[active[k]].N = problem.z[k];
+        Link& link = links_[active[k]];
+        link.N = problem.z[k];
+        const bool leads_out = margins && !link.walled;
+        if (link.N <= (leads_out ? kLargestLeadOut : kLargestHold) * drive) continue;
+        possible = false;
+        if (!leads_out) continue;
+        link.walled = true;
+        link.margin = 0.0;
     }
+    if (!possible) return false;
     sum_forces();
     accelerate();
-    // Two walls leave no room for margins, and the softness answers with great forces that mean nothing.
-    return !margins || std::none_of(active.begin(), active.end(), [this](std::size_t c) {
-        return gap_acceleration(links_[c]) < -kHoldRounding * (motion_.slide + links_[c].N);
-    });
+    return !margins || !drop_margins(active);
+}
+
+// Two walls leave no room for margins; the softness answers with great forces that mean nothing. Contacts
+// that come out so lose theirs.
+bool HeldSolver::drop_margins(const std::vector<std::size_t>& active) {
+    bool any = false;
+    for (const std::size_t c : active) {
+        Link& link = links_[c];
+        const double off = gap_acceleration(link) - link.margin;
+        if ((link.N > 0.0 ? std::abs(off) : -off) <= kHoldRounding * (motion_.slide + link.N)) continue;
+        any = any || link.margin != 0.0;
+        link.margin = 0.0;
+        link.walled = true;
+    }
+    return any;
 }
 
 // Margins can ask for what a wedge cannot give, and friction can leave no answer at all (Painleve): then
@@ -154,7 +173,9 @@ bool HeldSolver::solve_contacts() {
         std::any_of(links_.begin(), links_.end(), [](const Link& l) { return l.margin != 0.0; });
     const bool friction =
         std::any_of(links_.begin(), links_.end(), [](const Link& l) { return l.friction_z != 0.0; });
-    if (solve_contacts_once(friction, margins)) return true;
+    // Once more without the margins that were dropped; then without any.
+    for (int tries = 0; tries < (margins ? 2 : 1); ++tries)
+        if (solve_contacts_once(friction, margins)) return true;
     if (margins && solve_contacts_once(friction, false)) return true;
     if (!friction) return false;
     for (Link& link : links_) {
@@ -258,7 +279,7 @@ double HeldSolver::margin_for(const Link& link, const Vec2& t, double distance, 
 // Whether the accelerations have come out so that the gap needs more than the margin that they were made for.
 bool HeldSolver::margin_falls_short(double interval) const {
     for (std::size_t c = 0; c < links_.size(); ++c) {
-        if (links_[c].open) continue;
+        if (links_[c].open || links_[c].walled) continue;
         Vec2 t;
         const double distance = across(c, t);
         if (margin_for(links_[c], t, distance, interval) > 1.2 * links_[c].margin) return true;
@@ -274,7 +295,7 @@ void HeldSolver::curve(double interval) {
         Vec2 t;
         const double distance = across(c, t);
         link.curving = distance > 0.0 ? t.x() * t.x() / distance : 0.0;
-        link.margin = interval > 0.0 ? margin_for(link, t, distance, interval) : 0.0;
+        link.margin = interval > 0.0 && !link.walled ? margin_for(link, t, distance, interval) : 0.0;
     }
 }
 

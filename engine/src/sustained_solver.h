@@ -49,6 +49,7 @@ class HeldSolver {
         double returning = 0.0;  // opening rate / h of a contact that would be closed again within h
         double diagonal = 0.0;
         double N = 0.0;
+        bool walled = false;   // there is no room for a margin
         bool open = false;     // the gap is opening by more than rounding
         bool pressed = false;  // by the forces at the start of the interval
     };
@@ -86,6 +87,7 @@ class HeldSolver {
     bool hold_returning();
     bool solve_contacts();
     bool solve_contacts_once(bool friction, bool margins);
+    bool drop_margins(const std::vector<std::size_t>& active);
     Vec2 response(const Link& link, int body, bool friction) const;
     void accelerate();
     void sum_forces();
