@@ -104,6 +104,8 @@ Vec2 HeldSolver::response(const Link& link, int index, bool friction) const {
 
 // N >= 0, gap acceleration >= margin, complementary; for the present modes and directions.
 bool HeldSolver::solve_contacts_once(bool friction, bool margins) {
+    margins_ = margins;
+    solved_ = false;
     for (Link& link : links_) link.N = 0.0;
     sum_forces();
     accelerate();
@@ -145,10 +147,14 @@ bool HeldSolver::solve_contacts_once(bool friction, bool margins) {
         link.walled = true;
         link.margin = 0.0;
     }
-    if (!possible) return false;
+    if (!possible) {
+        for (Link& link : links_) link.N = 0.0;
+        return false;
+    }
     sum_forces();
     accelerate();
-    return !margins || !drop_margins(active);
+    solved_ = !margins || !drop_margins(active);
+    return solved_;
 }
 
 // Two walls leave no room for margins; the softness answers with great forces that mean nothing. Contacts

@@ -150,6 +150,21 @@ double HeldSolver::opening_interval(const Link& link) const {
     return std::max(told, std::min(started, std::sqrt(2.0 * kHoldGap / opening)));
 }
 
+// A normal that turns without its margin (there was no room for it) closes the gap with the third power of the
+// time.
+double HeldSolver::bare_interval(std::size_t c, double interval) const {
+    const Link& link = links_[c];
+    Vec2 t;
+    const double distance = across(c, t);
+    if (link.open || !(link.N > 0.0) || distance == 0.0) return kNever;
+    const double v = std::abs(t.x()), a = std::abs(t.y());
+    const auto needed = [&](double h) { return h * a * (1.5 * v + h * a) / distance; };
+    const double h = std::min(interval, kHoldLongest);
+    if (margins_ && link.margin > 0.0) return kNever;
+    if (0.5 * h * h * needed(h) <= kHoldDepth) return kNever;
+    return longest(kHoldDepth, [&](double x) { return 0.5 * x * x * needed(x); });
+}
+
 // What the capture could not take out of a narrow wedge (its answer is beyond rounding) is not left to close
 // the gap for long.
 double HeldSolver::closing_interval(const Link& link) const {
@@ -196,10 +211,11 @@ double HeldSolver::write_segments(double longest, bool opening) {
                 std::min(interval, time_to_line_end(plan_.cushions[static_cast<std::size_t>(contact.cushion)],
                                                     group_.balls[static_cast<std::size_t>(link.i)].segment));
         if (link.j >= 0) interval = std::min(interval, friction_flip(link));
-        if (opening) interval = std::min(interval, opening_interval(link));
+        if (opening) interval = std::min({interval, opening_interval(link), bare_interval(c, interval)});
         interval = std::min({interval, rounding_interval(link), closing_interval(link)});
         if (link.returning > 0.0) interval = std::min(interval, kHoldShortest);
     }
+    if (!solved_) interval = std::min(interval, kHoldShortest);
     interval = std::max(interval, kHoldTicks * std::numeric_limits<double>::epsilon() * now_);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         group_.balls[k].segment.duration = interval;

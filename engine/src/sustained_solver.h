@@ -110,6 +110,7 @@ class HeldSolver {
     double opening_interval(const Link& link) const;
     double rounding_interval(const Link& link) const;
     double closing_interval(const Link& link) const;
+    double bare_interval(std::size_t link, double interval) const;
     Vec2 spin_rate(std::size_t body) const;
     double write_segments(double longest, bool opening);
 
@@ -121,6 +122,8 @@ class HeldSolver {
     std::vector<Link> links_;
     double give_ = 0.0;      // mobility of balls at rest
     double noise_ = 0.0;     // m/s: what rounding makes of the group's speeds in a few sums of eight
+    bool margins_ = false;   // whether the last solution has them
+    bool solved_ = true;     // whether the contacts have an answer
     bool may_stop_ = false;  // slow balls that friction stops within the shortest interval stop now
 };
 

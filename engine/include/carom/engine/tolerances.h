@@ -93,9 +93,10 @@ inline constexpr double kHoldRounding = 1e-9;
 /// [-] Part of itself by which each contact of a held group yields, to share the load of contacts that are
 /// more than the group needs.
 inline constexpr double kContactSoftness = 1e-12;
-/// [of what drives a group] Forces beyond this have no answer: what asks for them is left out. The second: a
-/// wedge that has no room for margins.
-inline constexpr double kLargestHold = 1e6;
+/// [of what drives a group] Forces beyond this have no answer: what asks for them is left out. A wedge of
+/// slope s multiplies the drive by 1/s, and slopes down to 1e-8 are solved; contacts that contradict each
+/// other, by 1/kContactSoftness. The second: a wedge that has no room for margins.
+inline constexpr double kLargestHold = 1e9;
 inline constexpr double kLargestLeadOut = 1e4;
 /// [-] A held contact that opens at some rate is closed only if no ball changes by more than this many times
 /// the rate.
