@@ -105,15 +105,10 @@ void Shot::resolve_ball_ball(const Candidate& c) {
         fail(fmt::format("the impact of {} and {} could not be computed: {}", id(one), id(two),
                          kernel::describe(result.status)));
     const auto vec = [](const double(&x)[3]) { return Vec3(x[0], x[1], x[2]); };
-    const Segment after1 = start_segment(now_, r1, vec(result.v1), vec(result.w1), motion_of(one)),
-                  after2 = start_segment(now_, r2, vec(result.v2), vec(result.w2), motion_of(two));
-    if (is_slow(pair.v_n) &&
-        hold_instead(pair.contact, pair.v_n, pressing(pair.contact.n, after1, after2), p.e_b))
-        return;
     free_ball(one);
     free_ball(two);
-    begin(one, after1);
-    begin(two, after2);
+    begin(one, start_segment(now_, r1, vec(result.v1), vec(result.w1), motion_of(one)));
+    begin(two, start_segment(now_, r2, vec(result.v2), vec(result.w2), motion_of(two)));
     if (result.status == kernel::ImpactStatus::kOk) record_event(EventType::kBallBall, c.a, c.b);
 }
 
