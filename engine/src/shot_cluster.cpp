@@ -109,7 +109,7 @@ void Shot::collect_cluster_at(int a, int b, double v_n) {
 // A slow cluster may hold a contact that is pressed together, behind the one that met first: held, it drives
 // that one too. Bounced off together they would meet again and again. `after`: pressed by what the balls do
 // after the impact.
-bool Shot::hold_in_cluster(bool after) {
+[[gnu::noinline]] bool Shot::hold_in_cluster(bool after) {
     const auto segment = [this](const ClusterBall& b) {
         return start_segment(now_, b.r, b.v, b.w, motion_of(b.ball));
     };

@@ -27,7 +27,7 @@ void Shot::record_event(EventType type, int a, int b, int detail) {
 }
 
 // Two balls in touch: how fast they close, and how hard they are driven together.
-Shot::Nearing Shot::nearing(int one, int two) const {
+[[gnu::noinline]] Shot::Nearing Shot::nearing(int one, int two) const {
     const Vec3 r = position_now(two) - position_now(one), v = velocity_now(one) - velocity_now(two);
     const Vec2 apart(r.x(), r.y());
     Nearing pair;
@@ -43,13 +43,13 @@ Shot::Nearing Shot::nearing(int one, int two) const {
 }
 
 // Whether two balls close so slowly that friction alone might end their bounce before the contact has ended.
-bool Shot::is_slow(double v_n) const {
+[[gnu::noinline]] bool Shot::is_slow(double v_n) const {
     return holds(v_n, 2.0 * motion_.front().slide, plan_.balls.e_b);
 }
 
 // How hard two balls would be driven together after an impact: by what ends its bounce. Before it, slow balls
 // that roll are braked, and seem to part.
-double Shot::pressing(const Vec2& n, const Segment& one, const Segment& two) {
+[[gnu::noinline]] double Shot::pressing(const Vec2& n, const Segment& one, const Segment& two) {
     const double v_t = cross(n, Vec2(one.v.x() - two.v.x(), one.v.y() - two.v.y()));
     const Vec3 apart = two.r - one.r;
     return n.dot(one.a - two.a) - v_t * v_t / length(Vec2(apart.x(), apart.y()));
