@@ -175,6 +175,7 @@ std::vector<GasRow> growth_of(const BenchShotOptions& options, kernel::Isa isa) 
         }
     }
     std::vector<std::function<void()>> work;
+    work.reserve(list.size());
     for (Gas& gas : list) work.emplace_back([&gas] { gas.time(); });
     interleave(work, std::max(1, options.repeats / 3), "bench shot: growth");
     std::vector<GasRow> rows;
