@@ -23,7 +23,7 @@ import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-GROUP_SIZE = 10
+GROUP_SIZE = 15
 # A test may copy a string too many, and compares doubles bit by bit.
 LEFT_OUT_IN_TESTS = "-performance-*,-bugprone-suspicious-memory-comparison"
 # A program or a fuzz target.
@@ -59,26 +59,31 @@ def compiled_flags(build):
     return flags
 
 
-def company_of(file):
-    """Only sources with the same of this go together: those of a top folder, without what stands alone."""
-    # The kernel's name things as it suits each of them, and include little.
-    if file.is_relative_to(ROOT / "kernel") or ENTRY.search(file.read_text()):
-        return file
-    return file.relative_to(ROOT).parts[0]
+def companies_of(files, flags):
+    """Files that can go together: they mean the same to the compiler, lie in one top folder, and one at most has an entry."""
+    companies, with_entry = collections.defaultdict(list), set()
+    for file in files:
+        company = flags[file].meaning, file.relative_to(ROOT).parts[0]
+        entry = bool(ENTRY.search(file.read_text()))
+        # The kernel's sources include little, and name things as it suits each of them.
+        if company[1] == "kernel" or entry and company in with_entry:
+            companies[file].append(file)
+            continue
+        companies[company].append(file)
+        if entry:
+            with_entry.add(company)
+    return companies.values()
 
 
 def groups_of(files, flags):
-    """Groups of at most GROUP_SIZE files, of even size, that mean the same to the compiler but for where headers are."""
-    alike = collections.defaultdict(list)
-    for file in files:
-        alike[flags[file].meaning, company_of(file)].append(file)
+    """Groups of at most GROUP_SIZE files, of even size."""
     groups = []
-    for (meaning, _), members in alike.items():
-        count = -(-len(members) // GROUP_SIZE)
+    for company in companies_of(files, flags):
+        count = -(-len(company) // GROUP_SIZE)
         for part in range(count):
-            some = members[part * len(members) // count:(part + 1) * len(members) // count]
+            some = company[part * len(company) // count:(part + 1) * len(company) // count]
             includes = dict.fromkeys(include for file in some for include in flags[file].includes)
-            groups.append(Group(Flags(meaning, tuple(includes)), some))
+            groups.append(Group(Flags(flags[some[0]].meaning, tuple(includes)), some))
     return groups
 
 
