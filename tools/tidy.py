@@ -170,8 +170,11 @@ def main():
     tidy = Tidy((arguments.build / "tidy").resolve(), len(files))
     # The longest first, so that no processor is idle at the end: by size, which is near enough.
     groups = sorted(groups_of(files, flags), key=lambda group: -sum(file.stat().st_size for file in group.files))
+    print(f"lint: clang-tidy; files: {len(files)}, runs: {len(groups)}", flush=True)
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         list(pool.map(tidy.check, groups))
+    if tidy.failed:
+        print(f"lint: findings above: {len(tidy.printed)}", file=sys.stderr)
     return 1 if tidy.failed else 0
 
 
