@@ -132,6 +132,7 @@ class Shot {
     template <bool kProfile>
     bool resolve_cluster(const Candidate& c, double v_n);
     bool hold_in_cluster(bool after);
+    void end_cluster(const Candidate& c);
     double collect_cluster(int a, int b, double v_n);
     void collect_cluster_at(int a, int b, double v_n);
 

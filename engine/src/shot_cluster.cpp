@@ -120,6 +120,17 @@ void Shot::collect_cluster_at(int a, int b, double v_n) {
     return false;
 }
 
+// The cluster's balls part: not inlined into one of the two loops only.
+[[gnu::noinline]] void Shot::end_cluster(const Candidate& c) {
+    for (const ClusterBall& ball : cluster_balls_) free_ball(ball.ball);
+    for (const ClusterBall& ball : cluster_balls_)
+        begin(ball.ball, start_segment(now_, ball.r, ball.v, ball.w, motion_of(ball.ball)));
+    record_event(EventType::kBallCluster, c.a, c.b,
+                 static_cast<int>(record_.clusters.size() + log_cluster_.size()));
+    for (const ClusterBall& ball : cluster_balls_) log_member_.push_back(ball.ball);
+    log_cluster_.push_back(log_member_.size());
+}
+
 // True if the impact was a cluster's, or a contact of it is held now; false leaves it to the pair kernel.
 template <bool kProfile>
 bool Shot::resolve_cluster(const Candidate& c, double v_n) {
@@ -153,13 +164,7 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
         cost_.method = name(plan_.clusters);
     }
     if (slow && hold_in_cluster(true)) return true;
-    for (const ClusterBall& ball : cluster_balls_) free_ball(ball.ball);
-    for (const ClusterBall& ball : cluster_balls_)
-        begin(ball.ball, start_segment(now_, ball.r, ball.v, ball.w, motion_of(ball.ball)));
-    record_event(EventType::kBallCluster, c.a, c.b,
-                 static_cast<int>(record_.clusters.size() + log_cluster_.size()));
-    for (const ClusterBall& ball : cluster_balls_) log_member_.push_back(ball.ball);
-    log_cluster_.push_back(log_member_.size());
+    end_cluster(c);
     return true;
 }
 
