@@ -148,7 +148,8 @@ class Checker {
                                                [](double t, const Segment& s) { return t < s.start; });
             if (next == segments.begin()) continue;
             const Segment& s = *(next - 1);
-            if (s.state == MotionState::kRolling && length(cloth_slip(s.v, s.w, R(i))) > 1e-13 * length(planar(s.v)))
+            if (s.state == MotionState::kRolling &&
+                length(cloth_slip(s.v, s.w, R(i))) > 1e-13 * length(planar(s.v)))
                 report("U7", fmt::format("ball {} rolls and slips", record_.tracks[i].id));
         }
     }

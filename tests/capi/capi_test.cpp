@@ -215,13 +215,15 @@ TEST(CApi, SaysWhatIsWrongWithAScene) {
 
 TEST(CApi, ARunThatCannotGoOnIsAFailureWithAMessage) {
     Handles h;
-    const char* text = "[balls]\nmu_s = 0.6\nmu_b = 4\n[physics]\nsubsteps = 10\n[stop]\ntime = 1\n"
-                       "[[ball]]\nid = \"a\"\nposition = [0.6, 1]\nvelocity = [0, 1]\nspin = [-1e6, 0, 0]\n"
-                       "[[ball]]\nid = \"b\"\nposition = [0.6, 1.06]\n";
+    const char* text =
+        "[balls]\nmu_s = 0.6\nmu_b = 4\n[physics]\nsubsteps = 10\n[stop]\ntime = 1\n"
+        "[[ball]]\nid = \"a\"\nposition = [0.6, 1]\nvelocity = [0, 1]\nspin = [-1e6, 0, 0]\n"
+        "[[ball]]\nid = \"b\"\nposition = [0.6, 1.06]\n";
     ASSERT_EQ(carom_scene_parse(text, "x", &h.scene), CAROM_OK) << carom_last_error();
     EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_FAILED);
     EXPECT_EQ(h.record, nullptr);
-    EXPECT_NE(std::string(carom_last_error()).find("the impact of a and b could not be computed"), std::string::npos);
+    EXPECT_NE(std::string(carom_last_error()).find("the impact of a and b could not be computed"),
+              std::string::npos);
     EXPECT_EQ(carom_simulate(h.scene, std::nan(""), &h.record), CAROM_BAD_ARGUMENT);
 }
 

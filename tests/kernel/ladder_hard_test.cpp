@@ -86,8 +86,8 @@ TEST_P(HardRung, SurvivesEveryHardInput) {
     }
 }
 
-/// Ball 1 spins so fast that friction presses ball 2 onto the cloth all through the impact. The cloth then takes
-/// mu_s mu_b of the 2 by which a step drives the balls apart.
+/// Ball 1 spins so fast that friction presses ball 2 onto the cloth all through the impact. The cloth then
+/// takes mu_s mu_b of the 2 by which a step drives the balls apart.
 Impact held_together(double mu_s) {
     Impact impact{};
     impact.ball1 = {{0.0, 0.0, 0.03}, {0.0, 1.0, 0.0}, {-1e6, 0.0, 0.0}};

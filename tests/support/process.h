@@ -174,7 +174,8 @@ class Process {
         std::vector<char*> argv;
         for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
         argv.push_back(nullptr);
-        // Not execvp: that is where gcc --coverage writes the counts of this process, which would fall under the limit.
+        // Not execvp: that is where gcc --coverage writes the counts of this process, which would fall under
+        // the limit.
         ::execvpe(argv[0], argv.data(), environ);
         ::_exit(127);
     }

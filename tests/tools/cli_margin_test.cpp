@@ -152,8 +152,8 @@ TEST_F(CliMargin, SweepGoesThroughAccuracyAndFrameRate) {
 
 // A model without settings has one row a frame rate; drawing costs every frame something.
 TEST_F(CliMargin, SweepOfAClosedFormWithDrawing) {
-    const std::string scene =
-        folder_.write("i.toml", std::string(kSmallScene) + "[physics]\nball_ball = \"inelastic\"\n[stop]\ntime = 0.2\n");
+    const std::string scene = folder_.write(
+        "i.toml", std::string(kSmallScene) + "[physics]\nball_ball = \"inelastic\"\n[stop]\ntime = 0.2\n");
     const ProcessResult result = carom({"margin", scene, "--sweep", "--json"});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json json = Json::parse(result.out);

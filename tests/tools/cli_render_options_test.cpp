@@ -82,8 +82,9 @@ TEST_F(CliRenderOptions, EveryOverlayShows) {
 
 // From a scene, the margin bar counts the simulation too.
 TEST_F(CliRenderOptions, TheMarginOverlayTakesAScene) {
-    const ProcessResult result = carom({"render", scene_, "--overlay", "margin", "--fps", "8", "--from", "0.3", "--to", "0.6",
-                                        "--size", "96x54", "-o", folder_.file("m%d.png")});
+    const ProcessResult result =
+        carom({"render", scene_, "--overlay", "margin", "--fps", "8", "--from", "0.3", "--to", "0.6",
+               "--size", "96x54", "-o", folder_.file("m%d.png")});
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(folder_.names().size(), 2u + 3u);
     expect_refused(2, "--from: expected a number of seconds of at least 0", {"--from=-1"});

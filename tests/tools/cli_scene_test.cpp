@@ -36,10 +36,11 @@ const Malformed kScenes[] = {
 
 TEST(CliScene, CheckShowsFrictionBySlipAndBallsOfTheirOwn) {
     const TemporaryFolder folder;
-    const std::string scene = folder.write("s.toml",
-                                           "[balls]\nmu_b_fit = [0.01, 0.1, 1.5]\n[physics]\nball_ball = \"inelastic\"\n"
-                                           "clusters = \"sequential\"\n[[ball]]\nid = \"a\"\nposition = [0.5, 0.5]\n"
-                                           "[[ball]]\nid = \"b\"\nposition = [0.9, 0.5]\nmass = 0.2\n");
+    const std::string scene =
+        folder.write("s.toml",
+                     "[balls]\nmu_b_fit = [0.01, 0.1, 1.5]\n[physics]\nball_ball = \"inelastic\"\n"
+                     "clusters = \"sequential\"\n[[ball]]\nid = \"a\"\nposition = [0.5, 0.5]\n"
+                     "[[ball]]\nid = \"b\"\nposition = [0.9, 0.5]\nmass = 0.2\n");
     const ProcessResult result = carom({"check", scene});
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_NE(result.out.find("mu_b at a slip u: 0.01 + 0.1 exp(-1.5 u)\n"), std::string::npos) << result.out;

@@ -137,7 +137,8 @@ TEST_F(CliSimulate, StopsAfterItsEvents) {
     const std::string scene = folder_.write("e.toml", std::string(kSmallScene) + "[stop]\nevents = 3\n");
     const ProcessResult result = carom({"simulate", scene});
     EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_NE(result.out.find(" 3 events; stopped at its number of events\n"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find(" 3 events; stopped at its number of events\n"), std::string::npos)
+        << result.out;
 }
 
 TEST_F(CliSimulate, UntilStops) {

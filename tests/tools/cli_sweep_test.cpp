@@ -144,12 +144,15 @@ TEST(CliSweep, ShotsThatCannotBePlayedAreRowsToo) {
 TEST(CliSweep, AShotThatFailsIsARowAndAnExitStatus) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", kStuckScene), output = folder.file("a.csv");
-    const ProcessResult result = carom({"sweep", scene, "--vary", "balls.mu_s=list(0.6,0.0)", "--count", "8", "-o", output});
+    const ProcessResult result =
+        carom({"sweep", scene, "--vary", "balls.mu_s=list(0.6,0.0)", "--count", "8", "-o", output});
     EXPECT_EQ(result.status, 1);
-    EXPECT_NE(result.err.find(" shots failed while running; their rows say why\n"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(" shots failed while running; their rows say why\n"), std::string::npos)
+        << result.err;
     int failed = 0, stopped = 0;
     for (const std::string& line : lines_of(read_file(output))) {
-        failed += line.find(",0.6,failed,") != line.npos && line.find("did not end within its bound") != line.npos;
+        failed +=
+            line.find(",0.6,failed,") != line.npos && line.find("did not end within its bound") != line.npos;
         stopped += line.find(",0,time,1,") != line.npos;
     }
     EXPECT_GT(failed, 0);

@@ -94,7 +94,8 @@ TEST(ImpactLine, ElasticExchangesTheNormalVelocities) {
 TEST(ImpactLine, InelasticLosesWhatTheRestitutionSays) {
     Json line = ball_ball_line();
     line["params"]["mu_b"] = 0.0;
-    const Json out = Json::parse(answer_impact(line.dump(), settings(ImpactSettings::Method::kInelastic)).json);
+    const Json out =
+        Json::parse(answer_impact(line.dump(), settings(ImpactSettings::Method::kInelastic)).json);
     EXPECT_NEAR(out["v2"][0].get<double>(), 0.5 * (1.0 + 0.95), 1e-15);
     EXPECT_EQ(out["v1"][1], 0.25);
 }
