@@ -22,16 +22,16 @@ namespace {
 constexpr double kAgreement = 0.1;
 
 /// One setting: how to run it once, and what it gave.
-struct Subject {
+struct SceneSubject {
     SceneAccuracyRow row;
     Plan plan;
 };
 
-std::vector<Subject> subjects(const Scene& scene, const AccuracySceneArgs& args,
-                              std::optional<double> recommended) {
-    std::vector<Subject> list;
+std::vector<SceneSubject> subjects(const Scene& scene, const AccuracySceneArgs& args,
+                                   std::optional<double> recommended) {
+    std::vector<SceneSubject> list;
     for (const int n : args.march) {
-        Subject s{{}, with_substeps(scene, n)};
+        SceneSubject s{{}, with_substeps(scene, n)};
         s.row.method = "march";
         s.row.setting = fmt::format("N={}", n);
         s.row.value = n;
@@ -43,7 +43,7 @@ std::vector<Subject> subjects(const Scene& scene, const AccuracySceneArgs& args,
                                        [&](double tolerance) { return tolerance < *recommended; }),
                           *recommended);
     for (const double tolerance : tolerances) {
-        Subject s{{}, with_tolerance(scene, tolerance)};
+        SceneSubject s{{}, with_tolerance(scene, tolerance)};
         s.row.method = "tolerance";
         s.row.setting = fmt::format("{:g}", tolerance);
         s.row.value = tolerance;
@@ -198,8 +198,8 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     result.gain = gain_of(tight, truth);
     if (result.converged) result.recommended = deserved_tolerance(result.gain, args.target);
 
-    std::vector<Subject> list = subjects(scene, args, result.recommended);
-    for (Subject& s : list) {
+    std::vector<SceneSubject> list = subjects(scene, args, result.recommended);
+    for (SceneSubject& s : list) {
         throw_if_interrupted();
         try {
             compare(s.row, simulate(s.plan), outcome, end);

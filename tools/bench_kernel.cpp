@@ -40,7 +40,7 @@ struct ImpactSet {
 };
 
 /// One thing to measure: a rung, or a tolerance, for one impact or for a batch.
-struct Subject {
+struct TimedKernel {
     KernelRow row;
     std::function<void(const Impact&, int n, ImpactResult&)> one;
     std::function<void(const BatchArrays&, int n)> many;
@@ -80,7 +80,7 @@ double difference(const ImpactResult& a, const ImpactResult& b, const Impact& in
     return most / approach;
 }
 
-std::vector<ImpactResult> results_of(const Subject& subject, const ImpactSet& set, int n) {
+std::vector<ImpactResult> results_of(const TimedKernel& subject, const ImpactSet& set, int n) {
     std::vector<ImpactResult> results(set.impacts.size());
     subject.run(set, n, results);
     if (subject.many)
@@ -88,11 +88,11 @@ std::vector<ImpactResult> results_of(const Subject& subject, const ImpactSet& se
     return results;
 }
 
-std::vector<Subject> subjects(const std::vector<Isa>& isas) {
-    std::vector<Subject> list;
+std::vector<TimedKernel> subjects(const std::vector<Isa>& isas) {
+    std::vector<TimedKernel> list;
     for (const Rung& rung : ladder()) {
         if (std::find(isas.begin(), isas.end(), rung.isa) == isas.end()) continue;
-        Subject s;
+        TimedKernel s;
         s.row = {std::string("march ") + rung.name, rung.section, rung.march ? "single" : "batch", rung.isa,
                  rung.portable_bits};
         if (rung.march)
@@ -109,13 +109,13 @@ std::vector<Subject> subjects(const std::vector<Isa>& isas) {
     } asked[] = {{"tolerance 1e-3", 1e-3}, {"tolerance 1e-6", 1e-6}, {"tolerance 1e-10", 1e-10}};
     for (Isa isa : isas) {
         for (const auto& a : asked) {
-            Subject s;
+            TimedKernel s;
             s.row = {a.name, "past it", "single", isa, true};
             s.one = [f = tolerance_function(isa), t = a.tolerance](const Impact& i, int, ImpactResult& out) {
                 f(i.ball1, i.ball2, i.params, t, out);
             };
             list.push_back(std::move(s));
-            Subject b;
+            TimedKernel b;
             b.row = {a.name, "past it", "batch", isa, true};
             b.many = [f = tolerance_batch_function(isa), t = a.tolerance](const BatchArrays& arrays, int) {
                 f(arrays.batch, t, arrays.result);
@@ -129,9 +129,9 @@ std::vector<Subject> subjects(const std::vector<Isa>& isas) {
 constexpr int kSubsteps = 1000;
 
 /// Rounds over all subjects in a new random order each, so that no drift of the clock favours one.
-void time_all(std::vector<Subject>& list, const ImpactSet& five, const ImpactSet& random, int repeats) {
+void time_all(std::vector<TimedKernel>& list, const ImpactSet& five, const ImpactSet& random, int repeats) {
     std::vector<ImpactResult> results(std::max(five.impacts.size(), random.impacts.size()));
-    for (Subject& s : list) {  // warm up, and find how many calls make a block worth a probe
+    for (TimedKernel& s : list) {  // warm up, and find how many calls make a block worth a probe
         const double once = s.time(five, kSubsteps, 2, results) * static_cast<double>(s.size(five));
         s.five_calls = std::max(1, static_cast<int>(3e5 / std::max(once, 1.0)));
         // Random impacts likewise. A run so long that one will do needs no warming either.
@@ -147,7 +147,7 @@ void time_all(std::vector<Subject>& list, const ImpactSet& five, const ImpactSet
         for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng.next() % i]);
         for (std::size_t k = 0; k < order.size(); ++k) {
             throw_if_interrupted();
-            Subject& s = list[order[k]];
+            TimedKernel& s = list[order[k]];
             // The first run brings code and data back into the caches.
             s.time(five, kSubsteps, 1, results);
             s.five_ns.push_back(s.time(five, kSubsteps, s.five_calls, results));
@@ -163,7 +163,7 @@ void time_all(std::vector<Subject>& list, const ImpactSet& five, const ImpactSet
 /// Differences from the baseline and errors from the converged solution.
 class Judge {
   public:
-    Judge(const Subject& baseline, const ImpactSet& five, const ImpactSet& random)
+    Judge(const TimedKernel& baseline, const ImpactSet& five, const ImpactSet& random)
         : five_(five),
           random_(random),
           base_five_(results_of(baseline, five, kSubsteps)),
@@ -171,7 +171,7 @@ class Judge {
           truth_five_(truth(five)),
           truth_random_(truth(random)) {}
 
-    void judge(Subject& s) const {
+    void judge(TimedKernel& s) const {
         KernelRow& row = s.row;
         const auto five = results_of(s, five_, kSubsteps), random = results_of(s, random_, kSubsteps);
         for (std::size_t i = 0; i < five.size(); ++i) {
@@ -208,7 +208,7 @@ class Judge {
     std::vector<test::ImpactTruth> truth_five_, truth_random_;
 };
 
-std::vector<GrowthRow> growth_of(const std::vector<Subject>& list, const ImpactSet& five) {
+std::vector<GrowthRow> growth_of(const std::vector<TimedKernel>& list, const ImpactSet& five) {
     std::vector<GrowthRow> rows;
     std::vector<ImpactResult> results(five.impacts.size());
     for (int n : {100, 1000, 10000}) {
@@ -231,7 +231,7 @@ void evict_caches() {
     for (std::size_t i = 0; i < memory.size(); i += 64) _mm_clflush(&memory[i]);
 }
 
-ShareRow shares_of(const Subject& s, const ImpactSet& five, double probe_ns) {
+ShareRow shares_of(const TimedKernel& s, const ImpactSet& five, double probe_ns) {
     std::vector<ImpactResult> results(five.impacts.size());
     // Balls that separate leave after validation and projection: what comes before the loop.
     ImpactSet apart(five.impacts, five.impacts[0].params.cloth_slip, 8);
@@ -296,7 +296,7 @@ KernelBench measure_kernel(const BenchOptions& options) {
     for (const BenchImpact& s : kFiveStates) states.push_back({s.ball1, s.ball2, s.params});
     const ImpactSet five(states, slip, 16);
     const ImpactSet random(test::random_impacts(options.seed, options.random), slip, 1);
-    std::vector<Subject> list = subjects(chosen_isas());
+    std::vector<TimedKernel> list = subjects(chosen_isas());
 
     KernelBench bench;
     bench.cpu = processor();
@@ -306,7 +306,7 @@ KernelBench measure_kernel(const BenchOptions& options) {
     bench.probe_ns = cost_of_a_probe();
     // The baseline is the v3 build where there is one, also under CAROM_ISA=scalar or v4: all ratios mean the
     // same.
-    Subject baseline;
+    TimedKernel baseline;
     const Isa baseline_isa = available(Isa::kV3) ? Isa::kV3 : Isa::kScalar;
     bench.baseline_isa = name(baseline_isa);
     baseline.row.name = "baseline of all ratios";
@@ -320,7 +320,7 @@ KernelBench measure_kernel(const BenchOptions& options) {
     list.pop_back();
 
     const Judge judge(baseline, five, random);
-    for (Subject& s : list) {
+    for (TimedKernel& s : list) {
         judge.judge(s);
         KernelRow& row = s.row;
         row.ns_min = minimum(s.five_ns);
@@ -332,7 +332,7 @@ KernelBench measure_kernel(const BenchOptions& options) {
         bench.rows.push_back(row);
     }
     if (options.growth) bench.growth = growth_of(list, five);
-    for (const Subject& s : list)
+    for (const TimedKernel& s : list)
         if (s.one && s.row.name.rfind("march", 0) == 0)
             bench.shares.push_back(shares_of(s, five, bench.probe_ns));
     return bench;

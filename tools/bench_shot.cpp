@@ -42,7 +42,7 @@ class Baseline {
 };
 
 /// One shot of one seed.
-struct Subject {
+struct TimedShot {
     Plan plan;
     std::vector<double> ns;
     double least_profiled = 1e300;
@@ -98,13 +98,13 @@ void interleave(const std::vector<std::function<void()>>& list, int rounds, cons
     }
 }
 
-ShotRow row_of(const std::string& name, const Subject* first, int seeds, double baseline_ns) {
+ShotRow row_of(const std::string& name, const TimedShot* first, int seeds, double baseline_ns) {
     std::vector<double> cost, least, middle, events, clusters;
     ShotRow row;
     row.name = name;
     double all_events = 0.0, all_ns = 0.0;
     std::array<double, 5> split{};
-    for (const Subject* s = first; s != first + seeds; ++s) {
+    for (const TimedShot* s = first; s != first + seeds; ++s) {
         cost.push_back(minimum(s->ns) / baseline_ns);
         least.push_back(minimum(s->ns));
         middle.push_back(median(s->ns));
@@ -175,6 +175,7 @@ std::vector<GasRow> growth_of(const BenchShotOptions& options, kernel::Isa isa) 
         }
     }
     std::vector<std::function<void()>> work;
+    work.reserve(list.size());
     for (Gas& gas : list) work.emplace_back([&gas] { gas.time(); });
     interleave(work, std::max(1, options.repeats / 3), "bench shot: growth");
     std::vector<GasRow> rows;
@@ -192,20 +193,20 @@ std::vector<GasRow> growth_of(const BenchShotOptions& options, kernel::Isa isa) 
 ShotBench measure_shots(const BenchShotOptions& options) {
     const kernel::Isa isa = chosen_isa();
     const std::vector<std::string> names = shot_names();
-    std::vector<Subject> subjects;
+    std::vector<TimedShot> subjects;
     for (const std::string& name : names)
         for (int seed = 0; seed < options.seeds; ++seed)
             subjects.push_back({make_plan(shot_scene(name, static_cast<std::uint64_t>(seed)), isa), {}});
     Baseline baseline;
     std::vector<std::function<void()>> work;
-    for (Subject& s : subjects) {
+    for (TimedShot& s : subjects) {
         work.emplace_back([&s] {
             s.time();
             s.profile();
         });
         work.emplace_back([&baseline] { baseline.round(); });
     }
-    for (Subject& s : subjects) s.time();  // warms up
+    for (TimedShot& s : subjects) s.time();  // warms up
     interleave(work, options.repeats, "bench shot");
 
     ShotBench bench;

@@ -43,10 +43,4 @@ double percentile(const std::vector<double>& sorted, double p) {
     return sorted[index];
 }
 
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
 }  // namespace carom::tools

@@ -34,9 +34,6 @@ std::vector<FrameCost> costs_by_frame(const Record& record, double from, double 
 /// @param sorted  ascending, not empty   @param p  0..100
 double percentile(const std::vector<double>& sorted, double p);
 
-/// Middle value; the mean of the two middle ones for an even count. @param values not empty
-double median(std::vector<double> values);
-
 /// Wall time of frames that are made one after the other, from the moments at which each was done. What the
 /// caller does in between (a progress bar, removing files) does not count. The clock is the caller's, so that
 /// the bookkeeping can be tested without one.

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "bench/clock.h"
 #include "carom/engine/output_file.h"
 #include "margin.h"
 #include "plot.h"

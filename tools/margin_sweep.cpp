@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "accuracy_scene.h"
+#include "bench/clock.h"
 #include "carom/engine/output_file.h"
 #include "carom/engine/simulate.h"
 #include "console.h"
@@ -34,7 +35,7 @@ struct Cell {
     double worst_ms = 0.0, p99_ms = 0.0, worst_simulate_ms = 0.0;
 };
 
-struct SweepRow {
+struct SettingRow {
     std::string method, text;
     std::vector<Cell> cells;
     std::optional<double> frontier;  ///< highest rate up to which no frame was missed
@@ -71,6 +72,7 @@ std::vector<double> simulate_costs(const std::vector<Record>& runs, double fps) 
 std::vector<double> drawn_costs(const Plan& plan, const MarginArgs& args) {
     if (args.no_render) return {};
     std::vector<MarginRun> runs;
+    runs.reserve(static_cast<std::size_t>(args.repeat));
     for (int run = 0; run < args.repeat; ++run)
         runs.push_back(
             one_run(plan, args, kDrawnRate, fmt::format("drawing {} of {}:", run + 1, args.repeat)));
@@ -100,9 +102,9 @@ Cell cell_of(const std::vector<Record>& runs, const std::vector<double>& drawn, 
     return cell;
 }
 
-std::vector<SweepRow> sweep(const Plan& plan, const MarginArgs& args) {
+std::vector<SettingRow> sweep(const Plan& plan, const MarginArgs& args) {
     const std::vector<double> drawn = drawn_costs(plan, args);
-    std::vector<SweepRow> rows;
+    std::vector<SettingRow> rows;
     const std::vector<Setting> settings = settings_of(plan);
     ProgressLine progress("margin --sweep:");
     for (const Setting& setting : settings) {
@@ -113,7 +115,7 @@ std::vector<SweepRow> sweep(const Plan& plan, const MarginArgs& args) {
             options.profile = true;
             runs.push_back(simulate(setting.plan, options));
         }
-        SweepRow row{setting.method, setting.text, {}, {}};
+        SettingRow row{setting.method, setting.text, {}, {}};
         bool so_far = true;
         for (const double fps : kRates) {
             row.cells.push_back(cell_of(runs, drawn, fps));
@@ -126,10 +128,10 @@ std::vector<SweepRow> sweep(const Plan& plan, const MarginArgs& args) {
     return rows;
 }
 
-std::string sweep_json(const std::vector<SweepRow>& rows) {
+std::string sweep_json(const std::vector<SettingRow>& rows) {
     using Json = nlohmann::ordered_json;
     Json list = Json::array(), frontier = Json::array();
-    for (const SweepRow& row : rows) {
+    for (const SettingRow& row : rows) {
         for (const Cell& cell : row.cells)
             list.push_back({{"method", row.method},
                             {"setting", row.text},
@@ -147,36 +149,36 @@ std::string sweep_json(const std::vector<SweepRow>& rows) {
     return Json{{"rows", list}, {"frontier", frontier}}.dump() + "\n";
 }
 
-std::string sweep_csv(const std::vector<SweepRow>& rows) {
+std::string sweep_csv(const std::vector<SettingRow>& rows) {
     std::string text = "method,setting,fps,frames,missed,p99_ms,worst_ms,worst_simulate_ms\n";
-    for (const SweepRow& row : rows)
+    for (const SettingRow& row : rows)
         for (const Cell& c : row.cells)
             text += fmt::format("{},{},{},{},{},{},{},{}\n", row.method, row.text, c.fps, c.frames, c.missed,
                                 c.p99_ms, c.worst_ms, c.worst_simulate_ms);
     return text;
 }
 
-std::string sweep_text(const std::vector<SweepRow>& rows, const MarginArgs& args) {
+std::string sweep_text(const std::vector<SettingRow>& rows, const MarginArgs& args) {
     fmt::memory_buffer out;
     const auto line = std::back_inserter(out);
     fmt::format_to(line, "{}: frames missed (worst frame, % of its time); {}\n\n{:<22}", args.scene,
                    args.no_render ? "simulation only" : "simulated, drawn, encoded and written on one thread",
                    "");
     for (const double fps : kRates) fmt::format_to(line, "{:>15}", fmt::format("{} fps", fps));
-    for (const SweepRow& row : rows) {
+    for (const SettingRow& row : rows) {
         fmt::format_to(line, "\n{:<22}", row.method + " " + row.text);
         for (const Cell& c : row.cells)
             fmt::format_to(line, "{:>15}", fmt::format("{} ({:.0f} %)", c.missed, c.worst_ms * c.fps / 10.0));
     }
     fmt::format_to(line, "\n\n");
-    for (const SweepRow& row : rows)
+    for (const SettingRow& row : rows)
         fmt::format_to(line, "{} {}: {}\n", row.method, row.text,
                        row.frontier ? fmt::format("real time up to {} fps", *row.frontier)
                                     : fmt::format("not real time at {} fps", kRates[0]));
     return fmt::to_string(out);
 }
 
-void plot_sweep(const std::vector<SweepRow>& rows, const MarginArgs& args) {
+void plot_sweep(const std::vector<SettingRow>& rows, const MarginArgs& args) {
     Plot plot;
     plot.title = "Where the scene stops being real time: " + args.scene;
     plot.notes = {args.no_render ? "worst frame of the shot, simulation only"
@@ -187,7 +189,7 @@ void plot_sweep(const std::vector<SweepRow>& rows, const MarginArgs& args) {
     for (const double fps : kRates) budget.points.emplace_back(fps, 1000.0 / fps);
     plot.series.push_back(budget);
     int number = 0;
-    for (const SweepRow& row : rows) {
+    for (const SettingRow& row : rows) {
         Series series{row.method + " " + row.text, {}, true, true, row.method == "march", number++ % 6};
         for (const Cell& c : row.cells) series.points.emplace_back(c.fps, c.worst_ms);
         plot.series.push_back(series);
@@ -198,7 +200,7 @@ void plot_sweep(const std::vector<SweepRow>& rows, const MarginArgs& args) {
 }  // namespace
 
 int run_margin_sweep(const Plan& plan, const MarginArgs& args) {
-    const std::vector<SweepRow> rows = sweep(plan, args);
+    const std::vector<SettingRow> rows = sweep(plan, args);
     if (!args.csv.empty()) {
         OutputFile file(args.csv);
         file.write(sweep_csv(rows));

@@ -33,12 +33,12 @@ constexpr std::uint64_t kMostWaiting = 4096;
 constexpr std::chrono::milliseconds kFlushEvery(200);
 
 /// Shots `first` to `last - 1`.
-struct Range {
+struct ShotRange {
     std::uint64_t first, last;
     bool header;  ///< belongs to the first shard
 };
 
-Range shard_range(const std::string& text, std::uint64_t count) {
+ShotRange shard_range(const std::string& text, std::uint64_t count) {
     if (text.empty()) return {0, count, true};
     std::uint64_t i = 0, n = 0;
     const char* const end = text.data() + text.size();
@@ -136,7 +136,7 @@ class Workers {
 
 /// Where to go on in a file that was left behind. The last line is made again, so that the rows of another
 /// build are not continued.
-std::uint64_t take_up(const PartialFile& file, const Variation& variation, const Range& range,
+std::uint64_t take_up(const PartialFile& file, const Variation& variation, const ShotRange& range,
                       kernel::Isa isa) {
     if (file.lines() == 0) return range.first;
     const std::uint64_t rows = static_cast<std::uint64_t>(file.lines()) - (range.header ? 1 : 0);
@@ -155,7 +155,7 @@ std::uint64_t take_up(const PartialFile& file, const Variation& variation, const
 using Outcomes = std::array<std::uint64_t, kShotOutcomes>;
 
 /// Runs the shots from `from` on and writes their rows.
-Outcomes write_rows(PartialFile& file, const Variation& variation, const Range& range, std::uint64_t from,
+Outcomes write_rows(PartialFile& file, const Variation& variation, const ShotRange& range, std::uint64_t from,
                     kernel::Isa isa, unsigned jobs) {
     Outcomes outcomes{};
     Queue queue(from, range.last);
@@ -204,7 +204,7 @@ Variation read_variation(const SweepArgs& args) {
 int run_sweep(const SweepArgs& args) {
     if (args.count < 1 || args.count > kMostShots)
         throw UsageError(fmt::format("--count: expected 1 to {} shots", kMostShots));
-    const Range range = shard_range(args.shard, args.count);
+    const ShotRange range = shard_range(args.shard, args.count);
     const kernel::Isa isa = chosen_isa();
     const Variation variation = read_variation(args);
     for (const std::string& warning : make_plan(variation.base(), isa).warnings)

@@ -93,7 +93,8 @@ void ClusterMap::keep_energy(double before) {
         mx += motion_[n];
         my += motion_[n + 1];
     }
-    const double balls = static_cast<double>(motion_.size() / kPerBall);
+    const std::size_t count = motion_.size() / kPerBall;
+    const auto balls = static_cast<double>(count);
     mx /= balls;
     my /= balls;
     for (std::size_t n = 0; n < motion_.size(); n += kPerBall) {
@@ -141,6 +142,7 @@ long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<Cl
 long ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                        double e_b) {
     std::vector<Vec2> v;
+    v.reserve(balls.size());
     for (const ClusterBall& b : balls) v.push_back(Vec2(b.v.x(), b.v.y()));
     std::vector<double> impulse(contacts.size(), 0.0);
     double scale = 0.0;

@@ -87,7 +87,7 @@ Distribution Distribution::parse(std::string_view text, const toml::node* own) {
         d.kind_ = Kind::kList;
         d.list_ = std::make_shared<const toml::array>(list);
     } else {
-        fail(fmt::format("unknown distribution {}; use uniform, normal, integer or list", quoted(name)));
+        fail(fmt::format("unknown distribution {}; use uniform, normal, integer or list", in_quotes(name)));
     }
     return d;
 }

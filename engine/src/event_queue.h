@@ -13,7 +13,8 @@ class EventQueue {
         leaves_ = 1;
         while (leaves_ < count) leaves_ *= 2;
         winner_.assign(2 * static_cast<std::size_t>(leaves_), -1);
-        for (int i = 0; i < count; ++i) winner_[static_cast<std::size_t>(leaves_ + i)] = i;
+        for (int i = 0; i < count; ++i)
+            winner_[static_cast<std::size_t>(leaves_) + static_cast<std::size_t>(i)] = i;
     }
 
     /// Replays the matches of player i. earlier(x, y): x comes before y, a strict weak order.

@@ -12,10 +12,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-Vec2 planar(const Vec3& a) {
-    return {a.x(), a.y()};
-}
-
 // Time left until |w_z| has decayed to 0.
 double spin_time(double w_z, const MotionParams& p) {
     return w_z == 0.0 ? 0.0 : (p.spin > 0.0 ? std::abs(w_z) / p.spin : kInfinity);

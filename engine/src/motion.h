@@ -11,6 +11,10 @@
 
 namespace carom {
 
+inline Vec2 planar(const Vec3& a) {
+    return {a.x(), a.y()};
+}
+
 /// Length of a planar vector; no overflow, no underflow, no libm.
 inline double length(const Vec2& a) {
     const double largest = std::max(std::abs(a.x()), std::abs(a.y()));

@@ -15,7 +15,7 @@
 namespace carom {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 // A ball with the velocities that it starts with, struck by the cue or not.
 struct Start {
@@ -36,7 +36,7 @@ class Bounds {
     explicit Bounds(const Scene& scene)
         : scene_(scene),
           motion_(motion_params(scene.balls, scene.physics.gravity, scene.balls.R)),
-          time_(scene.stop.time.value_or(kInfinity)) {
+          time_(scene.stop.time.value_or(kUnbounded)) {
         motion_.sliding = motion_.rolling = motion_.spin_decay = false;  // only the states are asked for
         for (const BallStart& ball : scene.ball) {
             Vec3 v = ball.velocity, w = ball.spin;
@@ -74,7 +74,7 @@ class Bounds {
         if (movers > 1 || meets_cushion(radius) || meets_ball(radius)) {
             const double far = by_energy();
             std::fill(radius.begin(), radius.end(), far);
-            reach.why = far < kInfinity
+            reach.why = far < kUnbounded
                             ? fmt::format("no ball goes farther than {:.3g} m until the stop", far)
                             : std::string("nothing bounds how far a ball can go");
         }
@@ -106,9 +106,9 @@ class Bounds {
         const bool coarse = p.substeps ? *p.substeps < 100 : p.tolerance > 1e-6;
         const bool gains = p.ball_ball == BallBallModel::kMathavan &&
                            (p.cloth_slip == ClothSlipSign::kAsPublished || coarse);
-        if (gains || !(time_ < kInfinity)) return kInfinity;
+        if (gains || !(time_ < kUnbounded)) return kUnbounded;
         // Per mass of the lightest ball, which could have all of it.
-        double lightest = kInfinity, energy = 0.0;
+        double lightest = kUnbounded, energy = 0.0;
         for (const Start& s : starts_) lightest = std::min(lightest, s.size.m);
         for (const Start& s : starts_)
             energy += (s.size.m / lightest) *

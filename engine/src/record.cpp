@@ -192,8 +192,8 @@ std::string Record::hash() const {
     for (const Event& e : events) {
         fnv.add(e.time);
         fnv.add(static_cast<std::uint64_t>(e.type));
-        fnv.add(static_cast<std::uint64_t>(e.a + 1));
-        fnv.add(static_cast<std::uint64_t>(e.b + 1));
+        fnv.add(static_cast<std::uint64_t>(e.a) + 1);
+        fnv.add(static_cast<std::uint64_t>(e.b) + 1);
     }
     fnv.add(duration);
     return fmt::format("{:016x}", fnv.value());

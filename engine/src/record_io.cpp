@@ -11,23 +11,23 @@
 namespace carom {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json numbers(const Vec2& v) {
-    return Json::array({v.x(), v.y()});
+OrderedJson numbers(const Vec2& v) {
+    return OrderedJson::array({v.x(), v.y()});
 }
 
-Json numbers(const Vec3& v) {
-    return Json::array({v.x(), v.y(), v.z()});
+OrderedJson numbers(const Vec3& v) {
+    return OrderedJson::array({v.x(), v.y(), v.z()});
 }
 
 /// JSON has no infinity: null stands for "never ends".
-Json duration_or_null(double seconds) {
-    return std::isinf(seconds) ? Json(nullptr) : Json(seconds);
+OrderedJson duration_or_null(double seconds) {
+    return std::isinf(seconds) ? OrderedJson(nullptr) : OrderedJson(seconds);
 }
 
-Json table_json(const Table& table) {
-    Json cushions = Json::array(), jaws = Json::array(), pockets = Json::array();
+OrderedJson table_json(const Table& table) {
+    OrderedJson cushions = OrderedJson::array(), jaws = OrderedJson::array(), pockets = OrderedJson::array();
     for (const Cushion& c : table.cushions) {
         cushions.push_back(
             {{"id", c.id}, {"from", numbers(c.from)}, {"to", numbers(c.to)}, {"height", c.height}});
@@ -46,12 +46,12 @@ Json table_json(const Table& table) {
             {"pockets", pockets}};
 }
 
-Json balls_json(const BallParams& p) {
+OrderedJson balls_json(const BallParams& p) {
     return {{"R", p.R},       {"m", p.m},     {"mu_s", p.mu_s}, {"mu_r", p.mu_r}, {"mu_sp", p.mu_sp},
             {"mu_b", p.mu_b}, {"e_b", p.e_b}, {"e_c", p.e_c},   {"f_c", p.f_c}};
 }
 
-Json segment_json(const Segment& s) {
+OrderedJson segment_json(const Segment& s) {
     return {{"start", s.start},
             {"state", name(s.state)},
             {"r", numbers(s.r)},
@@ -65,8 +65,8 @@ Json segment_json(const Segment& s) {
             {"ends", s.ends}};
 }
 
-Json event_json(const Record& record, const Event& event, const EventCost* cost) {
-    Json out = {{"time", event.time}, {"type", name(event.type)}, {"a", event.a}, {"b", event.b}};
+OrderedJson event_json(const Record& record, const Event& event, const EventCost* cost) {
+    OrderedJson out = {{"time", event.time}, {"type", name(event.type)}, {"a", event.a}, {"b", event.b}};
     if (event.type == EventType::kBallCluster)
         out["balls"] = record.clusters[static_cast<std::size_t>(event.detail)];
     else if (event.detail >= 0)
@@ -98,8 +98,8 @@ class Lines {
     bool first_ = true;
 };
 
-std::string dump(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string dump(const OrderedJson& json) {
+    return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 void write_tracks(const Record& record, OutputFile& file) {
@@ -134,7 +134,8 @@ void write_record(const Record& record, const std::string& path) {
                ", \"profiled\": " + (record.costs.empty() ? "false" : "true") +
                ", \"setup_detect_ns\": " + dump(record.setup_detect_ns));
     const RenderSettings& render = record.render;
-    Json view = {{"fps", render.fps}, {"size", {render.width, render.height}}, {"camera", render.camera}};
+    OrderedJson view = {
+        {"fps", render.fps}, {"size", {render.width, render.height}}, {"camera", render.camera}};
     if (render.eye && render.target) {
         view["eye"] = numbers(*render.eye);
         view["target"] = numbers(*render.target);

@@ -309,7 +309,7 @@ SourceLocation location(std::string_view text, std::size_t byte) {
     return where;
 }
 
-std::string read_text(const std::string& path) {
+std::string text_of_file(const std::string& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) throw SceneError(path, {}, "there is no such file");
     // A device or a pipe might never end.
@@ -340,7 +340,7 @@ Json parse(std::string_view text, const std::string& path) {
 }  // namespace
 
 Record read_record(const std::string& path) {
-    return parse_record(read_text(path), path);
+    return parse_record(text_of_file(path), path);
 }
 
 Record parse_record(std::string_view text, const std::string& name) {

@@ -37,7 +37,7 @@ void check_ids(const Section& top, const Scene& scene) {
         if (fresh) continue;
         top.fail(ball.where,
                  fmt::format("ball id {} is already used in line {}; give each ball an id of its own",
-                             quoted(ball.id), first->second.line));
+                             in_quotes(ball.id), first->second.line));
     }
 }
 
@@ -53,17 +53,17 @@ void check_overlaps(const Section& top, const Scene& scene) {
             if (std::abs(d.x()) >= diameter || std::abs(d.y()) >= diameter) continue;
             const double distance = d.norm();
             if (distance >= least) continue;
-            top.fail(scene.ball[i].where,
-                     fmt::format("balls {} and {} overlap by {:.4g} m; move one of them",
-                                 quoted(scene.ball[j].id), quoted(scene.ball[i].id), diameter - distance));
+            top.fail(scene.ball[i].where, fmt::format("balls {} and {} overlap by {:.4g} m; move one of them",
+                                                      in_quotes(scene.ball[j].id),
+                                                      in_quotes(scene.ball[i].id), diameter - distance));
         }
     }
 }
 
 void check_reach(const Section& top, const Scene& scene) {
     const auto refuse = [&](const BallStart& ball, const char* kind, const std::string& id, double depth) {
-        top.fail(ball.where, fmt::format("ball {} reaches {:.4g} m into {} {}; move it away", quoted(ball.id),
-                                         depth, kind, id));
+        top.fail(ball.where, fmt::format("ball {} reaches {:.4g} m into {} {}; move it away",
+                                         in_quotes(ball.id), depth, kind, id));
     };
     for (const BallStart& ball : scene.ball) {
         const Vec2 p = planar(ball);
@@ -108,8 +108,8 @@ void check_sizes(const Section& top, const Scene& scene) {
         if (size == first) continue;
         const SourceLocation where = ball.own ? ball.where : scene.ball.front().where;
         const auto refuse = [&](const std::string& why) {
-            top.fail(where, fmt::format("balls {} and {} differ in size: {}", quoted(scene.ball.front().id),
-                                        quoted(ball.id), why));
+            top.fail(where, fmt::format("balls {} and {} differ in size: {}",
+                                        in_quotes(scene.ball.front().id), in_quotes(ball.id), why));
         };
         if (rough && size.R != first.R)
             refuse(

@@ -52,7 +52,7 @@ std::string listed(const std::vector<const char*>& names) {
 
 }  // namespace
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     constexpr std::size_t kLongest = 60;
     std::string out = "\"";
     for (const char c : text.substr(0, kLongest)) {
@@ -80,11 +80,11 @@ Section::Section(const toml::table& table, const std::string& file, std::string 
     if (!unknown) return;
     if (path_.empty()) {
         fail(place(unknown->source()),
-             fmt::format("unknown section or key {}; the sections are {}", quoted(unknown->str()),
+             fmt::format("unknown section or key {}; the sections are {}", in_quotes(unknown->str()),
                          fmt::join(keys.begin(), keys.end(), ", ")));
     }
     fail(place(unknown->source()),
-         fmt::format("unknown key {} in [{}]; the keys there are {}", quoted(unknown->str()), path_,
+         fmt::format("unknown key {} in [{}]; the keys there are {}", in_quotes(unknown->str()), path_,
                      fmt::join(keys.begin(), keys.end(), ", ")));
 }
 
@@ -107,7 +107,7 @@ void Section::fail(std::string_view key, const std::string& message) const {
 
 void Section::fail_choice(std::string_view key, const std::string& got,
                           const std::vector<const char*>& names) const {
-    fail(key, fmt::format("unknown {} {}; use {}", full(key), quoted(got), listed(names)));
+    fail(key, fmt::format("unknown {} {}; use {}", full(key), in_quotes(got), listed(names)));
 }
 
 double Section::checked(const toml::node& node, const std::string& what, const Interval& allowed) const {

@@ -38,7 +38,7 @@ struct Choice {
 };
 
 /// Text from the file, fit for a message: quoted, without control characters, cut when long.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 SourceLocation place(const toml::node& node);
 

@@ -33,7 +33,6 @@ constexpr Choice<ClusterModel> kClusterModels[] = {{"compliant", ClusterModel::k
                                                    {"rigid", ClusterModel::kRigid}};
 constexpr Choice<bool> kCameras[] = {{"top", true}, {"rail", true}, {"player", true}, {"follow", true}};
 
-constexpr Interval kCoordinate = at_least(-kMaxCoordinate, kMaxCoordinate, "m");
 constexpr Interval kFriction = at_least(0.0, kMaxFriction);
 constexpr Interval kRestitution = at_least(0.0, 1.0);
 
@@ -41,7 +40,7 @@ constexpr Interval kRestitution = at_least(0.0, 1.0);
 void check_id(const Section& section, const std::string& id) {
     if (id.empty()) section.fail("id", "a ball's id is empty; give it a name");
     if (id.size() > kMaxIdLength) {
-        section.fail("id", fmt::format("the ball id {} is longer than {} bytes; shorten it", quoted(id),
+        section.fail("id", fmt::format("the ball id {} is longer than {} bytes; shorten it", in_quotes(id),
                                        kMaxIdLength));
     }
     for (const char c : id) {
@@ -49,7 +48,7 @@ void check_id(const Section& section, const std::string& id) {
             section.fail(
                 "id",
                 fmt::format("the ball id {} holds a comma, a quote or a control character; leave it out",
-                            quoted(id)));
+                            in_quotes(id)));
         }
     }
 }
@@ -194,14 +193,14 @@ void read_cue(const Section& top, Scene& scene) {
     if (!struck) {
         s.fail("ball",
                fmt::format("cue.ball: there is no ball {}; add a [[ball]] with this id or name another",
-                           quoted(cue.ball)));
+                           in_quotes(cue.ball)));
     }
     if (!struck->velocity.isZero(0.0) || !struck->spin.isZero(0.0)) {
         s.fail(
             struck->where,
             fmt::format(
                 "ball {} has a velocity or spin of its own and is struck by the cue; remove one of the two",
-                quoted(struck->id)));
+                in_quotes(struck->id)));
     }
     scene.cue = cue;
 }

@@ -1,9 +1,13 @@
 // One reader per section of a scene file. Each takes the file's top level and fills its part of the scene.
 #pragma once
 
+#include "carom/engine/tolerances.h"
 #include "scene_reader.h"
 
 namespace carom::detail {
+
+/// Places on and off the table.
+inline constexpr Interval kCoordinate = at_least(-kMaxCoordinate, kMaxCoordinate, "m");
 
 void read_balls(const Section& top, Scene& scene);
 /// Needs scene.balls (default nose height).

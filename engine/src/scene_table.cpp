@@ -12,8 +12,6 @@ namespace {
 constexpr Choice<bool> kTablePresets[] = {
     {"seven_foot", true}, {"eight_foot", true}, {"nine_foot", true}, {"snooker", true}, {"carom", true}};
 
-constexpr Interval kCoordinate = at_least(-kMaxCoordinate, kMaxCoordinate, "m");
-
 /// Nose height over ball radius of pool tables (physics.md: 1.28 R), the default of a custom outline.
 constexpr double kNoseHeight = 1.28;
 

@@ -20,10 +20,6 @@ bool before_place(const Vec2& p, const Vec2& q) {
     return key(p) < key(q);
 }
 
-Vec2 planar(const Vec3& a) {
-    return {a.x(), a.y()};
-}
-
 // Gap of two balls and the speed at which it closes.
 struct Nearness {
     double gap, closing;

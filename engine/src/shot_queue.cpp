@@ -36,7 +36,7 @@ double Shot::closing(const Candidate& c) const {
 
 Vec2 Shot::place(const Candidate& c) const {
     const Vec3 r = position_at(now_of(c.a), c.time - now_of(c.a).start);
-    const Vec2 here(r.x(), r.y());
+    Vec2 here(r.x(), r.y());
     switch (c.type) {
         case EventType::kBallBall: {
             const Vec3 q = position_at(now_of(c.b), c.time - now_of(c.b).start);

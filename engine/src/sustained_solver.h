@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "motion.h"
 #include "sustained.h"
 
 namespace carom {
@@ -112,9 +113,6 @@ class HeldSolver {
 
 inline double dot(const Vec2& a, const Vec2& b) {
     return a.x() * b.x() + a.y() * b.y();
-}
-inline Vec2 planar(const Vec3& a) {
-    return {a.x(), a.y()};
 }
 
 }  // namespace carom

@@ -17,7 +17,7 @@ namespace {
 
 using detail::Distribution;
 using detail::Drawn;
-using detail::quoted;
+using detail::in_quotes;
 
 /// One step: into a table by name, or into an array, where the name is empty, by index.
 struct Step {
@@ -135,7 +135,7 @@ std::size_t element_index(std::string_view name) {
     const auto [rest, error] = std::from_chars(name.data(), name.data() + name.size(), index);
     if (error != std::errc() || rest != name.data() + name.size())
         fail(fmt::format("{} is no element of an array; use x, y, z, side, height or its number from 0",
-                         quoted(name)));
+                         in_quotes(name)));
     return index;
 }
 

@@ -23,10 +23,6 @@ bool finite(const Vec3& a) {
     return std::isfinite(a.x()) && std::isfinite(a.y()) && std::isfinite(a.z());
 }
 
-Vec2 planar(const Vec3& a) {
-    return {a.x(), a.y()};
-}
-
 // Over the mass that all balls have unless they have their own: 1 in most scenes.
 double mass(const Record& record, int ball) {
     return record.size(ball).m / record.balls.m;

@@ -83,7 +83,8 @@ struct WideFrame {
 // enter_frame in lanes; a lane that it would turn away is not in the mask.
 CAROM_INLINE WideMask wide_enter(const Wide (&in)[kInputs], WideFrame& f) {
     Wide wrong = {};
-    for (int i = 0; i < kInputs; ++i) wrong += in[i] - in[i];
+    // 0, or a NaN where an input is not finite.
+    for (int i = 0; i < kInputs; ++i) wrong += in[i] - in[i];  // NOLINT(misc-redundant-expression): see above
     const Wide dx = in[kR2] - in[kR1], dy = in[kR2 + 1] - in[kR1 + 1], dz = in[kR2 + 2] - in[kR1 + 2];
     const Wide d = wide_root(dx * dx + dy * dy);
     f.yx = dx / d;

@@ -98,7 +98,7 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
         finished |= now;
         out.t.sweeps = choose(now, wide(k + 1.0), out.t.sweeps);
         // A NaN stays one, and what is slow at first is cheaper in two stretches.
-        open &= ~now & (left == left);
+        open &= ~now & (left == left);  // NOLINT(misc-redundant-expression): asks for a NaN
         if (k >= kPatience) open &= w.exact;
     }
     h = wide_stretch_end<N>(w, open_end, kept.g_b);

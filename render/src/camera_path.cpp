@@ -3,14 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "carom/render/error.h"
 
 namespace carom::render {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Height of the follow camera's eye over its distance behind the ball, and both together [m].
 const Vec3 kFollowOffset(0.0, -0.95, 0.62);
@@ -138,7 +137,7 @@ CameraPath::CameraPath(const Record& record, const TableMesh& table, const std::
     } else if (name == "top") {
         fixed_ = top_camera(table.bounds, size);
     } else if (name == "rail") {
-        const double pitch = 38.0 * kPi / 180.0;
+        const double pitch = 38.0 * std::numbers::pi / 180.0;
         fixed_ = fitting_camera(table.bounds, {0.0, std::cos(pitch), -std::sin(pitch)}, 34.0, size);
     } else if (name == "player") {
         fixed_ = player_camera(record, size);
@@ -162,7 +161,7 @@ Camera CameraPath::at(double t) const {
     Vec3 sum = Vec3::Zero();
     double weights = 0.0;
     for (int i = -kFollowSteps; i <= kFollowSteps; ++i) {
-        const double weight = 1.0 + std::cos(kPi * i / (kFollowSteps + 1.0));
+        const double weight = 1.0 + std::cos(std::numbers::pi * i / (kFollowSteps + 1.0));
         sum += weight * place_to_follow(record_, follow_ball_, t + kFollowWindow * i / kFollowSteps);
         weights += weight;
     }

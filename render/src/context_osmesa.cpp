@@ -12,15 +12,15 @@
 namespace carom::render::gl {
 namespace {
 
-constexpr const char* kPackage = "libosmesa6";
+constexpr const char* kOsmesaPackage = "libosmesa6";
 
 using Handle = void*;                       // OSMesaContext
 constexpr int kFormat = 0x22;               // OSMESA_FORMAT
 constexpr int kRgba = 0x1908;               // OSMESA_RGBA
 constexpr int kProfile = 0x33;              // OSMESA_PROFILE
-constexpr int kCoreProfile = 0x34;          // OSMESA_CORE_PROFILE
-constexpr int kContextMajor = 0x36;         // OSMESA_CONTEXT_MAJOR_VERSION
-constexpr int kContextMinor = 0x37;         // OSMESA_CONTEXT_MINOR_VERSION
+constexpr int kOsmesaCoreProfile = 0x34;    // OSMESA_CORE_PROFILE
+constexpr int kOsmesaContextMajor = 0x36;   // OSMESA_CONTEXT_MAJOR_VERSION
+constexpr int kOsmesaContextMinor = 0x37;   // OSMESA_CONTEXT_MINOR_VERSION
 constexpr int kDepthBits = 0x30;            // OSMESA_DEPTH_BITS
 constexpr unsigned kUnsignedByte = 0x1401;  // GL_UNSIGNED_BYTE
 
@@ -34,11 +34,11 @@ struct OsmesaLibrary {
 const OsmesaLibrary& osmesa() {
     static const OsmesaLibrary library = [] {
         const std::array<const char*, 3> names{"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"};
-        void* handle = open_library(names.data(), static_cast<int>(names.size()), kPackage);
+        void* handle = open_library(names.data(), static_cast<int>(names.size()), kOsmesaPackage);
         OsmesaLibrary found{};
         const auto find = [handle](auto& function, const char* symbol) {
             function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
-                find_symbol(handle, symbol, kPackage));
+                find_symbol(handle, symbol, kOsmesaPackage));
         };
         find(found.create, "OSMesaCreateContextAttribs");
         find(found.destroy, "OSMesaDestroyContext");
@@ -57,7 +57,8 @@ class OsmesaContext final : public Context {
   public:
     OsmesaContext() {
         const std::array<int, 11> attributes{
-            kFormat, kRgba, kProfile, kCoreProfile, kContextMajor, 3, kContextMinor, 3, kDepthBits, 0, 0};
+            kFormat,    kRgba, kProfile, kOsmesaCoreProfile, kOsmesaContextMajor, 3, kOsmesaContextMinor, 3,
+            kDepthBits, 0,     0};
         context_ = osmesa().create(attributes.data(), nullptr);
         if (context_ == nullptr) throw RenderError("OSMesa gives no OpenGL 3.3 core context; use --gl egl");
     }

@@ -74,7 +74,7 @@ ClothMap::ClothMap(const std::vector<std::uint8_t>& rgba, FrameSize size)
     const std::uint8_t* alpha = rgba.data() + 3;
     for (int y = 0; y < size.height; ++y) {
         for (int x = 0; x < size.width; ++x, alpha += 4) {
-            if (*alpha != 255) cloth_[static_cast<std::size_t>(y / kSide * columns_ + x / kSide)] = false;
+            if (*alpha != 255) cloth_[place(x / kSide, y / kSide)] = false;
         }
     }
 }
@@ -83,7 +83,7 @@ bool ClothMap::all_cloth(const PixelBox& box) const {
     if (cloth_.empty()) return false;
     for (int y = box.y0 / kSide; y * kSide < box.y1; ++y) {
         for (int x = box.x0 / kSide; x * kSide < box.x1; ++x) {
-            if (!cloth_[static_cast<std::size_t>(y * columns_ + x)]) return false;
+            if (!cloth_[place(x, y)]) return false;
         }
     }
     return true;

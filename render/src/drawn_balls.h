@@ -2,6 +2,7 @@
 // frame costs what moved in it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -53,6 +54,11 @@ class ClothMap {
     bool all_cloth(const PixelBox& box) const;
 
   private:
+    std::size_t place(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+               static_cast<std::size_t>(column);
+    }
+
     static constexpr int kSide = 16;  // pixels
     int columns_ = 0;
     std::vector<bool> cloth_;

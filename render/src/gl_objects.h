@@ -1,6 +1,8 @@
 // Thin helpers over the loaded OpenGL functions. Objects die with their context unless deleted here.
 #pragma once
 
+#include <cstddef>
+
 #include "gl_api.h"
 
 namespace carom::render::gl {
@@ -15,6 +17,12 @@ GLuint make_texture(const Api& api, int width, int height, GLenum internal_forma
 
 /// A framebuffer object of a colour texture and, if not 0, a depth texture. @throws RenderError
 GLuint make_framebuffer(const Api& api, GLuint color, GLuint depth);
+
+/// An offset into a buffer, as VertexAttribPointer takes it: OpenGL passes the number as a pointer.
+inline const void* buffer_offset(std::size_t bytes) {
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): the interface of OpenGL wants it so
+    return reinterpret_cast<const void*>(bytes);
+}
 
 void bind_texture(const Api& api, GLuint program, int unit, const char* sampler, GLuint texture);
 

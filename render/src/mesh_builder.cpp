@@ -70,6 +70,7 @@ void MeshBuilder::sweep(const Chain& outline, const std::vector<ProfileRow>& row
                         bool smooth) {
     const std::size_t n = outline.points.size(), pieces = outline.closed ? n : n - 1;
     std::vector<std::vector<Vec2>> lines;
+    lines.reserve(rows.size());
     for (const ProfileRow& row : rows)
         lines.push_back(offset_left(outline.points, outline.closed, row.offset));
     // Angle of the profile's normal from the vertical, towards the right-hand (playing) side, of each row.

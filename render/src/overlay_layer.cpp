@@ -36,7 +36,7 @@ OverlayLayer::OverlayLayer(const gl::Api& api, GLuint glyphs) : api_(api), glyph
     const auto attribute = [&](GLuint index, GLint count, std::size_t stride, std::size_t offset) {
         api.EnableVertexAttribArray(index);
         api.VertexAttribPointer(index, count, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
-                                reinterpret_cast<const void*>(offset));
+                                gl::buffer_offset(offset));
         api.VertexAttribDivisor(index, 1);
     };
     make(line_array_, line_buffer_);

@@ -67,7 +67,7 @@ struct Renderer::Impl {
         const auto attribute = [&](GLuint index, GLint count, std::size_t offset) {
             api.EnableVertexAttribArray(index);
             api.VertexAttribPointer(index, count, GL_FLOAT, GL_FALSE, sizeof(BallInstance),
-                                    reinterpret_cast<const void*>(offset));
+                                    gl::buffer_offset(offset));
             api.VertexAttribDivisor(index, 1);
         };
         attribute(0, 4, offsetof(BallInstance, center_radius));

@@ -94,8 +94,7 @@ void StaticLayer::upload(const TableMesh& table) {
                     GL_STATIC_DRAW);
     const auto attribute = [&](GLuint index, std::size_t offset) {
         api_.EnableVertexAttribArray(index);
-        api_.VertexAttribPointer(index, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex),
-                                 reinterpret_cast<const void*>(offset));
+        api_.VertexAttribPointer(index, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), gl::buffer_offset(offset));
     };
     attribute(0, offsetof(MeshVertex, x));
     attribute(1, offsetof(MeshVertex, nx));

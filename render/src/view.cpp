@@ -50,7 +50,8 @@ View make_view(const Camera& camera, const TableMesh& table) {
     View view;
     for (int c = 0; c < 4; ++c) {
         for (int r = 0; r < 4; ++r)
-            view.view_projection[static_cast<std::size_t>(4 * c + r)] = static_cast<float>(m(r, c));
+            view.view_projection[4 * static_cast<std::size_t>(c) + static_cast<std::size_t>(r)] =
+                static_cast<float>(m(r, c));
     }
     view.eye = to_float(eye);
     view.forward = to_float(forward);

@@ -117,8 +117,8 @@ TEST(Cluster, TouchingRack) {  // H1
         EXPECT_LT((sum - Vec3(0, 1, 0)).norm(), column < 2 ? 1e-13 : 1e-2);
         for (int row = 0, first = 1; row < 5; first += ++row) {
             for (int i = 0; i <= row; ++i) {
-                const ClusterBall &left = result.balls[static_cast<std::size_t>(first + i)],
-                                  &right = result.balls[static_cast<std::size_t>(first + row - i)];
+                const ClusterBall &left = *(result.balls.begin() + first + i),
+                                  &right = *(result.balls.begin() + first + row - i);
                 EXPECT_NEAR(left.v.x(), -right.v.x(), 1e-12);
                 EXPECT_NEAR(left.v.y(), right.v.y(), 1e-12);
             }

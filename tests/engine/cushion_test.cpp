@@ -17,9 +17,9 @@ namespace {
 
 using namespace test;
 
-constexpr CushionModel kModels[] = {CushionModel::kSmooth, CushionModel::kHan2005,
-                                    CushionModel::kMathavan2010, CushionModel::kImpulse,
-                                    CushionModel::kStronge};
+constexpr CushionModel kCushionModels[] = {CushionModel::kSmooth, CushionModel::kHan2005,
+                                           CushionModel::kMathavan2010, CushionModel::kImpulse,
+                                           CushionModel::kStronge};
 
 struct Case {
     CushionContact contact;
@@ -112,7 +112,7 @@ TEST(Cushion, SmoothReversesTheNormalVelocityOnly) {  // T17
 
 TEST(Cushion, ARecedingBallIsLeftAlone) {
     const CushionContact contact{0.028575, 0.17, 0.2, 0.85, 0.2, 0.0365};
-    for (const CushionModel model : kModels) {
+    for (const CushionModel model : kCushionModels) {
         for (const double v_x : {1.0, 0.0}) {
             Vec3 v(v_x, 0.3, 0.0), w(1.0, 2.0, 3.0);
             resolve_cushion(model, contact, Vec2(1.0, 0.0), v, w);
@@ -149,7 +149,7 @@ TEST(Cushion, EnergyFallsTheBallLeavesAndMirrorsAgree) {
     SplitMix64 rng(7);
     for (int i = 0; i < 4000; ++i) {
         const Case x = random_case(rng, i % 4);
-        for (const CushionModel model : kModels) {
+        for (const CushionModel model : kCushionModels) {
             Vec3 v = x.v, w = x.w;
             resolve_cushion(model, x.contact, x.normal, v, w);
             SCOPED_TRACE(std::string(name(model)) + " " + std::to_string(i));
@@ -173,7 +173,7 @@ TEST(Cushion, EveryModelIsHomogeneous) {
     SplitMix64 rng(8);
     for (int i = 0; i < 400; ++i) {
         const Case x = random_case(rng, i % 4);
-        for (const CushionModel model : kModels) {
+        for (const CushionModel model : kCushionModels) {
             Vec3 v = x.v, w = x.w, v2 = 2.0 * x.v, w2 = 2.0 * x.w;
             resolve_cushion(model, x.contact, x.normal, v, w);
             resolve_cushion(model, x.contact, x.normal, v2, w2);
@@ -186,7 +186,7 @@ TEST(Cushion, EveryModelIsHomogeneous) {
 // A model that does not read the cloth or the height does not change with them.
 TEST(Cushion, ModelsReadWhatTheySay) {
     SplitMix64 rng(9);
-    for (const CushionModel model : kModels) {
+    for (const CushionModel model : kCushionModels) {
         const CushionModelInfo& info = cushion_model(model);
         bool cloth = false, height = false, friction = false, spin = false;
         for (int i = 0; i < 200; ++i) {
@@ -230,7 +230,7 @@ TEST(Cushion, WithoutFrictionAtBallHeightEveryModelReflects) {
         x.contact.f_c = 0.0;
         x.contact.mu_s = 0.0;
         x.contact.height = x.contact.R;
-        for (const CushionModel model : kModels) {
+        for (const CushionModel model : kCushionModels) {
             Vec3 v = x.v, w = x.w;
             resolve_cushion(model, x.contact, x.normal, v, w);
             EXPECT_NEAR(v.x(), -x.contact.e_c * x.v.x(), 1e-12 * x.v.norm()) << name(model) << " " << i;
@@ -267,7 +267,7 @@ TEST(Cushion, WithoutFrictionAtBallHeightTheClosedFormsAreSmoothBitForBit) {
 // Signs that every model with friction owes (docs/physics.md, section 8): running side widens the rebound,
 // check side narrows it; topspin keeps a rolling ball from coming straight back as fast as e.
 TEST(Cushion, RunningAndCheckSide) {
-    for (const CushionModel model : kModels) {
+    for (const CushionModel model : kCushionModels) {
         if (!cushion_model(model).reads_spin) continue;
         const CushionContact contact{0.028575, 0.17, 0.2, 0.85, 0.2, 0.036576};
         const double R = contact.R, speed = 1.5;

@@ -102,8 +102,8 @@ const Case kCases[] = {
     {"pockets", "carom::time_to_pocket carom::Shot::resolve_pocket",
      "six pockets at the rails that no centre enters",
      [](Scene& s) {
-         for (int k = 0; k < 6; ++k)
-             s.table.pockets.push_back({"p", Vec2(k % 2 ? 0.5 : 0.0, 0.35 * (k / 2)), 0.025, 0.08});
+         for (const double y : {0.0, 0.35, 0.7})
+             for (const double x : {0.0, 0.5}) s.table.pockets.push_back({"p", Vec2(x, y), 0.025, 0.08});
      }},
     {"clusters", "carom::Shot::collect_cluster carom::ClusterMap::compliant", "a third ball at rest",
      [](Scene& s) {

@@ -22,7 +22,7 @@ Plan plan_of_text(const std::string& text) {
     return make_plan(parse_scene(text, "s.toml"), kernel::Isa::kScalar);
 }
 
-std::string error_of(const std::string& text) {
+std::string plan_error(const std::string& text) {
     try {
         plan_of_text(text);
     } catch (const SceneError& error) {
@@ -185,15 +185,15 @@ const std::string kBreak =
 TEST(Effects, RefusingWhatTheSceneNeedsIsAnErrorAtItsLine) {
     for (const char* keyword : kEffectKeywords) {
         const std::string line = std::string(keyword) + " = false";
-        const std::string message = error_of("[effects]\n" + line + "\n" + kBreak);
+        const std::string message = plan_error("[effects]\n" + line + "\n" + kBreak);
         const std::string place = "s.toml:2:" + std::to_string(std::string(keyword).size() + 4) +
                                   ": effects." + line + ", but the scene needs it: ";
         EXPECT_EQ(message.rfind(place, 0), 0u) << message;
         EXPECT_NE(message.find("; remove the line"), std::string::npos) << message;
         // Where it is not needed, both are accepted.
         const std::string still = "table.cushion = []\n[[ball]]\n";
-        EXPECT_EQ(error_of("[effects]\n" + line + "\n[table]\ncushion = []\n[[ball]]\n"), "") << keyword;
-        EXPECT_EQ(error_of("[effects]\n" + std::string(keyword) + " = true\n" + kBreak), "") << keyword;
+        EXPECT_EQ(plan_error("[effects]\n" + line + "\n[table]\ncushion = []\n[[ball]]\n"), "") << keyword;
+        EXPECT_EQ(plan_error("[effects]\n" + std::string(keyword) + " = true\n" + kBreak), "") << keyword;
     }
 }
 

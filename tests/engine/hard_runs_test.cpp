@@ -30,7 +30,7 @@ Table centred_box(double half_w, double half_l) {
 
 /// A break that ends in chaos: 15 racked balls 1e-4 m apart and a cue ball off the axis, on a table around
 /// the origin.
-Scene chaotic_break(ClusterModel clusters = ClusterModel::kCompliant) {
+Scene centred_break(ClusterModel clusters = ClusterModel::kCompliant) {
     Scene scene = empty_scene();
     scene.table = centred_box(0.635, 1.27);
     scene.physics.clusters = clusters;
@@ -44,7 +44,7 @@ Scene chaotic_break(ClusterModel clusters = ClusterModel::kCompliant) {
 
 // H33: the shot's place in the caller's time enters no computation.
 TEST(HardRuns, TimeFarFromZero) {
-    const Plan plan = plan_of(chaotic_break());
+    const Plan plan = plan_of(centred_break());
     SimulateOptions late;
     late.start_time = 1e6;
     const Record one = simulate(plan), two = simulate(plan, late);
@@ -82,7 +82,7 @@ TEST(HardRuns, MirrorsAndQuarterTurnBitwise) {
                           {"y", [](const Vec3& p) { return Vec3(p.x(), -p.y(), p.z()); }, -1.0},
                           {"quarter turn", [](const Vec3& p) { return Vec3(-p.y(), p.x(), p.z()); }, 1.0}};
     for (const ClusterModel model : {ClusterModel::kSequential, ClusterModel::kCompliant}) {
-        Scene scene = chaotic_break(model);
+        Scene scene = centred_break(model);
         const Record one = run_verified(scene);
         for (const Case& c : cases) {
             SCOPED_TRACE(std::string(name(model)) + ", " + c.name);
@@ -151,7 +151,7 @@ TEST(HardRuns, PermutedIdsBitwise) {
     for (const ClusterModel model :
          {ClusterModel::kSequential, ClusterModel::kCompliant, ClusterModel::kRigid}) {
         SCOPED_TRACE(name(model));
-        const Scene scene = chaotic_break(model);
+        const Scene scene = centred_break(model);
         Scene permuted = scene;
         for (std::size_t i = 0; i < 16; ++i) permuted.ball[(7 * i + 3) % 16] = scene.ball[i];
         const Record one = run_verified(scene), two = run_verified(permuted);
@@ -173,7 +173,7 @@ TEST(HardRuns, PermutedIdsBitwise) {
 TEST(HardRuns, Restart) {
     std::vector<std::pair<std::string, Scene>> scenes;
     for (const ClusterModel model : {ClusterModel::kCompliant, ClusterModel::kSequential})
-        scenes.emplace_back(name(model), chaotic_break(model));
+        scenes.emplace_back(name(model), centred_break(model));
     Scene push = empty_scene();
     push.table = box(1.0, 2.0, 0.036576);
     const double R = push.balls.R;

@@ -98,7 +98,7 @@ TEST(EightBall, FollowsTheRulesForEverySeed) {
         apexes.insert(ball_at(s, spot));
     }
     EXPECT_EQ(apexes.size(), 14u) << "every ball but the 8 comes to the apex";
-    EXPECT_NEAR(solid_left, kSeeds / 2, 60) << "six standard deviations";
+    EXPECT_NEAR(solid_left, 0.5 * kSeeds, 60) << "six standard deviations";
 }
 
 TEST(NineBall, FollowsTheRulesForEverySeed) {

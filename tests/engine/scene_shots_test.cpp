@@ -74,7 +74,7 @@ TEST(SceneShots, ThreeCushionScores) {
     for (const carom::Event& e : r.events) {
         if (e.type == EventType::kBallCushion && e.a == 0) met.push_back(r.partner_id(e));
         if (e.type == EventType::kBallBall && (e.a == 0 || e.b == 0))
-            met.push_back(r.tracks[static_cast<std::size_t>(e.a + e.b)].id);
+            met.push_back(r.tracks[static_cast<std::size_t>(e.a == 0 ? e.b : e.a)].id);
     }
     EXPECT_EQ(met, (std::vector<std::string>{"yellow", "c4", "c3", "c1", "c2", "red"}));
 }

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
 
 // The object ball stands at cut angle phi; the cue ball comes along +x at 1 m/s with R w_y = roll.
 struct Hit {
@@ -34,14 +34,14 @@ Hit hit(double phi, double roll, double e_b) {
     scene.balls.e_b = e_b;
     const double R = scene.balls.R;
     add_ball(scene, "cue", 0.0, 0.0, 1.0, 0.0, Vec3(0.0, roll / R, 0.0));
-    add_ball(scene, "1", 2.0 * R * std::cos(phi * kDegree), 2.0 * R * std::sin(phi * kDegree));
+    add_ball(scene, "1", 2.0 * R * std::cos(phi * kRadPerDeg), 2.0 * R * std::sin(phi * kRadPerDeg));
     Hit h{run_verified(scene), 0.0};
     EXPECT_EQ(h.record.events.front().type, EventType::kBallBall);
     h.time = h.record.events.front().time;
     return h;
 }
 double turned_deg(const Vec3& v) {
-    return std::abs(std::atan2(v.y(), v.x())) / kDegree;
+    return std::abs(std::atan2(v.y(), v.x())) / kRadPerDeg;
 }
 
 TEST(Truth, T6HeadOnStun) {
@@ -59,7 +59,7 @@ TEST(Truth, T7NinetyDegreeRule) {
     }
     const Hit h = hit(30.0, 0.0, 0.95);
     const double between = turned_deg(h.cue(h.time)) + turned_deg(h.object(h.time));
-    EXPECT_NEAR(between, 90.0 - std::atan(0.05 / (2.0 * std::tan(30.0 * kDegree))) / kDegree, 1e-9);
+    EXPECT_NEAR(between, 90.0 - std::atan(0.05 / (2.0 * std::tan(30.0 * kRadPerDeg))) / kRadPerDeg, 1e-9);
 }
 
 TEST(Truth, T8ThirtyDegreeRule) {

@@ -20,13 +20,13 @@ library=$(find "$work/carom" -name 'libcarom.so' -printf '%h')
 cp -r "$source/examples" "$work/examples"
 
 echo "== C++"
-cmake -S "$work/examples/cpp" -B "$work/cpp" -DCMAKE_PREFIX_PATH="$work/carom" -DCMAKE_CXX_COMPILER="$compiler" \
+cmake -G Ninja -S "$work/examples/cpp" -B "$work/cpp" -DCMAKE_PREFIX_PATH="$work/carom" -DCMAKE_CXX_COMPILER="$compiler" \
     -DCMAKE_BUILD_TYPE=Debug >"$work/cpp.log" 2>&1 && cmake --build "$work/cpp" >>"$work/cpp.log" 2>&1 || { cat "$work/cpp.log"; exit 1; }
 "$work/cpp/shot" | tee "$work/cpp.txt"
 grep -q 'ball_ball *cue 1' "$work/cpp.txt" || fail "the C++ example met no ball"
 # A later minor version of 0.x would be another interface.
 sed -i 's/carom 0.1/carom 0.2/' "$work/examples/cpp/CMakeLists.txt"
-if cmake -S "$work/examples/cpp" -B "$work/cpp2" -DCMAKE_PREFIX_PATH="$work/carom" >"$work/cpp2.log" 2>&1; then
+if cmake -G Ninja -S "$work/examples/cpp" -B "$work/cpp2" -DCMAKE_PREFIX_PATH="$work/carom" >"$work/cpp2.log" 2>&1; then
     fail "version 0.2 was asked for and this one taken"
 fi
 

@@ -24,13 +24,6 @@ class EveryRung : public testing::TestWithParam<Rung> {
     }
 };
 
-std::string rung_name(const testing::TestParamInfo<Rung>& rung) {
-    std::string text = std::string(rung.param.name) + "_" + name(rung.param.isa);
-    for (char& c : text)
-        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-    return text;
-}
-
 INSTANTIATE_TEST_SUITE_P(Ladder, EveryRung, testing::ValuesIn(ladder().begin(), ladder().end()), rung_name);
 
 std::vector<Impact> five_states() {

@@ -28,7 +28,7 @@ inline kernel::ImpactResult solve(const Impact& impact, double tolerance,
 }
 
 /// Whether two results agree bit for bit in their velocities.
-inline bool same_bits(const kernel::ImpactResult& a, const kernel::ImpactResult& b) {
+inline bool same_velocities(const kernel::ImpactResult& a, const kernel::ImpactResult& b) {
     return std::memcmp(a.v1, b.v1, sizeof a.v1) == 0 && std::memcmp(a.w1, b.w1, sizeof a.w1) == 0 &&
            std::memcmp(a.v2, b.v2, sizeof a.v2) == 0 && std::memcmp(a.w2, b.w2, sizeof a.w2) == 0;
 }

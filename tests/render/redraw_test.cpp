@@ -13,7 +13,7 @@
 namespace carom::render {
 namespace {
 
-const Record& the_break() {
+const Record& broken_rack() {
     static const Record record = [] {
         const Scene scene = read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/eight_ball_break.toml");
         return simulate(make_plan(scene, kernel::Isa::kScalar));
@@ -27,7 +27,7 @@ Stage stage_of(const std::string& camera, const std::string& overlay = "") {
     options.overlay = parse_overlay(overlay);
     options.size = {480, 270};
     options.table_samples = kMovingSamples + 1;  // the least for which it is looked at where the cloth is
-    return Stage(the_break(), options);
+    return Stage(broken_rack(), options);
 }
 
 // Draws from nothing: a picture from elsewhere makes both targets worthless.
@@ -46,8 +46,8 @@ Image whole_picture(Renderer& renderer, const DrawList& list) {
 std::vector<double> instants() {
     std::vector<double> times;
     for (double t : {0.0, 0.02, 0.1, 0.1, 0.3, 0.9, 2.0, 2.05, 3.5, 5.0, 0.3}) times.push_back(t);
-    times.push_back(the_break().duration);
-    times.push_back(the_break().duration);
+    times.push_back(broken_rack().duration);
+    times.push_back(broken_rack().duration);
     return times;
 }
 
@@ -143,7 +143,7 @@ TEST(RedrawWork, OnlyWhatMovedIsDrawn) {
     const ClothMap none;
     const FrameSize size{480, 270};
     const auto picture = [&](double t) { return DrawnPicture{1, false, visible_balls(stage.at(t), none)}; };
-    const double end = the_break().duration;
+    const double end = broken_rack().duration;
     EXPECT_TRUE(differing_boxes(picture(end), picture(end + 1.0), size).empty());
     const DrawnPicture rack = picture(0.0), cue_moved = picture(0.01);
     std::vector<PixelBox> boxes = differing_boxes(rack, cue_moved, size);

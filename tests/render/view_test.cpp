@@ -115,7 +115,7 @@ TEST(Cameras, FreeViewAndBadOnes) {
     options = view("follow");
     options.view.ball = "17";
     try {
-        Stage(record, options);
+        const Stage stage(record, options);
         FAIL();
     } catch (const RenderError& error) {
         EXPECT_STREQ(error.what(), "no ball '17' to follow; there are cue, 8");

@@ -19,9 +19,10 @@ inline Scene gas(int n, long events, std::uint64_t seed) {
     SplitMix64 rng(seed);
     for (int i = 0; i < n; ++i) {
         const SinCos v = sin_cos_deg(rng.uniform(0.0, 360.0));
-        add_ball(scene, std::to_string(i + 1), cell * (i % side + rng.uniform(0.3, 0.7)),
-                 cell * (i / side + rng.uniform(0.3, 0.7)), v.cos, v.sin,
-                 rolling_spin(v.cos, v.sin, scene.balls.R));
+        const int column = i % side, row = i / side;
+        const double y = cell * (row + rng.uniform(0.3, 0.7));
+        const double x = cell * (column + rng.uniform(0.3, 0.7));
+        add_ball(scene, std::to_string(i + 1), x, y, v.cos, v.sin, rolling_spin(v.cos, v.sin, scene.balls.R));
     }
     return scene;
 }

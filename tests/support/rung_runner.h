@@ -1,6 +1,11 @@
 // Runs any rung of the ladder on a list of impacts, whether it takes one a call or many.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <cctype>
+#include <string>
+
 #include "carom/kernel/ladder.h"
 #include "support/batch_arrays.h"
 
@@ -19,6 +24,14 @@ inline std::vector<kernel::ImpactResult> run_rung(const kernel::Rung& rung, std:
     rung.batch(arrays.batch, n, arrays.result);
     for (std::size_t i = 0; i < impacts.size(); ++i) results[i] = arrays.get(i);
     return results;
+}
+
+/// The name of a test of one rung on one instruction set.
+inline std::string rung_name(const testing::TestParamInfo<kernel::Rung>& rung) {
+    std::string text = std::string(rung.param.name) + "_" + name(rung.param.isa);
+    for (char& c : text)
+        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+    return text;
 }
 
 inline const kernel::Rung& baseline_rung() {

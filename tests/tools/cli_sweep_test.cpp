@@ -15,13 +15,14 @@ namespace fs = std::filesystem;
 /// Eight-ball breaks that differ in aim, speed and rack.
 std::vector<std::string> breaks(int count, const std::string& output,
                                 const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"sweep",   CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml",
-                                          "--vary",  "cue.aim_deg=normal(0.3)",
-                                          "--vary",  "cue.speed=uniform(8,10)",
-                                          "--vary",  "rack.seed=integer(1,1000000)",
-                                          "--seed",  "7",
-                                          "--count", std::to_string(count),
-                                          "-o",      output};
+    std::vector<std::string> arguments = {
+        "sweep",   std::string(CAROM_SOURCE_DIR) + "/scenes/eight_ball_break.toml",
+        "--vary",  "cue.aim_deg=normal(0.3)",
+        "--vary",  "cue.speed=uniform(8,10)",
+        "--vary",  "rack.seed=integer(1,1000000)",
+        "--seed",  "7",
+        "--count", std::to_string(count),
+        "-o",      output};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "bench/clock.h"
 #include "carom/render/sequence.h"
 #include "support/random_impacts.h"
 

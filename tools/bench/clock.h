@@ -32,10 +32,12 @@ inline double cycle_ns() {
     return best;
 }
 
+/// 0 of no values.
 inline double minimum(const std::vector<double>& x) {
     return x.empty() ? 0.0 : *std::min_element(x.begin(), x.end());
 }
 
+/// Middle value; the mean of the two middle ones for an even count; 0 of no values.
 inline double median(std::vector<double> x) {
     if (x.empty()) return 0.0;
     std::sort(x.begin(), x.end());

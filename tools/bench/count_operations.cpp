@@ -84,8 +84,10 @@ __m128 counted_rsqrt(__m128 a) {
 using namespace counting;
 
 #define double Counted
+// NOLINTBEGIN(clang-diagnostic-reserved-macro-identifier): these calls are what is counted
 #define __builtin_sqrt counted_root
 #define __builtin_fma counted_fma
+// NOLINTEND(clang-diagnostic-reserved-macro-identifier)
 #define _mm_rsqrt_ss counted_rsqrt
 #define CAROM_MARCH_NAME count_baseline
 #include "../../kernel/src/ladder/branch_hints.h"

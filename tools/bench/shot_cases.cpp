@@ -98,8 +98,9 @@ Scene gas_scene(int n, long events, std::uint64_t seed) {
     int rows = 1;
     for (int k = 1; k * k <= n; ++k)
         if (n % k == 0) rows = k;
+    const int columns = n / rows;
     const double cell = 4.0 * b.R, height = 1.28 * b.R;
-    const double w = cell * rows, l = cell * (n / rows);
+    const double w = cell * rows, l = cell * columns;
     scene.table.width = w;
     scene.table.length = l;
     scene.table.cushions = {{"c1", {0, 0}, {0, l}, height},
@@ -110,7 +111,8 @@ Scene gas_scene(int n, long events, std::uint64_t seed) {
     for (int i = 0; i < n; ++i) {
         BallStart ball;
         ball.id = std::to_string(i + 1);
-        const double x = i % rows + rng.uniform(0.3, 0.7), y = i / rows + rng.uniform(0.3, 0.7);
+        const int row = i % rows, column = i / rows;
+        const double x = row + rng.uniform(0.3, 0.7), y = column + rng.uniform(0.3, 0.7);
         ball.position = Vec3(x * cell, y * cell, b.R);
         const SinCos v = sin_cos_deg(rng.uniform(0.0, 360.0));
         ball.velocity = Vec3(v.cos, v.sin, 0.0);

@@ -114,9 +114,10 @@ void drive(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int
     Frame frame;
     FrameState state;
     if (enter_frame(ball1, ball2, params, frame, state, result) != ImpactStatus::kOk) return;
-    const long steps = params.cloth_slip == ClothSlip::kAsPublished
-                           ? Rung::template loop<+1>(state, params, n)
-                           : Rung::template loop<-1>(state, params, n);
+    const long steps =
+        params.cloth_slip == ClothSlip::kAsPublished
+            ? Rung::template loop<+1>(state, params, n)
+            : Rung::template loop<-1>(state, params, n);  // NOLINT(misc-redundant-expression): +1, -1
     if (steps < 0)
         copy_input(ball1, ball2, ImpactStatus::kStepLimit, result);
     else

@@ -111,10 +111,10 @@ inline void store8(double* to, Vector8 v) {
     CAROM_PIECES(CAROM_STORE)
 }
 
-#define CAROM_PLUS(m) x.m + y.m
-#define CAROM_MINUS(m) x.m - y.m
-#define CAROM_TIMES(m) x.m* y.m
-#define CAROM_BY(m) x.m / y.m
+#define CAROM_PLUS(m) (x.m + y.m)
+#define CAROM_MINUS(m) (x.m - y.m)
+#define CAROM_TIMES(m) (x.m * y.m)
+#define CAROM_BY(m) (x.m / y.m)
 #define CAROM_OPERATOR(op, OP)                         \
     inline Vector8 operator op(Vector8 x, Vector8 y) { \
         return CAROM_EACH(OP);                         \
@@ -147,12 +147,12 @@ inline Mask8 operator<(Vector8 x, Vector8 y) {
 }
 
 inline Mask8 operator&(Mask8 x, Mask8 y) {
-#define CAROM_AND(m) x.m& y.m
+#define CAROM_AND(m) (x.m & y.m)
     return CAROM_EACH(CAROM_AND);
 }
 
 inline Mask8 operator|(Mask8 x, Mask8 y) {
-#define CAROM_OR(m) x.m | y.m
+#define CAROM_OR(m) (x.m | y.m)
     return CAROM_EACH(CAROM_OR);
 }
 

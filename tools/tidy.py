@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+"""Runs clang-tidy with the list of .clang-tidy; called by tools/lint.
+
+    tools/tidy.py BUILD FILE.cpp ...     BUILD: a configured build folder with compile_commands.json; it need not be built
+
+Nine tenths of clang-tidy's time go into the standard library and the libraries in use, which it walks through again with every
+source. So sources that are compiled alike are checked together, as one file that includes them. Where names of two such
+sources clash, they are taken apart and checked again, which is only slower.
+
+Exit status 1: there are findings, or clang-tidy failed; both are printed. 2: a file that cannot be checked.
+"""
+import argparse
+import collections
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import threading
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+GROUP_SIZE = 15
+# A test may copy a string too many, and compares doubles bit by bit.
+LEFT_OUT_IN_TESTS = "-performance-*,-bugprone-suspicious-memory-comparison"
+# A program or a fuzz target.
+ENTRY = re.compile(r"^int main\(|LLVMFuzzerTestOneInput", re.MULTILINE)
+# A message of clang-tidy begins FILE:LINE:COLUMN: KIND: and goes on in indented lines and notes.
+FINDING = re.compile(r"^(?P<file>/[^:\n]+):\d+:\d+: (?:warning|error): ")
+BROKEN = re.compile(r"^(?P<file>[^:\n]+):\d+:\d+: error: .*\[clang-diagnostic-error")
+CHATTER = re.compile(r"^\d+ (warning|error)s?( and \d+ errors?)? (generated|treated as errors?)\.?$")
+
+Flags = collections.namedtuple("Flags", "meaning includes")
+Group = collections.namedtuple("Group", "flags files")
+
+
+def flags_of(command):
+    """What of a compile command changes what a source means; optimisation, sanitizers and warnings do not."""
+    meaning, includes = [], []
+    words = iter(shlex.split(command))
+    for word in words:
+        if word == "-isystem":
+            includes.append((word, next(words)))
+        elif word.startswith("-I"):
+            includes.append((word,))
+        elif word.startswith(("-D", "-U", "-m", "-std=")):
+            meaning.append(word)
+    return Flags(tuple(sorted(meaning)), tuple(includes))
+
+
+def compiled_flags(build):
+    """Flags by source. A source of several targets is checked as the first of them compiles it."""
+    flags = {}
+    for entry in json.loads((build / "compile_commands.json").read_text()):
+        flags.setdefault(pathlib.Path(entry["file"]).resolve(), flags_of(entry["command"]))
+    return flags
+
+
+def companies_of(files, flags):
+    """Files that can go together: they mean the same to the compiler, lie in one top folder, and one at most has an entry."""
+    companies, with_entry = collections.defaultdict(list), set()
+    for file in files:
+        company = flags[file].meaning, file.relative_to(ROOT).parts[0]
+        entry = bool(ENTRY.search(file.read_text()))
+        # The kernel's sources include little, and name things as it suits each of them.
+        if company[1] == "kernel" or entry and company in with_entry:
+            companies[file].append(file)
+            continue
+        companies[company].append(file)
+        if entry:
+            with_entry.add(company)
+    return companies.values()
+
+
+def groups_of(files, flags):
+    """Groups of at most GROUP_SIZE files, of even size."""
+    groups = []
+    for company in companies_of(files, flags):
+        count = -(-len(company) // GROUP_SIZE)
+        for part in range(count):
+            some = company[part * len(company) // count:(part + 1) * len(company) // count]
+            includes = dict.fromkeys(include for file in some for include in flags[file].includes)
+            groups.append(Group(Flags(flags[some[0]].meaning, tuple(includes)), some))
+    return groups
+
+
+class Tidy:
+    """Runs of clang-tidy, each in a folder of its own below FOLDER."""
+
+    def __init__(self, folder, total):
+        self.folder, self.total = folder, total
+        self.lock = threading.Lock()
+        self.printed, self.checked, self.runs, self.failed = set(), 0, 0, False
+        self.start = time.monotonic()
+
+    def run(self, group):
+        with self.lock:
+            self.runs += 1
+            folder = self.folder / str(self.runs)
+        folder.mkdir(parents=True, exist_ok=True)
+        source = folder / "sources.cpp"
+        source.write_text("".join(
+            f'#include "{file}"  // NOLINT(bugprone-suspicious-include): on purpose\n' for file in group.files))
+        arguments = ["clang++", *group.flags.meaning, *(word for include in group.flags.includes for word in include),
+                     "-c", str(source)]
+        database = [{"directory": str(folder), "file": str(source), "arguments": arguments}]
+        (folder / "compile_commands.json").write_text(json.dumps(database, indent=1))
+        command = ["clang-tidy", "--quiet", f"--config-file={ROOT / '.clang-tidy'}", "-p", str(folder)]
+        if group.files[0].is_relative_to(ROOT / "tests"):
+            command.append(f"--checks={LEFT_OUT_IN_TESTS}")
+        return subprocess.run(
+            [*command, str(source)],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+
+    def check(self, group):
+        result = self.run(group)
+        blamed = {match["file"] for match in map(BROKEN.match, result.stdout.splitlines()) if match}
+        if blamed and len(group.files) > 1:
+            self.take_apart(group, blamed, result.stdout)
+            return
+        with self.lock:
+            self.report(result)
+            self.checked += len(group.files)
+            seconds = time.monotonic() - self.start
+            print(f"lint: {self.checked} of {self.total} files through clang-tidy, {seconds:.0f} s", flush=True)
+
+    def take_apart(self, group, blamed, output):
+        """Files in which a clash shows are checked one by one, the others together again."""
+        alone = [file for file in group.files if str(file) in blamed] or group.files
+        first = next(line for line in output.splitlines() if BROKEN.match(line))
+        with self.lock:
+            print(f"lint: {len(alone)} of {len(group.files)} files do not go together and are checked one by one; "
+                  f"another name would make that faster:\n    {first}", flush=True)
+        for file in alone:
+            self.check(Group(group.flags, [file]))
+        rest = [file for file in group.files if file not in alone]
+        if rest:
+            self.check(Group(group.flags, rest))
+
+    def report(self, result):
+        """Prints findings that are not printed yet: one in a header comes with every group that includes it."""
+        show = True
+        for line in result.stdout.splitlines():
+            if FINDING.match(line):
+                show = line not in self.printed
+                self.printed.add(line)
+            if show:
+                print(line, flush=True)
+        for line in result.stderr.splitlines():
+            if not CHATTER.match(line):
+                print(line, file=sys.stderr, flush=True)
+        self.failed = self.failed or result.returncode != 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("files", type=pathlib.Path, nargs="+")
+    arguments = parser.parse_args()
+    flags = compiled_flags(arguments.build)
+    files = list(dict.fromkeys(file.resolve() for file in arguments.files))
+    unknown = [str(file) for file in files if file not in flags]
+    if unknown:
+        print("lint: no target compiles " + ", ".join(unknown) +
+              "; name .cpp files (headers are checked with the sources that include them)", file=sys.stderr)
+        return 2
+    tidy = Tidy((arguments.build / "tidy").resolve(), len(files))
+    # The longest first, so that no processor is idle at the end: by size, which is near enough.
+    groups = sorted(groups_of(files, flags), key=lambda group: -sum(file.stat().st_size for file in group.files))
+    print(f"lint: clang-tidy; files: {len(files)}, runs: {len(groups)}", flush=True)
+    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        list(pool.map(tidy.check, groups))
+    if tidy.failed:
+        print(f"lint: findings above: {len(tidy.printed)}", file=sys.stderr)
+    return 1 if tidy.failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
