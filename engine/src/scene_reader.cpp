@@ -105,15 +105,9 @@ void Section::fail(std::string_view key, const std::string& message) const {
     fail(where(key), message);
 }
 
-void Section::fail_choice(std::string_view key, const std::string& got, bool named,
-                          const std::vector<const char*>& built) const {
-    if (named)
-        fail(key, fmt::format("{} {} is not there yet; use {}", full(key), in_quotes(got), listed(built)));
-    fail(key, fmt::format("unknown {} {}; use {}", full(key), in_quotes(got), listed(built)));
-}
-
-void Section::refuse(std::string_view key, std::string_view instead) const {
-    if (has(key)) fail(key, fmt::format("{} is not there yet; {}", full(key), instead));
+void Section::fail_choice(std::string_view key, const std::string& got,
+                          const std::vector<const char*>& names) const {
+    fail(key, fmt::format("unknown {} {}; use {}", full(key), in_quotes(got), listed(names)));
 }
 
 double Section::checked(const toml::node& node, const std::string& what, const Interval& allowed) const {

@@ -30,12 +30,11 @@ constexpr Interval more_than(double low, double high, const char* unit = "") {
     return {low, true, high, false, unit};
 }
 
-/// One name that a key may take. Without a value the format names it, but it is not built yet: to build it,
-/// put the value here.
+/// One name that a key may take.
 template <class T>
 struct Choice {
     const char* name;
-    std::optional<T> value;
+    T value;
 };
 
 /// Text from the file, fit for a message: quoted, without control characters, cut when long.
@@ -72,28 +71,23 @@ class Section {
     Vec2 need_vec2(std::string_view key, const char* shape, const Interval& allowed) const;
     double need_number(std::string_view key, const Interval& allowed) const;
 
-    /// One of the names in `choices`; the built ones are listed in the error for any other.
+    /// One of the names in `choices`; they are listed in the error for any other.
     template <class T, std::size_t N>
     T choice(std::string_view key, T fallback, const Choice<T> (&choices)[N]) const {
         if (!has(key)) return fallback;
         const std::string got = text(key, "");
-        std::vector<const char*> built;
+        std::vector<const char*> names;
         for (const Choice<T>& c : choices) {
-            if (c.value && got == c.name) return *c.value;
-            if (c.value) built.push_back(c.name);
+            if (got == c.name) return c.value;
+            names.push_back(c.name);
         }
-        bool named = false;
-        for (const Choice<T>& c : choices) named = named || got == c.name;
-        fail_choice(key, got, named, built);
+        fail_choice(key, got, names);
     }
 
     /// A section inside this one; null if absent.
     const toml::table* table(std::string_view key) const;
     /// The tables of an array of tables; nothing if the key is absent.
     std::optional<std::vector<const toml::table*>> tables(std::string_view key) const;
-
-    /// Refuses a key that the format names but that is not built yet. `instead` says what works.
-    void refuse(std::string_view key, std::string_view instead) const;
 
     [[noreturn]] void fail(std::string_view key, const std::string& message) const;
     [[noreturn]] void fail(SourceLocation where, const std::string& message) const;
@@ -102,8 +96,8 @@ class Section {
 
   private:
     double checked(const toml::node& node, const std::string& what, const Interval& allowed) const;
-    [[noreturn]] void fail_choice(std::string_view key, const std::string& got, bool named,
-                                  const std::vector<const char*>& built) const;
+    [[noreturn]] void fail_choice(std::string_view key, const std::string& got,
+                                  const std::vector<const char*>& names) const;
 
     const toml::table& table_;
     const std::string& file_;

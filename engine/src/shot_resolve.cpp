@@ -233,6 +233,7 @@ void Shot::fail(const std::string& why) const {
                             record_.tracks[static_cast<std::size_t>(i)].id, name(s.state), r.x(), r.y(),
                             v.x(), v.y(), w.x(), w.y(), w.z());
     }
+    text.pop_back();  // a message ends without a line end
     throw SimulationError(text);
 }
 

@@ -51,7 +51,6 @@ namespace carom::render::gl {
     X(PFNGLGETPROGRAMIVPROC, GetProgramiv) \
     X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog) \
     X(PFNGLGETSHADERIVPROC, GetShaderiv) \
-    X(PFNGLGETSTRINGPROC, GetString) \
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation) \
     X(PFNGLLINKPROGRAMPROC, LinkProgram) \
     X(PFNGLPIXELSTOREIPROC, PixelStorei) \

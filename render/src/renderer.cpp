@@ -234,11 +234,4 @@ void Renderer::read_previous(KeptImage& image) {
     impl_->read(impl_->targets[1 - impl_->current], image.image_, image.shows_);
 }
 
-std::string Renderer::description() const {
-    const auto text = [this](GLenum what) {
-        return std::string(reinterpret_cast<const char*>(impl_->api.GetString(what)));
-    };
-    return text(GL_VERSION) + ", " + text(GL_RENDERER);
-}
-
 }  // namespace carom::render

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <string>
 #include <thread>
@@ -210,6 +211,30 @@ TEST(CApi, SaysWhatIsWrongWithAScene) {
     ASSERT_EQ(carom_scene_get_ball_param(h.scene, "radius", &radius), CAROM_OK);
     EXPECT_EQ(radius, 0.03);
     EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_OK) << carom_last_error();
+}
+
+TEST(CApi, ARunThatCannotGoOnIsAFailureWithAMessage) {
+    Handles h;
+    const char* text =
+        "[balls]\nmu_s = 0.6\nmu_b = 4\n[physics]\nsubsteps = 10\n[stop]\ntime = 1\n"
+        "[[ball]]\nid = \"a\"\nposition = [0.6, 1]\nvelocity = [0, 1]\nspin = [-1e6, 0, 0]\n"
+        "[[ball]]\nid = \"b\"\nposition = [0.6, 1.06]\n";
+    ASSERT_EQ(carom_scene_parse(text, "x", &h.scene), CAROM_OK) << carom_last_error();
+    EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_FAILED);
+    EXPECT_EQ(h.record, nullptr);
+    EXPECT_NE(std::string(carom_last_error()).find("the impact of a and b could not be computed"),
+              std::string::npos);
+    EXPECT_EQ(carom_simulate(h.scene, std::nan(""), &h.record), CAROM_BAD_ARGUMENT);
+}
+
+TEST(CApi, AnUnknownInstructionSetIsRefused) {
+    const double one[9] = {0, 0, kR, 0, 1, 0}, two[9] = {0, 2 * kR, kR};
+    double after1[9], after2[9];
+    ::setenv("CAROM_ISA", "v9", 1);
+    EXPECT_EQ(carom_collide_balls(one, two, &kParams, 1e-6, after1, after2), CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(std::string(carom_last_error()).rfind("CAROM_ISA", 0), 0u) << carom_last_error();
+    ::unsetenv("CAROM_ISA");
+    EXPECT_EQ(carom_collide_balls(one, two, &kParams, 1e-6, after1, after2), CAROM_OK);
 }
 
 TEST(CApi, WritesTheSceneAsAFile) {

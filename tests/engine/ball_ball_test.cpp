@@ -98,6 +98,27 @@ TEST(Unequal, EqualBallsGiveTheInelasticImpact) {
 
 // Momentum and angular momentum about the contact are kept, energy falls, Coulomb's limit holds or the slip
 // ends.
+TEST(Unequal, WhatCannotBeComputedGivesTheInputBack) {
+    const kernel::Ball one{{0.0, 0.0, 0.03}, {0.0, 1.0, 0.0}, {1.0, 2.0, 3.0}},
+        two{{0.0, 0.06, 0.03}, {0.0, 0.0, 0.0}, {}};
+    const kernel::ImpactParams rough{0.03, 0.17, 0.2, 0.2, 0.05, 0.9};
+    kernel::ImpactParams smooth = rough;
+    smooth.mu_b = 0.0;
+    kernel::Ball away = one;
+    away.v[1] = -1.0;
+    const auto status = [&](const kernel::Ball& a, const kernel::Ball& b, double R,
+                            const kernel::ImpactParams& p) {
+        kernel::ImpactResult result{};
+        collide_unequal({0.03, 0.17}, {R, 0.3}, a, b, p, result);
+        EXPECT_EQ(result.v1[1], a.v[1]);
+        EXPECT_EQ(result.w1[2], a.w[2]);
+        return result.status;
+    };
+    EXPECT_EQ(status(one, two, 0.02, rough), kernel::ImpactStatus::kBadParameter);
+    EXPECT_EQ(status(one, one, 0.03, smooth), kernel::ImpactStatus::kBadState);
+    EXPECT_EQ(status(away, two, 0.03, smooth), kernel::ImpactStatus::kNotApproaching);
+}
+
 TEST(Unequal, MassesOfAnyRatio) {
     SplitMix64 rng(5);
     for (int i = 0; i < 1000; ++i) {

@@ -79,6 +79,30 @@ TEST_P(HardRung, SurvivesEveryHardInput) {
     }
 }
 
+/// Ball 1 spins so fast that friction presses ball 2 onto the cloth all through the impact. The cloth then
+/// takes mu_s mu_b of the 2 by which a step drives the balls apart.
+Impact held_together(double mu_s) {
+    Impact impact{};
+    impact.ball1 = {{0.0, 0.0, 0.03}, {0.0, 1.0, 0.0}, {-1e6, 0.0, 0.0}};
+    impact.ball2 = {{0.0, 0.06, 0.03}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    impact.params = {0.03, 0.17, mu_s, mu_s, 4.0, 0.9};
+    return impact;
+}
+
+// A long impact outlasts what a batch does in step; one that never ends is stopped by the bound on steps.
+TEST_P(HardRung, ImpactsThatFrictionProlongsEndOrAreStopped) {
+    const std::vector<Impact> impacts = {held_together(0.4), held_together(0.6)};
+    constexpr int kN = 100;
+    const auto expected = run_rung(baseline_rung(), impacts, kN, ClothSlip::kConsistent);
+    const auto got = run_rung(GetParam(), impacts, kN, ClothSlip::kConsistent);
+    EXPECT_EQ(got[0].status, ImpactStatus::kOk);
+    EXPECT_GT(got[0].steps, 3 * kN);
+    EXPECT_LE(std::labs(got[0].steps - expected[0].steps), 2);
+    EXPECT_NEAR(got[0].v2[1], expected[0].v2[1], 1e-2);
+    EXPECT_EQ(got[1].status, ImpactStatus::kStepLimit);
+    EXPECT_TRUE(is_input(impacts[1], got[1]));
+}
+
 // H29: a power of two on all speeds changes no bit but the exponent. (The rsqrt rungs round by range.)
 TEST_P(HardRung, PowersOfTwoScale) {
     if (std::string(GetParam().name).find("rsqrt") != std::string::npos ||

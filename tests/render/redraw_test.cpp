@@ -83,6 +83,25 @@ TEST(RedrawLines, AnOverlayThatComesAndGoesLeavesNothing) {
     }
 }
 
+// A renderer that draws at another size makes its targets anew, and nothing of the old ones shows.
+TEST(RedrawLines, TheSizeMayChange) {
+    StageOptions options;
+    options.camera = "top";
+    options.table_samples = kMovingSamples + 1;
+    Renderer renderer;
+    for (const FrameSize size : {FrameSize{160, 90}, FrameSize{200, 120}, FrameSize{160, 90}}) {
+        options.size = size;
+        Renderer fresh;
+        const DrawList list = Stage(the_break(), options).at(0.5);
+        Image expected, got;
+        fresh.draw(list);
+        fresh.read(expected);
+        renderer.draw(list);
+        renderer.read(got);
+        EXPECT_TRUE(got.rgbx == expected.rgbx) << size.width;
+    }
+}
+
 TEST(RedrawKept, ImagesReadAtAnyOrderShowTheirFrame) {
     const Stage stage = stage_of("top");
     Renderer renderer, reference;

@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "accuracy_kernel.h"
 #include "accuracy_scene.h"
+#include "bench_kernel.h"
+#include "bench_shot.h"
 #include "box2d_shot.h"
 #include "carom/engine/simulate.h"
 #include "support/engine_cases.h"
@@ -35,6 +38,22 @@ KernelAccuracyRow row(const char* method, double ns, double median, double worst
     return r;
 }
 
+// The tables of growth, which take minutes to measure.
+TEST(BenchTables, ShowGrowth) {
+    ShotBench shots;
+    shots.growth = {{16, Search::kDirect, true, 1234.0, 1300.0, 1.0, 650.0}};
+    const std::string gas = shot_bench_text(shots);
+    EXPECT_NE(gas.find("1234"), std::string::npos) << gas;
+    EXPECT_NE(gas.find("650"), std::string::npos) << gas;
+    KernelBench kernels;
+    for (const auto& [n, ns] : {std::pair{100, 2111.0}, {1000, 21222.0}, {10000, 213333.0}})
+        kernels.growth.push_back({"march summed", kernel::Isa::kScalar, n, ns, ns});
+    const std::string growth = kernel_bench_text(kernels);
+    EXPECT_NE(growth.find("march summed              scalar       2111     21222    213333\n"),
+              std::string::npos)
+        << growth;
+}
+
 TEST(Reach, TakesTheCheapestSettingThatDoes) {
     std::vector<KernelAccuracyRow> rows = {row("a", 5.0, 1e-4, 1e-2), row("a", 50.0, 1e-6, 1e-3),
                                            row("a", 40.0, 1e-7, 1e-5), row("b", 9.0, 1e-13, 1e-10),
@@ -63,6 +82,22 @@ TEST(DeservedTolerance, IsTheLoosestPowerOfTenThatKeepsTheTarget) {
     EXPECT_EQ(deserved_tolerance(2e10, 1e-3), std::nullopt);
     EXPECT_EQ(deserved_tolerance(INFINITY, 1e-3), std::nullopt);
     EXPECT_EQ(deserved_tolerance(NAN, 1e-3), std::nullopt);
+}
+
+// What could not be finished is a row that says why, and no figure.
+TEST(SceneAccuracy, ASettingThatFailsIsARow) {
+    SceneAccuracy result;
+    result.rows.resize(2);
+    for (SceneAccuracyRow& r : result.rows) r.method = "march";
+    result.rows[0].setting = "N=100";
+    result.rows[1].setting = "N=1000";
+    result.rows[1].failed = "it did not end";
+    const std::string text = scene_accuracy_text(result, "s.toml");
+    EXPECT_NE(text.find("failed: it did not end\n"), std::string::npos) << text;
+    const auto rows = nlohmann::json::parse(scene_accuracy_json(result)).at("rows");
+    EXPECT_FALSE(rows.at(0).contains("failed"));
+    EXPECT_EQ(rows.at(1).at("failed"), "it did not end");
+    EXPECT_FALSE(rows.at(1).contains("ns_min"));
 }
 
 // A ball that rolls straight: put aside by d it ends aside by d.

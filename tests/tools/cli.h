@@ -45,6 +45,25 @@ fps = 60
 size = [320, 180]
 )";
 
+/// A valid scene whose one impact does not end: friction and spin hold the balls together, and the march
+/// stops it.
+inline constexpr char kStuckScene[] = R"([balls]
+mu_s = 0.6
+mu_b = 4.0
+[physics]
+substeps = 10
+[[ball]]
+id = "a"
+position = [0.6, 1]
+velocity = [0, 1]
+spin = [-1e6, 0, 0]
+[[ball]]
+id = "b"
+position = [0.6, 1.06]
+[stop]
+time = 1
+)";
+
 inline std::vector<std::string> lines_of(const std::string& text) {
     std::vector<std::string> lines;
     std::size_t start = 0;

@@ -150,5 +150,17 @@ TEST_F(CliMargin, SweepGoesThroughAccuracyAndFrameRate) {
     EXPECT_NE(read_file(folder_.file("s.svg")).find("1/fps"), std::string::npos);
 }
 
+// A model without settings has one row a frame rate; drawing costs every frame something.
+TEST_F(CliMargin, SweepOfAClosedFormWithDrawing) {
+    const std::string scene = folder_.write(
+        "i.toml", std::string(kSmallScene) + "[physics]\nball_ball = \"inelastic\"\n[stop]\ntime = 0.2\n");
+    const ProcessResult result = carom({"margin", scene, "--sweep", "--json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const Json json = Json::parse(result.out);
+    EXPECT_EQ(json.at("rows").size(), 6u);
+    for (const Json& row : json.at("rows"))
+        EXPECT_GT(row.at("worst_ms").get<double>(), row.at("worst_simulate_ms").get<double>());
+}
+
 }  // namespace
 }  // namespace carom::test

@@ -80,6 +80,16 @@ TEST_F(CliRenderOptions, EveryOverlayShows) {
     expect_refused(2, "--overlay: ", {"--overlay", "trails,shadow"});
 }
 
+// From a scene, the margin bar counts the simulation too.
+TEST_F(CliRenderOptions, TheMarginOverlayTakesAScene) {
+    const ProcessResult result =
+        carom({"render", scene_, "--overlay", "margin", "--fps", "8", "--from", "0.3", "--to", "0.6",
+               "--size", "96x54", "-o", folder_.file("m%d.png")});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(folder_.names().size(), 2u + 3u);
+    expect_refused(2, "--from: expected a number of seconds of at least 0", {"--from=-1"});
+}
+
 TEST_F(CliRenderOptions, ASheetIsOnePicture) {
     const std::string sheet = folder_.file("sheet.png");
     const ProcessResult result =
@@ -194,9 +204,10 @@ TEST_F(CliRenderOptions, PlacesThatCannotBeWrittenAreNamed) {
 
 TEST_F(CliRenderOptions, AFileThatCannotGrowLeavesNothing) {
     // The limit stands for a disk that fills up in the middle of a frame: 8 blocks of 512 bytes.
-    const ProcessResult result =
-        run_process({"sh", "-c", "ulimit -f 8; exec \"$0\" \"$@\"", CAROM_PROGRAM, "render", record_, "-o",
-                     folder_.file("big%d.png"), "--size", "640x360", "--to", "0.1"});
+    ProcessOptions options;
+    options.file_limit = 8L * 512;
+    const ProcessResult result = carom(
+        {"render", record_, "-o", folder_.file("big%d.png"), "--size", "640x360", "--to", "0.1"}, options);
     EXPECT_EQ(result.status, 1) << result.err;
     EXPECT_NE(result.err.find("big"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("File too large"), std::string::npos) << result.err;

@@ -34,6 +34,20 @@ const Malformed kScenes[] = {
      "redefine existing string 'preset')"},
 };
 
+TEST(CliScene, CheckShowsFrictionBySlipAndBallsOfTheirOwn) {
+    const TemporaryFolder folder;
+    const std::string scene =
+        folder.write("s.toml",
+                     "[balls]\nmu_b_fit = [0.01, 0.1, 1.5]\n[physics]\nball_ball = \"inelastic\"\n"
+                     "clusters = \"sequential\"\n[[ball]]\nid = \"a\"\nposition = [0.5, 0.5]\n"
+                     "[[ball]]\nid = \"b\"\nposition = [0.9, 0.5]\nmass = 0.2\n");
+    const ProcessResult result = carom({"check", scene});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("mu_b at a slip u: 0.01 + 0.1 exp(-1.5 u)\n"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("of its own, ball b: R 0.028575 m, mass 0.2 kg\n"), std::string::npos);
+    EXPECT_NE(result.out.find("closed form"), std::string::npos);
+}
+
 TEST(CliScene, TenMalformedScenesPrintTenExactMessages) {
     ASSERT_EQ(std::size(kScenes), 10u);
     const TemporaryFolder folder;

@@ -115,6 +115,32 @@ TEST_F(CliSimulate, SummarySaysWhatHappened) {
     }
 }
 
+TEST_F(CliSimulate, ARunThatCannotGoOnSaysWhereItStood) {
+    const std::string stuck = folder_.write("stuck.toml", kStuckScene);
+    const ProcessResult result = carom({"simulate", stuck, "-o", folder_.file("r.json")});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(result.out, "");
+    const std::vector<std::string> lines = lines_of(result.err);
+    ASSERT_EQ(lines.size(), 4u) << result.err;
+    EXPECT_EQ(lines[0].rfind("carom: simulation stopped at t = 0.00", 0), 0u) << lines[0];
+    EXPECT_NE(lines[0].find("after 0 events: the impact of a and b could not be computed: the march did not "
+                            "end within its bound on steps"),
+              std::string::npos)
+        << lines[0];
+    EXPECT_EQ(lines[1], "last events:");
+    EXPECT_EQ(lines[2], "balls that move (id state x y vx vy wx wy wz):");
+    EXPECT_EQ(lines[3].rfind("  a sliding ", 0), 0u) << lines[3];
+    EXPECT_FALSE(std::filesystem::exists(folder_.file("r.json")));
+}
+
+TEST_F(CliSimulate, StopsAfterItsEvents) {
+    const std::string scene = folder_.write("e.toml", std::string(kSmallScene) + "[stop]\nevents = 3\n");
+    const ProcessResult result = carom({"simulate", scene});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find(" 3 events; stopped at its number of events\n"), std::string::npos)
+        << result.out;
+}
+
 TEST_F(CliSimulate, UntilStops) {
     const Json json = Json::parse(run({"--json", "--until", "0.125"}).out);
     EXPECT_EQ(json.at("duration").get<double>(), 0.125);

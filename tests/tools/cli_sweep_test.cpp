@@ -108,6 +108,9 @@ TEST(CliSweep, AnInterruptLeavesWhatWasDone) {
     Process process(arguments, {});
     const std::string part = wait_for_rows(folder);
     ASSERT_NE(part, "");
+    const ProcessResult second = carom(breaks(100000, output));
+    EXPECT_EQ(second.status, 1);
+    EXPECT_EQ(second.err, "carom: " + part + ": another program is writing this very file\n");
     process.interrupt();
     const ProcessResult result = process.finish("");
     EXPECT_EQ(result.status, 130);
@@ -137,6 +140,24 @@ TEST(CliSweep, ShotsThatCannotBePlayedAreRowsToo) {
     }
     EXPECT_GT(invalid, 3);
     EXPECT_GT(hit, 3);
+}
+
+TEST(CliSweep, AShotThatFailsIsARowAndAnExitStatus) {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("s.toml", kStuckScene), output = folder.file("a.csv");
+    const ProcessResult result =
+        carom({"sweep", scene, "--vary", "balls.mu_s=list(0.6,0.0)", "--count", "8", "-o", output});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_NE(result.err.find(" shots failed while running; their rows say why\n"), std::string::npos)
+        << result.err;
+    int failed = 0, stopped = 0;
+    for (const std::string& line : lines_of(read_file(output))) {
+        failed +=
+            line.find(",0.6,failed,") != line.npos && line.find("did not end within its bound") != line.npos;
+        stopped += line.find(",0,time,1,") != line.npos;
+    }
+    EXPECT_GT(failed, 0);
+    EXPECT_EQ(failed + stopped, 8);
 }
 
 TEST(CliSweep, SaysWhatItNeeds) {

@@ -91,6 +91,15 @@ TEST(ImpactLine, ElasticExchangesTheNormalVelocities) {
     EXPECT_EQ(out["w1"], (Json{0.0, 3.0, 4.0}));
 }
 
+TEST(ImpactLine, InelasticLosesWhatTheRestitutionSays) {
+    Json line = ball_ball_line();
+    line["params"]["mu_b"] = 0.0;
+    const Json out =
+        Json::parse(answer_impact(line.dump(), settings(ImpactSettings::Method::kInelastic)).json);
+    EXPECT_NEAR(out["v2"][0].get<double>(), 0.5 * (1.0 + 0.95), 1e-15);
+    EXPECT_EQ(out["v1"][1], 0.25);
+}
+
 TEST(ImpactLine, CushionIsTheEnginesResult) {
     const ImpactAnswer answer = answer_impact(cushion_line().dump(), settings());
     ASSERT_TRUE(answer.ok) << answer.json;
@@ -130,9 +139,23 @@ std::string error_of(const std::string& line) {
     return json["error"];
 }
 
-std::string changed(Json line, const std::string& pointer, const Json& value) {
+Json changed_json(Json line, const std::string& pointer, const Json& value) {
     line[Json::json_pointer(pointer)] = value;
-    return line.dump();
+    return line;
+}
+
+std::string changed(const Json& line, const std::string& pointer, const Json& value) {
+    return changed_json(line, pointer, value).dump();
+}
+
+// Four digits make a unit vector: the rest of its length is taken out.
+TEST(ImpactLine, ANormalMayBeRounded) {
+    const Json line = cushion_line();
+    const Json exact = Json::parse(answer_impact(changed(line, "/normal", {-0.6, 0.8}), settings()).json);
+    const Json rounded =
+        Json::parse(answer_impact(changed(line, "/normal", {-0.6 * 1.0005, 0.8 * 1.0005}), settings()).json);
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(rounded["v"][i].get<double>(), exact["v"][i].get<double>(), 1e-15);
 }
 
 TEST(ImpactLine, SaysWhatIsWrong) {
@@ -160,6 +183,14 @@ TEST(ImpactLine, SaysWhatIsWrong) {
     EXPECT_EQ(error_of(changed(cushion, "/normal", {0, 0, 1})), "\"normal\": expected a list of 2 numbers");
     EXPECT_EQ(error_of(changed(cushion, "/params/height", 1)),
               "\"height\": expected a number inside 0 to 0.05715");
+    Json jams = changed_json(cushion, "/model", "mathavan_2010");
+    jams["params"]["f_c"] = 20.0;
+    EXPECT_EQ(error_of(jams.dump()),
+              "\"params\": with this f_c and mu_s the ball could jam under the nose; lower one of them");
+    Json stuck = line;
+    stuck["params"].update({{"mu_s1", 0.6}, {"mu_s2", 0.6}, {"mu_b", 4.0}});
+    stuck.update({{"v1", {1, 0, 0}}, {"w1", {0, 1e6, 0}}});
+    EXPECT_EQ(error_of(stuck.dump()), "the march did not end within its bound on steps");
     for (const Json& whole : {line, cushion}) {
         for (const auto& item : whole.items()) {
             Json less = whole;

@@ -62,7 +62,7 @@ Record sample_record() {
     record.table.pockets = {{"p,1", {1.0 / 3.0, 0.1}, 0.06, 0.08}};
     record.balls = {0.028575, 0.170097, 0.2, 0.01, 0.0127, 0.05, 0.95, 0.85, 0.2};
     record.gravity = 9.80665;
-    record.render = {59.94, 1920, 1080, "top"};
+    record.render = {59.94, 1920, 1080, "top", Vec3(0.1, -1.0 / 3.0, 2.0), Vec3(0.5, 1.0, 0.0)};
     record.duration = 7.0 / 3.0;
     record.stopped = StopReason::kEvents;
     record.setup_detect_ns = 1234.5;
@@ -143,6 +143,8 @@ TEST(RecordFile, ReadsBackToTheSameBits) {
     EXPECT_TRUE(same_bits(a.balls.mu_sp, b.balls.mu_sp));
     EXPECT_TRUE(same_bits(a.render.fps, b.render.fps));
     EXPECT_EQ(b.render.width, 1920);
+    EXPECT_EQ(b.render.eye, a.render.eye);
+    EXPECT_EQ(b.render.target, a.render.target);
     EXPECT_EQ(b.table.jaws.at(0).id, "jaw \"1\"");
     EXPECT_TRUE(std::signbit(b.table.cushions.at(0).from.y()));
     EXPECT_EQ(b.partner_id(b.events[5]), "p,1");
@@ -217,6 +219,8 @@ TEST(RecordFile, SaysWhatIsWrong) {
         {"/duration", -1, " duration: expected a number of at least 0"},
         {"/duration", nullptr, " duration: expected a number"},
         {"/stopped", "tired", " stopped: unknown name \"tired\""},
+        {"/table/preset", std::string(300, 'x'), " table.preset: the string is longer than 256 bytes"},
+        {"/table/preset", 5, " table.preset: expected a string"},
         {"/balls/R", 0, " balls.R: expected a number greater than 0"},
         {"/render/size", Json::array({1}), " render.size: expected [width, height]"},
         {"/render/size/0", 0, " render.size[0]: expected an integer from 1 to 16384"},

@@ -36,9 +36,6 @@ class Renderer {
     /// size before.
     void read_previous(KeptImage& image);
 
-    /// "4.5 (Core Profile) Mesa 22.3.6, llvmpipe ..."
-    std::string description() const;
-
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
