@@ -166,7 +166,7 @@ bool holds(double v_n, double a_c, double restitution) {
 double held_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
     const double speed = length(planar(v)), spin = length(Vec2(length(planar(w)), w.z()));
     // Without rolling friction nothing stops such a ball: then against that of sliding.
-    return std::max(kHoldNoise * (motion.roll > 0.0 ? motion.roll : motion.slide),
+    return std::max(motion.roll > 0.0 ? kHoldNoise * motion.roll : kHoldNoRoll * motion.slide,
                     8.0 * kClosingUlp * std::numeric_limits<double>::epsilon() * (speed + motion.R * spin));
 }
 

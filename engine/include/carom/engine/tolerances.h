@@ -113,6 +113,9 @@ inline constexpr double kStickAccuracy = 1e-3;
 /// and again; a speed that it would stop within the second counts as none at all.
 inline constexpr double kHoldRest = 1e-8;
 inline constexpr double kHoldNoise = 1e-12;
+/// [s] The same where there is no rolling friction, against that of sliding: a speed that in an hour makes no
+/// more than 1e-12 m.
+inline constexpr double kHoldNoRoll = 1e-16;
 /// [of kHoldShortest] A held ball that its own rolling friction would stop within this time takes the
 /// direction of its friction from where its forces lead it; an explicit step would be unstable.
 inline constexpr double kHoldSlow = 4.0;
