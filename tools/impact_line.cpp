@@ -72,7 +72,12 @@ double parameter(const Json& params, const char* key, double least, double most,
     return value;
 }
 
+/// @throws LineError where a number of the input was beyond what doubles can compute with (R = 1e-321 m)
 Json list(const double (&v)[3]) {
+    for (const double x : v) {
+        if (!std::isfinite(x))
+            throw LineError("the result is not finite; a number of the line is too large or too small");
+    }
     return Json::array({v[0], v[1], v[2]});
 }
 

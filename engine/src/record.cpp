@@ -98,15 +98,23 @@ Eigen::Quaterniond rotation(const Vec3& turn) {
     return {c, k * turn.x(), k * turn.y(), k * turn.z()};
 }
 
+// Angle a step, and steps that all balls of a record may take together: one that turns them more, which no
+// shot does, is followed more coarsely instead of for ever.
+constexpr double kLargestStep = 0.2, kMostSteps = 1e7;
+
+// Steps for w from w0 at the rate dw over `time`, if one turns the ball by `largest_step`.
+double step_count(const Vec3& w0, const Vec3& dw, double time, double largest_step) {
+    const double steps = std::max(w0.norm(), (w0 + time * dw).norm()) * time / largest_step;
+    return steps < kMostSteps ? steps : kMostSteps;
+}
+
 // Turning over `time` while w goes linearly from w0 at the rate dw.
-Eigen::Quaterniond turned(const Vec3& w0, const Vec3& dw, double time) {
+Eigen::Quaterniond turned(const Vec3& w0, const Vec3& dw, double time, double largest_step) {
     const Vec3 swerve = w0.cross(dw);
     if (swerve == Vec3::Zero()) return rotation(w0 * time + 0.5 * time * time * dw);  // fixed axis
-    // Magnus expansion to fourth order: Omega = h w_mid - h^3/12 w_mid x dw, at most a fifth of a radian a
-    // step (1e-7 over a shot).
-    constexpr double kLargestStep = 0.2;
-    const double fastest = std::max(w0.norm(), (w0 + time * dw).norm());
-    const int steps = 1 + static_cast<int>(fastest * time / kLargestStep);
+    // Magnus expansion to fourth order: Omega = h w_mid - h^3/12 w_mid x dw, at a fifth of a radian a step
+    // 1e-7 over a shot.
+    const int steps = 1 + static_cast<int>(step_count(w0, dw, time, largest_step));
     const double h = time / steps;
     Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
     for (int i = 0; i < steps; ++i) {
@@ -117,16 +125,29 @@ Eigen::Quaterniond turned(const Vec3& w0, const Vec3& dw, double time) {
 }
 
 // Turning of a segment over its first `tau` seconds; w_z stops decaying at 0.
-Eigen::Quaterniond segment_turn(const Segment& s, double tau) {
+Eigen::Quaterniond segment_turn(const Segment& s, double tau, double largest_step) {
     if (!(tau > 0.0)) return Eigen::Quaterniond::Identity();
     const double sign = s.w.z() > 0.0 ? 1.0 : (s.w.z() < 0.0 ? -1.0 : 0.0);
     const Vec3 dw(s.dw.x(), s.dw.y(), -sign * s.spin_decay);
     const double spin_end = sign != 0.0 && s.spin_decay > 0.0 ? std::abs(s.w.z()) / s.spin_decay : 0.0;
     if (sign == 0.0 || s.spin_decay == 0.0 || tau <= spin_end) {
-        return turned(s.w, sign == 0.0 ? Vec3(s.dw.x(), s.dw.y(), 0.0) : dw, tau);
+        return turned(s.w, sign == 0.0 ? Vec3(s.dw.x(), s.dw.y(), 0.0) : dw, tau, largest_step);
     }
     const Vec3 w_then(s.w.x() + spin_end * s.dw.x(), s.w.y() + spin_end * s.dw.y(), 0.0);
-    return turned(w_then, Vec3(s.dw.x(), s.dw.y(), 0.0), tau - spin_end) * turned(s.w, dw, spin_end);
+    return turned(w_then, Vec3(s.dw.x(), s.dw.y(), 0.0), tau - spin_end, largest_step) *
+           turned(s.w, dw, spin_end, largest_step);
+}
+
+double largest_step_of(const std::vector<BallTrack>& tracks) {
+    double steps = 0.0;
+    for (const BallTrack& track : tracks) {
+        for (std::size_t i = 0; i + 1 < track.segments.size(); ++i) {
+            const Segment& s = track.segments[i];
+            const Vec3 dw(s.dw.x(), s.dw.y(), 0.0);  // w_z only decays
+            steps += step_count(s.w, dw, track.segments[i + 1].start - s.start, kLargestStep);
+        }
+    }
+    return kLargestStep * std::max(1.0, steps / kMostSteps);
 }
 
 }  // namespace
@@ -134,6 +155,7 @@ Eigen::Quaterniond segment_turn(const Segment& s, double tau) {
 // Orientation of every ball at the start of each of its segments.
 struct Record::Orientations {
     std::once_flag once;
+    double largest_step = kLargestStep;
     std::vector<std::vector<Eigen::Quaterniond>> at_start;
 };
 
@@ -155,6 +177,7 @@ BallState Record::state_at(int ball, double t) const {
 
 Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
     std::call_once(orientations_->once, [this] {
+        const double largest_step = orientations_->largest_step = largest_step_of(tracks);
         for (const BallTrack& track : tracks) {
             std::vector<Eigen::Quaterniond> starts;
             Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
@@ -162,7 +185,7 @@ Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
                 starts.push_back(q);
                 if (i + 1 < track.segments.size())
                     q = (segment_turn(track.segments[i],
-                                      track.segments[i + 1].start - track.segments[i].start) *
+                                      track.segments[i + 1].start - track.segments[i].start, largest_step) *
                          q)
                             .normalized();
             }
@@ -173,7 +196,7 @@ Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
     t = std::clamp(t, 0.0, duration);
     const std::size_t i = segment_index(track.segments, t);
     const Segment& s = track.segments[i];
-    return segment_turn(s, std::min(t - s.start, s.duration)) *
+    return segment_turn(s, std::min(t - s.start, s.duration), orientations_->largest_step) *
            orientations_->at_start[static_cast<std::size_t>(ball)][i];
 }
 

@@ -92,7 +92,7 @@ TEST(RedrawLines, TheSizeMayChange) {
     for (const FrameSize size : {FrameSize{160, 90}, FrameSize{200, 120}, FrameSize{160, 90}}) {
         options.size = size;
         Renderer fresh;
-        const DrawList list = Stage(the_break(), options).at(0.5);
+        const DrawList list = Stage(broken_rack(), options).at(0.5);
         Image expected, got;
         fresh.draw(list);
         fresh.read(expected);
