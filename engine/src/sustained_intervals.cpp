@@ -150,8 +150,8 @@ double HeldSolver::opening_interval(const Link& link) const {
     return std::max(told, std::min(started, std::sqrt(2.0 * kHoldGap / opening)));
 }
 
-// A normal that turns without its margin (there was no room for it) closes the gap with the third power of the
-// time.
+// A normal that turns without its margin (there was no room for it) closes the gap with the third power of
+// the time.
 double HeldSolver::bare_interval(std::size_t c, double interval) const {
     const Link& link = links_[c];
     Vec2 t;
