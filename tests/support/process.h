@@ -87,6 +87,8 @@ class Process {
         if (::pipe2(in, O_CLOEXEC) != 0 || ::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(err, O_CLOEXEC) != 0) {
             throw std::runtime_error("pipe2 failed");
         }
+        // Before the child is there: it could be done before its pipe is broken.
+        if (options.close_output) close_one(out[0]);
         pid_ = ::fork();
         if (pid_ < 0) throw std::runtime_error("fork failed");
         if (pid_ == 0) become(arguments, options, in[0], out[1], err[1]);
@@ -96,7 +98,6 @@ class Process {
         to_ = in[1];
         from_[0] = out[0];
         from_[1] = err[0];
-        if (options.close_output) close_one(from_[0]);
     }
     ~Process() {
         close_one(to_);
