@@ -18,43 +18,27 @@
 #include <utility>
 #include <vector>
 
+#include "carom/engine/temporary_folder.h"
+
 namespace carom::test {
 
 /// A folder of one test's own, removed with all that is in it.
-class TemporaryFolder {
+class TemporaryFolder : public carom::TemporaryFolder {
   public:
-    TemporaryFolder() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "carom_test_XXXXXX").string();
-        if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
-        path_ = pattern;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    std::string file(const std::string& name) const { return (path_ / name).string(); }
-    const std::filesystem::path& path() const { return path_; }
-
     /// Writes a file and returns its path.
     std::string write(const std::string& name, const std::string& text) const {
-        std::ofstream(path_ / name, std::ios::binary) << text;
+        std::ofstream(path() / name, std::ios::binary) << text;
         return file(name);
     }
 
     /// Names of all files in it, in folders too.
     std::vector<std::string> names() const {
         std::vector<std::string> found;
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(path_)) {
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path())) {
             if (entry.is_regular_file()) found.push_back(entry.path().filename().string());
         }
         return found;
     }
-
-  private:
-    std::filesystem::path path_;
 };
 
 inline std::string read_file(const std::string& path) {
