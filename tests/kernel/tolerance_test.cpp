@@ -16,14 +16,14 @@ namespace {
 
 using namespace kernel;
 
-constexpr double kR = 0.03125;  // a power of two, so that spins and slips are exact
+constexpr double kRadius = 0.03125;  // a power of two, so that spins and slips are exact
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 // Ball 1 at the origin with velocity (x, 1), ball 2 at rest at (0, 2R): y is the line of centres.
 Impact plain(double x, double mu_b = 0.05, double e_b = 0.95) {
     Impact i{};
-    i.params = {kR, 0.17, 0.2, 0.2, mu_b, e_b, ClothSlip::kConsistent};
-    i.ball2.r[1] = 2.0 * kR;
+    i.params = {kRadius, 0.17, 0.2, 0.2, mu_b, e_b, ClothSlip::kConsistent};
+    i.ball2.r[1] = 2.0 * kRadius;
     i.ball1.v[0] = x;
     i.ball1.v[1] = 1.0;
     return i;
@@ -45,7 +45,7 @@ TEST(Tolerance, WithoutBallFrictionTheExchangeIsExact) {
 // T6, and T12: no slip, no friction.
 TEST(Tolerance, GearingThrowsNothing) {
     Impact i = plain(0.5);
-    i.ball1.w[2] = 0.5 / kR;
+    i.ball1.w[2] = 0.5 / kRadius;
     for (double tolerance : {1e-3, 1e-10}) {
         const ImpactResult r = solve(i, tolerance);
         EXPECT_EQ(r.method, ToleranceMethod::kClosedGearing);
@@ -64,7 +64,7 @@ TEST(Tolerance, HorizontalSlipIsClosed) {
         EXPECT_EQ(r.method, ToleranceMethod::kClosedStick);
         const double thrown = std::fmin(std::fabs(x) / 7.0, 0.05 * 0.975);
         EXPECT_NEAR(r.v2[0], std::copysign(thrown, x), 1e-16);
-        EXPECT_NEAR(r.w1[2], std::copysign(2.5 * thrown / kR, x), 1e-13);
+        EXPECT_NEAR(r.w1[2], std::copysign(2.5 * thrown / kRadius, x), 1e-13);
         EXPECT_EQ(r.w1[2], r.w2[2]);
     }
     for (const auto& [cut, throw_deg] : {std::pair{10.0, 1.44295}, {20.0, 2.97646}, {30.0, 4.71500}}) {
@@ -84,7 +84,7 @@ TEST(Tolerance, StraightDraw) {
         const ImpactTruth t = reference_impact(i.ball1, i.ball2, i.params);
         for (double tolerance : {1e-3, 1e-6, 1e-10, 1e-12}) {
             const ImpactResult r = solve(i, tolerance);
-            EXPECT_LT(error_of(r, t, kR), tolerance) << spin;
+            EXPECT_LT(error_of(r, t, kRadius), tolerance) << spin;
             EXPECT_EQ(r.v1[0], 0.0);
             EXPECT_EQ(r.v2[0], 0.0);
         }
@@ -92,10 +92,10 @@ TEST(Tolerance, StraightDraw) {
     // A slip of 0.01 ends during the impact: each ball takes a fifth of it, less what the cloth takes.
     Impact i = plain(0.0);
     i.params.mu_s1 = i.params.mu_s2 = 0.0;
-    i.ball1.w[0] = 0.01 / kR;
+    i.ball1.w[0] = 0.01 / kRadius;
     const ImpactResult r = solve(i, 1e-10);
-    EXPECT_NEAR(r.w1[0] * kR, 0.005, 1e-12);
-    EXPECT_NEAR(r.w2[0] * kR, -0.005, 1e-12);
+    EXPECT_NEAR(r.w1[0] * kRadius, 0.005, 1e-12);
+    EXPECT_NEAR(r.w2[0] * kRadius, -0.005, 1e-12);
 }
 
 // Table 7c: Mathavan et al. 2014, speeds and angles after both balls roll.

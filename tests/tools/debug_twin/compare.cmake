@@ -20,7 +20,7 @@ function(hash_of result isa)
 endfunction()
 
 run_or_fail(${CMAKE_COMMAND} -G Ninja -S ${SOURCE}/tests/tools/debug_twin -B ${BINARY}
-  -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=${COMPILER})
+  -DCMAKE_BUILD_TYPE=Debug -DCMAKE_UNITY_BUILD=ON -DCMAKE_CXX_COMPILER=${COMPILER})
 run_or_fail(${CMAKE_COMMAND} --build ${BINARY} --target hash)
 
 file(GLOB scenes ${SOURCE}/scenes/*.toml)
