@@ -112,9 +112,6 @@ std::string read_page(const std::string& name) {
 class Docs : public testing::TestWithParam<std::string> {};
 
 TEST_P(Docs, CommandsWorkAsPrinted) {
-#ifdef CAROM_SANITIZED
-    GTEST_SKIP() << "the tests of the program run under sanitizers; what pages print runs in the plain build";
-#endif
     const std::vector<Block> blocks = blocks_of(read_page(GetParam()));
     const Clone clone;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
