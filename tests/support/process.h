@@ -151,17 +151,15 @@ class Process {
             const rlimit limit{static_cast<rlim_t>(options.file_limit),
                                static_cast<rlim_t>(options.file_limit)};
             ::setrlimit(RLIMIT_FSIZE, &limit);
-            // tools/coverage: it can write only the beginning of its counts, and not over those of others.
-            if (const char* apart = std::getenv("CAROM_CUT_COUNTS")) ::setenv("GCOV_PREFIX", apart, 1);
+            // tools/coverage: it could write only the beginning of its counts.
+            ::setenv("LLVM_PROFILE_FILE", "/dev/null", 1);
         }
         for (const auto& [key, value] : options.environment) ::setenv(key.c_str(), value.c_str(), 1);
         if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(126);
         std::vector<char*> argv;
         for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
         argv.push_back(nullptr);
-        // Not execvp: that is where gcc --coverage writes the counts of this process, which would fall under
-        // the limit.
-        ::execvpe(argv[0], argv.data(), environ);
+        ::execvp(argv[0], argv.data());
         ::_exit(127);
     }
 
