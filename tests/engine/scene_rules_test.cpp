@@ -114,6 +114,17 @@ TEST(Scenes, TooLargeFile) {
     EXPECT_EQ(error_of(kBall + "#" + std::string(carom::kMaxFileSize - kBall.size() - 1, 'x')), "");
 }
 
+TEST(Scenes, TooManyPartsOfATable) {
+    const auto with_pockets = [](int count) {
+        std::string text = kBall;
+        for (int i = 0; i < count; ++i) text += "[[table.pocket]]\ncenter = [9, 9]\nradius = 0.06\n";
+        return text;
+    };
+    EXPECT_EQ(error_of(with_pockets(carom::kMaxTableParts)), "");
+    EXPECT_EQ(error_of(with_pockets(carom::kMaxTableParts + 1)),
+              "s.toml:3:1: table.pocket has 4097 entries; at most 4096 are allowed");
+}
+
 TEST(Scenes, DefaultsAreWrittenOut) {
     const Scene s = parse_scene("[[ball]]\n", "s.toml");
     EXPECT_EQ(s.file, "s.toml");

@@ -85,6 +85,32 @@ TEST(Picture, LongSideAlongTheWideSideOfTheImage) {
     }
 }
 
+// World Snooker's measures: baulk line 29 in from the bottom cushion, a D of 11 1/2 in, black 12 3/4 in from
+// the top cushion.
+TEST(Picture, ASnookerTableHasItsLinesAndSpots) {
+    Record record;
+    record.table = make_table("snooker");
+    record.duration = 1.0;
+    add_ball(record, "cue", 0.3, 2.0);
+    const FrameSize size{1920, 1080};
+    const Image image = draw(record, size);
+    const Camera camera = list_of(record, size).camera;
+    const double w = record.table.width, l = record.table.length;
+    const auto redness = [&](double x, double y) {
+        const Vec2 pixel = *camera.project({x, y, 0.0});
+        return at(image, pixel.x(), pixel.y()).r;
+    };
+    const Vec2 marks[] = {
+        {0.3, 0.737},       {w - 0.3, 0.737},    {0.5 * w, 0.737 - 0.292}, {0.5 * w - 0.292, 0.737},
+        {0.5 * w, 0.5 * l}, {0.5 * w, 0.75 * l}, {0.5 * w, l - 0.324}};
+    for (const Vec2& mark : marks) {
+        const int beside = redness(mark.x() + 0.05, mark.y() + 0.05);
+        EXPECT_GT(redness(mark.x(), mark.y()), beside + 20) << mark.transpose();
+    }
+    // No D on the other side of the line, and no diamonds.
+    EXPECT_NEAR(redness(0.5 * w, 0.737 + 0.292), redness(0.5 * w + 0.05, 0.737 + 0.292 + 0.05), 8);
+}
+
 // Centre of a white ball from its pixels, weighted by how white they are, against the camera's projection.
 TEST(Picture, BallAtTheRightPixel) {
     for (FrameSize size : {FrameSize{640, 360}, FrameSize{1280, 720}, FrameSize{450, 800}}) {

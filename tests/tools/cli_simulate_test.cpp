@@ -1,8 +1,10 @@
 // carom simulate: one hash, exact headers, the JSON of the design, files that are whole or absent.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "carom/engine/record.h"
 #include "carom/kernel/isa.h"
@@ -113,6 +115,17 @@ TEST_F(CliSimulate, SummarySaysWhatHappened) {
           "\npocketed\n", "\nballs at the end (m)\n", "\n  cue ", "\n  1 "}) {
         EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
     }
+}
+
+TEST_F(CliSimulate, SummaryNamesPocketedBalls) {
+    const ProcessResult result = carom({"simulate", CAROM_SOURCE_DIR "/scenes/stop.toml"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const std::string_view text = result.out;
+    const std::size_t begin = text.find("\npocketed\n"), end = text.find("\n\n", begin);
+    ASSERT_NE(end, std::string_view::npos) << text;
+    const std::string_view list = text.substr(begin, end - begin);
+    EXPECT_EQ(list.rfind("\npocketed\n  1      in p", 0), 0u) << text;
+    EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 2) << text;
 }
 
 TEST_F(CliSimulate, ARunThatCannotGoOnSaysWhereItStood) {
