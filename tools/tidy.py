@@ -23,7 +23,7 @@ import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-GROUP_SIZE = 15
+GROUP_SIZE = 30
 # A test may copy a string too many, and compares doubles bit by bit.
 LEFT_OUT_IN_TESTS = "-performance-*,-bugprone-suspicious-memory-comparison"
 # A program or a fuzz target.

@@ -9,6 +9,7 @@
 #include "carom/kernel/closed_forms.h"
 #include "support/engine_cases.h"
 #include "support/random_impacts.h"
+#include "support/scene_errors.h"
 
 namespace carom {
 namespace {
@@ -149,14 +150,6 @@ const char* kSequential =
 
 Scene scene_of(const std::string& text) {
     return parse_scene(text, "s.toml");
-}
-std::string error_of(const std::string& text) {
-    try {
-        scene_of(text);
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return "";
 }
 
 // Two balls on one cloth touch when their centres are 2 sqrt(R1 R2) apart; the elastic exchange is that of

@@ -20,12 +20,6 @@ Scene on_box() {
     return scene;
 }
 
-std::size_t segments_of(const Record& record) {
-    std::size_t count = 0;
-    for (const BallTrack& track : record.tracks) count += track.segments.size();
-    return count;
-}
-
 // A ball at rest between a cushion and one that pushes it there and passes along: it leans on the cushion and
 // stays, instead of starting, stopping and letting go again and again.
 TEST(HeldGroups, SqueezedAgainstACushionStaysAtRest) {

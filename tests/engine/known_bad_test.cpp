@@ -19,7 +19,7 @@ nlohmann::json case_named(const std::string& wanted) {
     throw std::runtime_error("no case " + wanted);
 }
 
-Scene scene_of(const std::string& wanted) {
+Scene scene_named(const std::string& wanted) {
     const auto c = case_named(wanted);
     Scene scene = empty_scene();
     const auto& t = c.at("table");
@@ -69,7 +69,7 @@ void expect_no_jumps(const Record& record) {
 }
 
 TEST(KnownBad, EqualAccelerationFalseCollision) {
-    const Record record = run_verified(scene_of("equal_acceleration_false_collision"));
+    const Record record = run_verified(scene_named("equal_acceleration_false_collision"));
     const Event* hit = first(record, EventType::kBallBall);
     ASSERT_NE(hit, nullptr);
     EXPECT_NEAR(hit->time, 0.2, 1e-14);
@@ -78,7 +78,7 @@ TEST(KnownBad, EqualAccelerationFalseCollision) {
 }
 
 TEST(KnownBad, TouchingSameVelocity) {
-    const Record record = run_verified(scene_of("touching_same_velocity_crash"));
+    const Record record = run_verified(scene_named("touching_same_velocity_crash"));
     // 1 m/s would carry them 5 m: the first event is the leading ball's at the cushion.
     ASSERT_FALSE(record.events.empty());
     EXPECT_EQ(record.events[0].type, EventType::kBallCushion);
@@ -87,7 +87,7 @@ TEST(KnownBad, TouchingSameVelocity) {
                     2.0 * record.balls.R, 1e-15);
     // On an endless cloth: nothing but the two stops, after v / (mu_r g), in the same place relative to each
     // other.
-    Scene endless = scene_of("touching_same_velocity_crash");
+    Scene endless = scene_named("touching_same_velocity_crash");
     endless.table = Table();
     const Record alone = run_verified(endless);
     EXPECT_EQ(alone.events.size(), 2u);
@@ -96,7 +96,7 @@ TEST(KnownBad, TouchingSameVelocity) {
 }
 
 TEST(KnownBad, TouchingCushionEscape) {
-    const Record record = run_verified(scene_of("touching_cushion_escape"));
+    const Record record = run_verified(scene_named("touching_cushion_escape"));
     ASSERT_FALSE(record.events.empty());
     EXPECT_EQ(record.events[0].type, EventType::kBallCushion);
     EXPECT_LE(record.events[0].time, 1e-16) << "0.971425 is 1.7e-17 short of the cushion";
@@ -106,7 +106,7 @@ TEST(KnownBad, TouchingCushionEscape) {
 }
 
 TEST(KnownBad, SymmetricDoubleHit) {
-    const Record record = run_verified(scene_of("symmetric_double_hit"));
+    const Record record = run_verified(scene_named("symmetric_double_hit"));
     const Event* hit = first(record, EventType::kBallCluster);
     ASSERT_NE(hit, nullptr);
     EXPECT_EQ(record.clusters[0].size(), 3u);
@@ -122,7 +122,7 @@ TEST(KnownBad, SymmetricDoubleHit) {
 
 // The line between the two balls, and the first cushion not yet met.
 TEST(KnownBad, StraightFollowAt45Degrees) {
-    const Record record = run_verified(scene_of("straight_follow_45deg"));
+    const Record record = run_verified(scene_named("straight_follow_45deg"));
     EXPECT_EQ(record.events[0].type, EventType::kCueStrike);
     expect_no_jumps(record);
     const Event* hit = first(record, EventType::kBallBall);
@@ -134,7 +134,7 @@ TEST(KnownBad, StraightFollowAt45Degrees) {
 }
 
 TEST(KnownBad, Issue375DrawShot) {
-    const Record record = run_verified(scene_of("issue375_draw_shot"));
+    const Record record = run_verified(scene_named("issue375_draw_shot"));
     expect_no_jumps(record);
     EXPECT_NEAR(record.state_at(ball(record, "cue"), 0.0).velocity.y(), 2.7272792863859703, 1e-9)
         << "the cue's strike";

@@ -147,12 +147,6 @@ TEST(RandomSceneRegressions, FromAJawOntoTheCushion) {
     EXPECT_EQ(what_breaks(scene), "");
 }
 
-std::size_t segments_of(const Record& record) {
-    std::size_t count = 0;
-    for (const BallTrack& track : record.tracks) count += track.segments.size();
-    return count;
-}
-
 /// Runs, checks, comes to rest, and asserts that it took no more segments: without end before, or nearly.
 void settles_within(const Scene& scene, std::size_t segments) {
     const Record record = run_verified(scene);

@@ -12,11 +12,13 @@
 #include <vector>
 
 #include "carom/engine/scene.h"
+#include "support/scene_errors.h"
 
 namespace carom {
 namespace {
 
 using Json = nlohmann::json;
+using test::error_of;
 
 std::string read_file(const std::string& name) {
     std::ifstream in(std::string(CAROM_SOURCE_DIR) + "/" + name);
@@ -24,15 +26,6 @@ std::string read_file(const std::string& name) {
     std::ostringstream out;
     out << in.rdbuf();
     return out.str();
-}
-
-std::string error_of(const std::string& text) {
-    try {
-        parse_scene(text, "s.toml");
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return "";
 }
 
 // A section as it is opened in a file, and the name that the reader gives it.

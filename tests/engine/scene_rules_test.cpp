@@ -11,6 +11,7 @@
 
 #include "carom/engine/scene.h"
 #include "carom/engine/tolerances.h"
+#include "support/scene_errors.h"
 
 namespace {
 
@@ -19,6 +20,7 @@ using carom::Scene;
 using carom::SceneError;
 using carom::Vec2;
 using carom::Vec3;
+using carom::test::error_of;
 
 std::string read_file(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);
@@ -26,16 +28,6 @@ std::string read_file(const std::filesystem::path& path) {
     std::ostringstream out;
     out << in.rdbuf();
     return out.str();
-}
-
-/// The message of a scene that has to fail, or "" if it does not.
-std::string error_of(const std::string& text) {
-    try {
-        parse_scene(text, "s.toml");
-    } catch (const SceneError& error) {
-        return error.what();
-    }
-    return "";
 }
 
 /// `*` in the pattern stands for any text.

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "carom/kernel/closed_forms.h"
 #include "support/impact_cases.h"
@@ -12,8 +11,6 @@ namespace carom::test {
 namespace {
 
 using namespace kernel;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // pooltool 0.6.0 limits the friction impulse by mu_b times the speed of separation, e v_n; Coulomb's law, and
 // TP A.14, by mu_b times the normal impulse, (1 + e) v_n / 2 per unit mass. The two agree at e = 1. So its

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "carom/kernel/march.h"
 #include "support/impact_cases.h"
@@ -14,7 +13,7 @@ namespace {
 
 using namespace kernel;
 
-constexpr double kR = 0.028575, kM = 0.170097, kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kR = 0.028575, kM = 0.170097;
 
 ImpactResult march(const Ball& b1, const Ball& b2, const ImpactParams& p, int n = 1000) {
     ImpactResult result;
@@ -49,17 +48,16 @@ TEST(MarchPhysics, T6HeadOnStun) {
 TEST(MarchPhysics, T7NinetyDegreeRule) {
     for (double phi : {10.0, 30.0, 60.0, 80.0}) {
         Ball cue{};
-        cue.v[0] = std::sin(phi * kRadPerDeg);
-        cue.v[1] = std::cos(phi * kRadPerDeg);
+        cue.v[0] = std::sin(phi * kDegree);
+        cue.v[1] = std::cos(phi * kDegree);
         for (double e : {1.0, 0.95}) {
             const int n = 100000;
             const ImpactResult out = march(cue, target(), {kR, kM, 0.2, 0.2, 0.0, e}, n);
             EXPECT_EQ(out.v2[0], 0.0);
             EXPECT_NEAR(out.v1[0], cue.v[0], 1e-15);
-            const double angle = std::atan2(out.v1[0], out.v1[1]) / kRadPerDeg;
-            const double expected =
-                90.0 - std::atan(0.5 * (1.0 - e) / std::tan(phi * kRadPerDeg)) / kRadPerDeg;
-            EXPECT_NEAR(angle, expected, 3.0 / n / std::tan(phi * kRadPerDeg) / kRadPerDeg)
+            const double angle = std::atan2(out.v1[0], out.v1[1]) / kDegree;
+            const double expected = 90.0 - std::atan(0.5 * (1.0 - e) / std::tan(phi * kDegree)) / kDegree;
+            EXPECT_NEAR(angle, expected, 3.0 / n / std::tan(phi * kDegree) / kDegree)
                 << phi << " deg, e " << e;
         }
     }
@@ -80,7 +78,7 @@ double deflection_of_a_rolling_ball(double phi, double e) {
     const ImpactResult out = march(cue, target(), {kR, kM, 0.2, 0.2, 0.0, e}, 100000);
     double v[2];
     rolling_velocity(out.v1, out.w1, v);
-    return (std::atan2(v[0], v[1]) - phi) / kRadPerDeg;
+    return (std::atan2(v[0], v[1]) - phi) / kDegree;
 }
 
 TEST(MarchPhysics, T8ThirtyDegreeRule) {

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <string>
 
@@ -17,7 +16,6 @@ namespace {
 using namespace kernel;
 
 constexpr double kRadius = 0.03125;  // a power of two, so that spins and slips are exact
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // Ball 1 at the origin with velocity (x, 1), ball 2 at rest at (0, 2R): y is the line of centres.
 Impact plain(double x, double mu_b = 0.05, double e_b = 0.95) {

@@ -7,11 +7,14 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "carom/kernel/impact.h"
 
 namespace carom::test {
+
+inline constexpr double kDegree = std::numbers::pi / 180.0;  // in radians
 
 class SplitMix64 {
   public:

@@ -214,6 +214,13 @@ class RandomScene {
     int tries_ = 0;
 };
 
+/// Of all balls together.
+inline std::size_t segments_of(const Record& record) {
+    std::size_t count = 0;
+    for (const BallTrack& track : record.tracks) count += track.segments.size();
+    return count;
+}
+
 /// The scene as text for a person who has to look into it.
 inline std::string dump(const Scene& scene) {
     std::string text;
