@@ -16,6 +16,16 @@ carom_osmesa=libosmesa6
 
 carom_say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
+# carom_help "$@": for -h or --help prints the comment that begins the script, and ends it.
+carom_help() {
+    case ${1:-} in
+        -h | --help)
+            sed -n '2,/^[^#]/s/^# \{0,1\}//p' "tools/${0##*/}"
+            exit 0
+            ;;
+    esac
+}
+
 carom_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
 carom_missing() {
