@@ -43,6 +43,9 @@ function(carom_fuzzed target)
   endif()
 endfunction()
 
+if(CAROM_COVERAGE AND NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  message(FATAL_ERROR "CAROM_COVERAGE=ON needs clang: cmake --preset asan, or -DCMAKE_CXX_COMPILER=clang++")
+endif()
 # Counts which lines of TARGET's own sources run, where CAROM_COVERAGE is on; all runs of one program add to one file (%m).
 function(carom_count_lines target)
   if(CAROM_COVERAGE)

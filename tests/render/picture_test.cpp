@@ -107,7 +107,7 @@ TEST(Picture, ASnookerTableHasItsLinesAndSpots) {
         const int beside = redness(mark.x() + 0.05, mark.y() + 0.05);
         EXPECT_GT(redness(mark.x(), mark.y()), beside + 20) << mark.transpose();
     }
-    // No D on the other side of the line, and no diamonds.
+    // No D on the other side of the line.
     EXPECT_NEAR(redness(0.5 * w, 0.737 + 0.292), redness(0.5 * w + 0.05, 0.737 + 0.292 + 0.05), 8);
 }
 
