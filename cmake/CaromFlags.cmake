@@ -55,9 +55,12 @@ function(carom_count_lines target)
   endif()
 endfunction()
 
-# Compiles SOURCE for one x86-64 level. Such files include no Eigen and no std templates with code: a weak symbol
+# Compiles SOURCE for one x86-64 level (v3, v4), or as everything else is (scalar). Such files include no Eigen and no std templates with code: a weak symbol
 # built for the higher level could win at link time and crash an older machine.
 function(carom_compile_for_level source level)
+  if(level STREQUAL scalar)
+    return()
+  endif()
   set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-march=x86-64-${level}")
 endfunction()
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <string>
@@ -10,9 +11,10 @@
 
 #include "carom/carom.h"
 #include "carom/engine/simulate.h"
-#include "support/random_impacts.h"
+#include "reference/random_impacts.h"
 
 namespace carom::test {
+using namespace reference;
 namespace {
 
 constexpr double kR = 0.028575;

@@ -5,13 +5,16 @@
 
 #include <cmath>
 #include <cstdio>
+#include <string>
+#include <utility>
 
 #include "carom/kernel/closed_forms.h"
+#include "reference/random_impacts.h"
 #include "support/engine_cases.h"
-#include "support/random_impacts.h"
 #include "support/scene_errors.h"
 
 namespace carom {
+using namespace reference;
 namespace {
 
 using namespace test;

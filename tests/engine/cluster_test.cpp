@@ -1,16 +1,20 @@
 // The cluster maps against the test values of the design notes (clusters, section 9): racks, three-ball hits,
 // cradles.
-#include "cluster.h"
+#include "physics/cluster.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "carom/engine/tolerances.h"
+#include "reference/random_impacts.h"
 #include "support/engine_cases.h"
-#include "support/random_impacts.h"
 
 namespace carom {
+using namespace reference;
 namespace {
 
 using namespace test;

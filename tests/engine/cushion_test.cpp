@@ -5,14 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string>
 #include <vector>
 
-#include "cushion_models.h"
+#include "physics/cushion/models.h"
 
+#include "reference/random_impacts.h"
 #include "support/engine_cases.h"
-#include "support/random_impacts.h"
 
 namespace carom {
+using namespace reference;
 namespace {
 
 using namespace test;

@@ -1,4 +1,4 @@
-// What each effect costs: a bare scene, and the same with one effect added. For tools/effects_cost and the
+// What each effect costs: a bare scene, and the same with one effect added. For tools/measure/effects_cost and the
 // callgrind test.
 //
 //   effects_probe list             names of the cases, with the effect's own functions and how the case

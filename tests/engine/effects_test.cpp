@@ -3,11 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
 
+#include "reference/random_impacts.h"
 #include "support/engine_cases.h"
-#include "support/random_impacts.h"
 
 namespace carom {
+using namespace reference;
 namespace {
 
 using namespace test;
@@ -199,14 +204,15 @@ TEST(Effects, RefusingWhatTheSceneNeedsIsAnErrorAtItsLine) {
 
 TEST(Effects, ListsHoldWhatIsNeeded) {
     const Plan full = plan_of_text(kBreak);
-    EXPECT_EQ(full.cushions.size(), 18u);
-    EXPECT_EQ(full.pockets.size(), 6u);
+    EXPECT_EQ(full.geometry.cushions.size(), 18u);
+    EXPECT_EQ(full.geometry.pockets.size(), 6u);
     for (const EffectDecision& d : full.effects) EXPECT_EQ(d.in_force, d.keyword != "airborne") << d.keyword;
     // A slow ball in the middle of the table: it rests after 0.51 m.
     const std::string slow =
         "[[ball]]\nposition = [0.635, 1.2]\nvelocity = [0, 0.3]\nspin = [-10.498687664041995, 0, 0]\n";
     const Plan alone = plan_of_text(slow);
-    EXPECT_TRUE(alone.cushions.empty() && alone.noses.empty() && alone.pockets.empty());
+    EXPECT_TRUE(alone.geometry.cushions.empty() && alone.geometry.noses.empty() &&
+                alone.geometry.pockets.empty());
     EXPECT_FALSE(alone.pairs);
     EXPECT_FALSE(alone.sliding);
     EXPECT_TRUE(alone.rolling);
@@ -218,15 +224,15 @@ TEST(Effects, ListsHoldWhatIsNeeded) {
     const std::string other = "[[ball]]\nid = \"1\"\nposition = [0.635, ";
     const Plan hit = plan_of_text(slow + other + "1.6]\n");
     EXPECT_TRUE(hit.pairs);
-    EXPECT_FALSE(hit.cushions.empty());
+    EXPECT_FALSE(hit.geometry.cushions.empty());
     const Plan miss = plan_of_text(slow + other + "1.8]\n");
     EXPECT_FALSE(miss.pairs);
-    EXPECT_TRUE(miss.cushions.empty());
+    EXPECT_TRUE(miss.geometry.cushions.empty());
     // Until a stop, energy bounds what can be reached: 0.355 m/s for 0.1 s.
-    EXPECT_TRUE(plan_of_text(slow + other + "1.6]\n[stop]\ntime = 0.1\n").cushions.empty());
+    EXPECT_TRUE(plan_of_text(slow + other + "1.6]\n[stop]\ntime = 0.1\n").geometry.cushions.empty());
     // A ball that rests inside a pocket's circle falls.
-    EXPECT_EQ(plan_of_text("[[ball]]\nposition = [0.005, 0.005]\n").pockets.size(), 6u);
-    EXPECT_TRUE(plan_of_text("[[ball]]\nposition = [0.6, 0.6]\n").pockets.empty());
+    EXPECT_EQ(plan_of_text("[[ball]]\nposition = [0.005, 0.005]\n").geometry.pockets.size(), 6u);
+    EXPECT_TRUE(plan_of_text("[[ball]]\nposition = [0.6, 0.6]\n").geometry.pockets.empty());
 }
 
 // Scenes near the bound of their reach: what is skipped is never met.
@@ -248,7 +254,7 @@ TEST(Effects, ReachIsNeverTooShort) {
         const Record record = simulate(plan);
         const auto late = verify(record, plan);
         ASSERT_FALSE(late) << i << " " << late->law << ": " << late->message;
-        skipped += plan.cushions.empty() ? 1 : 0;
+        skipped += plan.geometry.cushions.empty() ? 1 : 0;
         met += count(record, EventType::kBallCushion) > 0 ? 1 : 0;
     }
     EXPECT_GT(skipped, 500);
@@ -272,11 +278,12 @@ TEST(Effects, LateNeedIsCaught) {
     EXPECT_EQ(law([](Plan&) {}), "");
     EXPECT_NE(law([](Plan& p) { p.spin_decay = false; }).find("E: the plan skips spin_decay"),
               std::string::npos);
-    EXPECT_NE(law([](Plan& p) { p.pockets.clear(); }).find("E: the plan skips pockets"), std::string::npos);
+    EXPECT_NE(law([](Plan& p) { p.geometry.pockets.clear(); }).find("E: the plan skips pockets"),
+              std::string::npos);
     scene.table.pockets.clear();
     EXPECT_NE(law([](Plan& p) {
-                  p.cushions.clear();
-                  p.noses.clear();
+                  p.geometry.cushions.clear();
+                  p.geometry.noses.clear();
               }).find("E: the plan skips cushions"),
               std::string::npos);
     scene.table = {};

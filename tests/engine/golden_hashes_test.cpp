@@ -5,9 +5,13 @@
 // the test runner.
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "rack.h"
+#include "scene/rack.h"
 #include "support/hard_scenes.h"
 
 namespace carom {

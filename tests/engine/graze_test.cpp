@@ -5,15 +5,16 @@
 #include <cmath>
 
 #include "carom/engine/math.h"
-#include "detect.h"
-#include "motion.h"
-#include "roots.h"
+#include "contact/detect.h"
+#include "contact/roots.h"
+#include "physics/motion.h"
+#include "reference/random_impacts.h"
 #include "support/graze_oracle.h"
 #include "support/graze_pairs.h"
 #include "support/hard_scenes.h"
-#include "support/random_impacts.h"
 
 namespace carom {
+using namespace reference;
 namespace {
 
 using namespace test;

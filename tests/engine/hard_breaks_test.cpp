@@ -1,12 +1,15 @@
 // H38 of docs/hard_cases.md: seeded eight-ball breaks.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
+#include "reference/random_impacts.h"
 #include "support/hard_scenes.h"
-#include "support/random_impacts.h"
 
 namespace carom {
+using namespace reference;
 namespace {
 
 using namespace test;

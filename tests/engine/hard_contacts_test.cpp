@@ -1,10 +1,12 @@
 // Hard cases of several contacts at once, through the engine: H1 to H3, H6 of docs/hard_cases.md.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 
-#include "rack.h"
+#include "scene/rack.h"
 #include "support/hard_scenes.h"
 
 namespace carom {

@@ -1,12 +1,15 @@
 // Hard cases that take long: H32 of docs/hard_cases.md.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "reference/random_impacts.h"
 #include "support/hard_scenes.h"
-#include "support/random_impacts.h"
 
 namespace carom {
+using namespace reference;
 namespace {
 
 using namespace test;

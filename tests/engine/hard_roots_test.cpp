@@ -1,11 +1,15 @@
 // Hard cases of detection and geometry, through the engine: H10 to H21 of docs/hard_cases.md.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "carom/engine/math.h"
-#include "detect.h"
-#include "roots.h"
+#include "contact/detect.h"
+#include "contact/roots.h"
 #include "support/hard_scenes.h"
 
 namespace carom {

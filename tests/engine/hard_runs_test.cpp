@@ -1,17 +1,23 @@
 // Hard cases of whole runs: H33 to H36, H39, H40 of docs/hard_cases.md.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "rack.h"
+#include "reference/random_impacts.h"
+#include "scene/rack.h"
 #include "support/hard_scenes.h"
-#include "support/random_impacts.h"
 
 namespace carom {
+using namespace reference;
 namespace {
 
 using namespace test;

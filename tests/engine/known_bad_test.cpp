@@ -2,7 +2,10 @@
 // their `expected` text.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "carom/engine/math.h"
 #include "support/hard_scenes.h"

@@ -2,8 +2,10 @@
 #include <box2d/b2_dynamic_tree.h>
 
 #include <atomic>
+#include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <string>
 
 #include "support/gas.h"
 

@@ -1,4 +1,4 @@
-// Simulates a scene a number of times without profiling: what tools/profile_cost counts the instructions of.
+// Simulates a scene a number of times without profiling: what tools/measure/profile_cost counts the instructions of.
 // Usage: profile_probe SCENE RUNS
 #include <cstdio>
 #include <cstdlib>

@@ -1,6 +1,7 @@
 // The scenes of the repository do what their comments say.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>

@@ -1,13 +1,16 @@
 // Every scene of the repository, and seeded breaks, to rest under the checker.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
 #include <vector>
 
+#include "reference/random_impacts.h"
 #include "support/engine_cases.h"
-#include "support/random_impacts.h"
 
 namespace carom {
+using namespace reference;
 namespace {
 
 using namespace test;

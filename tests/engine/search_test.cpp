@@ -1,12 +1,15 @@
 // Boxes, tournament and rejects only leave out: the events are the same to the last bit whichever way they
 // are looked for.
 #include <algorithm>
+#include <cstdint>
 #include <limits>
+#include <string>
+#include <vector>
 
-#include "box_search.h"
 #include "carom/engine/tolerances.h"
-#include "detect.h"
-#include "event_queue.h"
+#include "contact/detect.h"
+#include "loop/box_search.h"
+#include "loop/event_queue.h"
 #include "support/gas.h"
 #include "support/random_scenes.h"
 

@@ -1,6 +1,12 @@
 // Whole shots against reference vectors: event lists and final positions.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "support/engine_cases.h"
 
 namespace carom {

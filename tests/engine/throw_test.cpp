@@ -2,6 +2,7 @@
 // masse).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "carom/engine/math.h"

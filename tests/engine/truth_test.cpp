@@ -2,6 +2,7 @@
 // that rolls on afterwards.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "carom/engine/cushion.h"

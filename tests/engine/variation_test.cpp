@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
+#include <string>
+#include <vector>
 
-#include "distribution.h"
+#include "scene/distribution.h"
 #include "support/process.h"
 
 namespace carom::test {

@@ -3,6 +3,9 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "support/engine_cases.h"
 
@@ -54,7 +57,7 @@ TEST(Verify, NamesTheLawThatARecordBreaks) {
         {"U3", "deep in a jaw",
          [&](Record& r) {
              // Just beyond the end of a cushion, where its round end is and the cushion is not.
-             const CushionLine& line = plan.cushions.front();
+             const CushionLine& line = plan.geometry.cushions.front();
              for (Segment& s : r.tracks[1].segments) s.r.head<2>() = line.from - 0.005 * line.direction;
          }},
         {"U4", "energy rises", [&](Record& r) { after_hit(r).w.z() += 100.0; }},

@@ -6,14 +6,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
+#include <vector>
 
-#include "support/random_impacts.h"
+#include "reference/random_impacts.h"
 
 namespace carom::kernel {
+using namespace reference;
 namespace {
 
-using test::SplitMix64;
+using reference::SplitMix64;
 
 constexpr double kLookAhead = 2.0, kTimeLimit = 2000.0;
 

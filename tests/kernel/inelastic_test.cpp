@@ -1,13 +1,15 @@
 // The one-impulse model: reference vectors and the throw formula of Alciatore's Technical Proof A.14.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "carom/kernel/closed_forms.h"
+#include "reference/random_impacts.h"
 #include "support/impact_cases.h"
-#include "support/random_impacts.h"
 
 namespace carom::test {
+using namespace reference;
 namespace {
 
 using namespace kernel;

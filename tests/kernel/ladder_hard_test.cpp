@@ -4,8 +4,9 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <vector>
 
-#include "carom/kernel/ladder.h"
+#include "ladder/ladder.h"
 #include "support/hard_impacts.h"
 #include "support/impact_cases.h"
 #include "support/rung_runner.h"

@@ -1,18 +1,21 @@
 // Every rung of the ladder against the baseline.
-#include "carom/kernel/ladder.h"
+#include "ladder/ladder.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "reference/random_impacts.h"
 #include "support/impact_cases.h"
-#include "support/random_impacts.h"
 #include "support/rung_runner.h"
 
 namespace carom::test {
+using namespace reference;
 namespace {
 
 using namespace kernel;

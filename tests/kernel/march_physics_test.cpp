@@ -5,10 +5,11 @@
 #include <cmath>
 
 #include "carom/kernel/march.h"
+#include "reference/random_impacts.h"
 #include "support/impact_cases.h"
-#include "support/random_impacts.h"
 
 namespace carom::test {
+using namespace reference;
 namespace {
 
 using namespace kernel;

@@ -2,10 +2,11 @@
 #include <gtest/gtest.h>
 
 #include "carom/kernel/march.h"
+#include "reference/random_impacts.h"
 #include "support/impact_cases.h"
-#include "support/random_impacts.h"
 
 namespace carom::test {
+using namespace reference;
 namespace {
 
 using namespace kernel;

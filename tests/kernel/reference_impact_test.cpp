@@ -1,15 +1,17 @@
 // The truth is itself checked: by other orders and step sizes, by its energy book, by closed solutions and by
 // the march.
-#include "support/reference_impact.h"
+#include "reference/solver.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "carom/kernel/march.h"
 #include "tolerance_support.h"
 
 namespace carom::test {
+using namespace reference;
 namespace {
 
 using namespace kernel;

@@ -5,12 +5,14 @@
 
 #include <cmath>
 #include <initializer_list>
+#include <string>
 #include <vector>
 
-#include "support/reference_impact.h"
+#include "reference/solver.h"
 #include "tolerance_support.h"
 
 namespace carom::test {
+using namespace reference;
 
 /// Expects every error within the tolerance plus a few units of rounding of the largest speed. One sign of
 /// the cloth slip per call.

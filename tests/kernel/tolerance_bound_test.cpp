@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
-#include "support/reference_impact.h"
+#include "reference/solver.h"
 #include "tolerance_bound.h"
 
 namespace carom::test {
+using namespace reference;
 namespace {
 
 using namespace kernel;

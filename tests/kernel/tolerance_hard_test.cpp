@@ -3,13 +3,16 @@
 
 #include <cmath>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "carom/kernel/closed_forms.h"
+#include "reference/solver.h"
 #include "support/hard_impacts.h"
-#include "support/reference_impact.h"
 #include "tolerance_support.h"
 
 namespace carom::test {
+using namespace reference;
 namespace {
 
 using namespace kernel;

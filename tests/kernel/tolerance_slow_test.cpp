@@ -2,6 +2,8 @@
 // ones.
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "tolerance_bound.h"
 
 namespace carom::test {

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "carom/kernel/tolerance.h"
-#include "support/random_impacts.h"
+#include "reference/random_impacts.h"
 
 namespace carom::test {
+using namespace reference;
 
 inline std::vector<kernel::Isa> isas() {
     std::vector<kernel::Isa> list;

@@ -5,12 +5,14 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "carom/kernel/closed_forms.h"
-#include "support/reference_impact.h"
+#include "reference/solver.h"
 #include "tolerance_support.h"
 
 namespace carom::test {
+using namespace reference;
 namespace {
 
 using namespace kernel;

@@ -1,8 +1,13 @@
 // A whole break: times, first and last state, memory.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/simulate.h"

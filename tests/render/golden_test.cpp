@@ -5,8 +5,14 @@
 // CAROM_UPDATE_GOLDEN=1 writes the pictures anew: look at them before committing them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <ostream>
+#include <string>
+#include <vector>
 
 #include "carom/engine/scene.h"
 #include "carom/render/error.h"

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <memory>
+#include <string>
 
 #include "carom/render/backend.h"
 #include "carom/render/error.h"
-#include "gl_context.h"
-#include "shared_library.h"
+#include "gl/context.h"
+#include "gl/shared_library.h"
 
 namespace carom::render {
 namespace {

@@ -1,8 +1,11 @@
 // What the pixels show, checked by statistics of the image.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
+#include <string>
 
 #include "carom/render/renderer.h"
 #include "render/hand_made.h"

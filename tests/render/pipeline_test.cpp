@@ -1,10 +1,14 @@
 // Threads, resuming, raw frames, contact sheets, measuring.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
-#include "carom/render/bench.h"
 #include "carom/render/png.h"
 #include "carom/render/sequence.h"
 #include "render/hand_made.h"
@@ -175,10 +179,6 @@ TEST(Sheet, ShowsTheShotRowByRow) {
     EXPECT_THROW(render_sheet(record, options, 0, 3, folder.file("no.png")), RenderError);
     EXPECT_THROW(render_sheet(record, options, 100, 3, folder.file("no.png")), RenderError);
     EXPECT_EQ(folder.entries(), 1U);
-}
-
-TEST(Bench, NeedsThreeFrames) {
-    EXPECT_THROW(bench_render(rolling_ball(), 2), RenderError);
 }
 
 }  // namespace

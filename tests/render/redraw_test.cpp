@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/simulate.h"
 #include "carom/render/renderer.h"
-#include "drawn_balls.h"
+#include "draw/drawn_balls.h"
 #include "render/hand_made.h"
 
 namespace carom::render {

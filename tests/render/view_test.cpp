@@ -1,7 +1,12 @@
 // Cameras, overlays and the outline, without pixels.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "carom/engine/scene.h"
 #include "carom/render/draw_list.h"
@@ -147,7 +152,7 @@ TEST(Overlays, TrailsReachTheBallAndNoFurther) {
     ASSERT_EQ(list.lines.size(), 1U);
     EXPECT_NEAR(list.lines[0].a.y(), 0.5, 1e-12);
     EXPECT_NEAR(list.lines[0].b.y(), 0.82, 1e-12);
-    EXPECT_FALSE(list.lines[0].over_balls);
+    EXPECT_EQ(list.lines[0].layer, LineLayer::kUnderBalls);
 }
 
 TEST(Overlays, EventsAppearWhenTheyHappen) {

@@ -1,11 +1,15 @@
 // A gas without friction in a box of reflecting cushions: many events, and every ball meets every other.
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include "carom/engine/math.h"
+#include "reference/random_impacts.h"
 #include "support/hard_scenes.h"
-#include "support/random_impacts.h"
 
 namespace carom::test {
+using namespace reference;
 
 /// n balls on a jittered square grid (n a square), 1 m/s in random directions; a fifth of the area is balls.
 inline Scene gas(int n, long events, std::uint64_t seed) {

@@ -2,12 +2,13 @@
 #pragma once
 
 #include "carom/engine/math.h"
-#include "detect.h"
-#include "motion.h"
-#include "roots.h"
-#include "support/random_impacts.h"
+#include "contact/detect.h"
+#include "contact/roots.h"
+#include "physics/motion.h"
+#include "reference/random_impacts.h"
 
 namespace carom::test {
+using namespace reference;
 
 inline Vec2 turned(const Vec2& a, const Vec2& e) {
     return {a.x() * e.x() - a.y() * e.y(), a.x() * e.y() + a.y() * e.x()};

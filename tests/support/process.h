@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "carom/engine/temporary_folder.h"
+#include "base/temporary_folder.h"
 
 namespace carom::test {
 

@@ -4,15 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
+#include <exception>
 #include <string>
 #include <vector>
 
 #include "carom/engine/math.h"
-#include "rack.h"
+#include "reference/random_impacts.h"
+#include "scene/rack.h"
 #include "support/hard_scenes.h"
-#include "support/random_impacts.h"
 
 namespace carom::test {
+using namespace reference;
 
 /// The order in which the numbers of a vector are drawn, and those of a speed: the same seed gives two
 /// scenes, of two families that have nothing else in common.

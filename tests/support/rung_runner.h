@@ -5,11 +5,13 @@
 
 #include <cctype>
 #include <string>
+#include <vector>
 
-#include "carom/kernel/ladder.h"
-#include "support/batch_arrays.h"
+#include "ladder/ladder.h"
+#include "reference/batch_arrays.h"
 
 namespace carom::test {
+using namespace reference;
 
 inline std::vector<kernel::ImpactResult> run_rung(const kernel::Rung& rung, std::vector<Impact> impacts,
                                                   int n, kernel::ClothSlip slip) {

@@ -2,18 +2,24 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "accuracy_kernel.h"
-#include "accuracy_scene.h"
-#include "bench_kernel.h"
-#include "bench_shot.h"
-#include "box2d_shot.h"
+#include "accuracy/box2d_shot.h"
+#include "accuracy/kernel.h"
+#include "accuracy/scene.h"
+#include "bench/kernel.h"
+#include "bench/shot.h"
 #include "carom/engine/simulate.h"
+#include "reference/random_impacts.h"
 #include "support/engine_cases.h"
-#include "support/random_impacts.h"
 
 namespace carom::tools {
+using namespace reference;
 namespace {
 
 using namespace test;

@@ -2,6 +2,9 @@
 // repeatable.
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include <nlohmann/json.hpp>
 
 #include "cli.h"

@@ -1,6 +1,10 @@
 // carom impact as an oracle: the published states, errors that do not stop it, answers that come at once.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include <nlohmann/json.hpp>
 
 #include "carom/kernel/isa.h"

@@ -1,6 +1,9 @@
 // carom margin: what it prints and writes. Times are measured, and no test asserts one.
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include <nlohmann/json.hpp>
 
 #include "cli.h"

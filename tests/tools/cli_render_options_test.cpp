@@ -1,8 +1,13 @@
 // carom render: the view, overlays, contact sheets, raw frames, resuming, OpenGL libraries, and what a disk
 // refuses.
 #include <gtest/gtest.h>
+
 #include <sys/stat.h>
 #include <unistd.h>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,8 @@
 // A scene malformed in each of ten ways prints its exact message and exits 2.
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "cli.h"
 
 namespace carom::test {

@@ -1,9 +1,14 @@
 // carom sweep: one table, whatever the number of threads and parts, and whatever happened on the way.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "cli.h"
 

@@ -1,6 +1,9 @@
 // The command line as a whole: help, version, exit statuses, closed outputs, instruction sets.
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "carom/kernel/isa.h"
 #include "cli.h"
 

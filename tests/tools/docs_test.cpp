@@ -7,8 +7,13 @@
 //   <!-- run by the tests where this succeeds: COMMAND -->
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <regex>
+#include <string>
+#include <vector>
 
 #include "cli.h"
 

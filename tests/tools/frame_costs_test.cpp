@@ -1,15 +1,17 @@
 // Every event belongs to exactly one frame, and the sums lose nothing.
-#include "frame_costs.h"
+#include "margin/frame_costs.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "bench/clock.h"
 #include "carom/render/sequence.h"
-#include "support/random_impacts.h"
+#include "reference/random_impacts.h"
 
 namespace carom::tools {
+using namespace reference;
 namespace {
 
 Record record_with_events(const std::vector<double>& times) {
@@ -37,7 +39,7 @@ TEST(FrameOf, AnEventAtAFrameBelongsToThatFrame) {
 }
 
 TEST(FrameOf, HoldsItsDefinitionForAnyTime) {
-    test::SplitMix64 rng(3);
+    reference::SplitMix64 rng(3);
     for (int i = 0; i < 100000; ++i) {
         const double fps = rng.uniform(1.0, 300.0), from = rng.uniform(0.0, 5.0),
                      t = from + rng.uniform(0.0, 20.0);
@@ -97,7 +99,7 @@ TEST(FrameWalls, CountsFramesAndNotWhatIsBetweenThem) {
 }
 
 TEST(CostsByFrame, AgreesWithTheRendererOnTheFrames) {
-    test::SplitMix64 rng(5);
+    reference::SplitMix64 rng(5);
     for (int i = 0; i < 1000; ++i) {
         const double fps = rng.uniform(1.0, 200.0), duration = rng.uniform(0.0, 20.0);
         const long frames = render::frame_count(0.0, duration, fps);

@@ -3,13 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "carom/engine/cushion.h"
-#include "support/random_impacts.h"
+#include "reference/random_impacts.h"
 
 namespace carom::tools {
+using namespace reference;
 namespace {
 
 using Json = nlohmann::json;
@@ -226,7 +229,7 @@ TEST(ImpactLine, HostileLinesAreErrors) {
 }
 
 TEST(ImpactLine, AnyChangedLineIsAnsweredInOneLine) {
-    test::SplitMix64 rng(21);
+    reference::SplitMix64 rng(21);
     const std::string wholes[] = {ball_ball_line().dump(), cushion_line().dump()};
     int refused = 0;
     for (int i = 0; i < 5000; ++i) {

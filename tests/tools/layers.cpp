@@ -1,4 +1,4 @@
-// The layers of the design as a check of what every file includes.
+// The layers of the design, and the rooms inside them, as a check of what every file includes.
 #include "layers.h"
 
 #include <algorithm>
@@ -19,16 +19,48 @@ constexpr int kNoLayer = -1;
 constexpr std::string_view kCInterface = "capi";
 constexpr int kCInterfaceLayer = 1;
 
+/// The rooms of one layer. A toolbox includes toolboxes to its left; a station, one step of the data's way, includes toolboxes.
+/// Stations never include each other: they meet in public types only. What lies in the folder itself is left of all.
+struct Rooms {
+    std::string_view folder;
+    std::vector<std::string_view> toolboxes, stations;
+};
+const std::array<Rooms, 3> kRooms = {{
+    {"kernel/src", {}, {"march", "tolerance", "contact_phase"}},
+    {"engine/src", {"base", "physics", "contact"}, {"scene", "plan", "loop", "record"}},
+    {"render/src", {"font", "gl"}, {"stage", "draw", "frames"}},
+}};
+/// Public headers that say what a station made or does. A toolbox knows none of them.
+constexpr std::array<std::string_view, 4> kHeadersOfStations = {
+    "carom/engine/plan.h", "carom/engine/simulate.h", "carom/engine/variation.h", "carom/engine/verify.h"};
+/// Folders that others may use although they are no public headers: who, and what. The probes in tools/measure look inside
+/// whatever they measure, and share scenes with the tests; the program itself includes nothing of tests/.
+struct Door {
+    std::string_view from, to;
+};
+constexpr std::array<Door, 10> kDoors = {{{"kernel/ladder", "kernel/src"},
+                                          {"tools", "kernel/ladder"},
+                                          {"tools", "kernel/reference"},
+                                          {"render", "engine/src/base"},
+                                          {"tools", "engine/src/base"},
+                                          {"tools/measure", "kernel/src"},
+                                          {"tools/measure", "engine/src"},
+                                          {"tools/measure", "render/src"},
+                                          {"tools/measure", "tools/carom"},
+                                          {"tools/measure", "tests"}}};
+
 int layer_of(std::string_view name) {
     const auto it = std::find(kLayers.begin(), kLayers.end(), name);
     return it == kLayers.end() ? kNoLayer : static_cast<int>(it - kLayers.begin());
 }
 
-/// The layer that holds a file, or kNoLayer; `first` gets the top folder.
-int layer_of_path(const fs::path& root, const fs::path& file, std::string& first) {
-    const fs::path relative = fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(root));
-    first = relative.empty() ? ".." : relative.begin()->string();
-    return layer_of(first);
+/// A file's path below `root`, with slashes.
+std::string path_below(const fs::path& root, const fs::path& file) {
+    return fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(root)).generic_string();
+}
+
+std::string top_folder(const std::string& path) {
+    return path.substr(0, path.find('/'));
 }
 
 struct Include {
@@ -100,40 +132,95 @@ std::string library_violation(int layer, std::string_view name) {
     return "";
 }
 
-std::string target_violation(const fs::path& root, int layer, const std::string& first) {
+bool is_within(std::string_view path, std::string_view folder) {
+    return starts_with(path, folder) && (path.size() == folder.size() || path[folder.size()] == '/');
+}
+
+/// The folder whose files include each other: kernel/src, kernel/ladder, engine/src, tools/carom ...
+std::string house_of(const std::string& path) {
+    const std::size_t first = path.find('/'), second = path.find('/', first + 1);
+    return path.substr(0, second == path.npos ? first : second);
+}
+
+/// Place of a room from the left: -1 for the folder itself, toolboxes, then stations; -2 if there is no such room.
+int place_of(const Rooms& rooms, std::string_view path) {
+    const std::string_view rest = path.substr(rooms.folder.size() + 1);
+    const std::size_t slash = rest.find('/');
+    if (slash == rest.npos) return -1;
+    int place = 0;
+    for (const auto* list : {&rooms.toolboxes, &rooms.stations})
+        for (const std::string_view room : *list) {
+            if (room == rest.substr(0, slash)) return place;
+            ++place;
+        }
+    return -2;
+}
+
+/// `from` and `to` lie in the folder of these rooms.
+std::string room_violation(const Rooms& rooms, const std::string& from, const std::string& to) {
+    const int here = place_of(rooms, from), there = place_of(rooms, to);
+    if (here == -2) return "stands in a file of no known room";
+    if (there == -2) return "points to no known room";
+    if (here == there) return "";
+    const int stations = static_cast<int>(rooms.toolboxes.size());
+    if (there >= stations && here >= stations) return "points to another station; meet in public types";
+    if (there >= here) return "points to a room on the right";
+    return "";
+}
+
+std::string target_violation(const fs::path& root, const std::string& from, int layer,
+                             const std::string& to) {
+    if (house_of(from) == house_of(to)) {
+        for (const Rooms& rooms : kRooms)
+            if (is_within(from, rooms.folder)) return room_violation(rooms, from, to);
+        return "";
+    }
+    const std::string first = top_folder(to);
     const int target = layer_of(first);
-    if (target != kNoLayer) return target > layer ? "points upwards to " + first : "";
-    // What the tests and the benchmarks share may be used by the top layer.
-    if (first == "tests" && layer == 3) return "";
-    return "points outside the layers of " + fs::absolute(root).filename().string() + ": " + first;
+    if (target > layer) return "points upwards to " + first;
+    for (const Door& door : kDoors)
+        if (is_within(from, door.from) && is_within(to, door.to)) return "";
+    if (target == kNoLayer)
+        return "points outside the layers of " + fs::absolute(root).filename().string() + ": " + first;
+    return "points into " + house_of(to) + ", which is not public";
+}
+
+/// Of an include that names a public header.
+std::string public_violation(const fs::path& root, const std::string& from, int layer,
+                             std::string_view name) {
+    const std::string first(name.substr(6, name.find('/', 6) - 6));
+    const int target = layer_of(first);
+    if (target > layer) return "points upwards to " + first;
+    if (target == kNoLayer)
+        return "points outside the layers of " + fs::absolute(root).filename().string() + ": " + first;
+    for (const Rooms& rooms : kRooms) {
+        if (!is_within(from, rooms.folder)) continue;
+        const int place = place_of(rooms, from);
+        if (place >= static_cast<int>(rooms.toolboxes.size())) continue;
+        for (const std::string_view header : kHeadersOfStations)
+            if (name == header) return "points from a toolbox to what a station makes";
+    }
+    return "";
 }
 
 std::string include_violation(const fs::path& root, const fs::path& file, int layer, const Include& include) {
     if (include.name.empty()) return "is not a literal name, so that its layer cannot be known";
-    const fs::path beside = file.parent_path() / include.name;
-    std::string first, own;
-    layer_of_path(root, file, own);
-    if (own == kCInterface) {
-        layer_of_path(root, beside, first);
-        if (include.quoted && fs::exists(beside) && first == own) return "";
-        if (include.name == "carom/carom.h" || include.name == "carom/version.h") return "";
+    const std::string from = path_below(root, file);
+    if (starts_with(from, kCInterface) &&
+        (include.name == "carom/carom.h" || include.name == "carom/version.h"))
+        return "";
+    if (starts_with(include.name, "carom/")) return public_violation(root, from, layer, include.name);
+    if (!include.quoted) return library_violation(layer, include.name);
+    // Beside the file, then by room.
+    std::vector<fs::path> folders = {file.parent_path(), root / house_of(from)};
+    for (const std::string_view base :
+         {"", "kernel", "kernel/src", "engine/src", "render/src", "tools/carom", "tools", "tests"})
+        folders.push_back(root / base);
+    for (const fs::path& folder : folders) {
+        const fs::path candidate = folder / include.name;
+        if (fs::exists(candidate)) return target_violation(root, from, layer, path_below(root, candidate));
     }
-    if (include.quoted && fs::exists(beside)) {
-        layer_of_path(root, beside, first);
-        return target_violation(root, layer, first);
-    }
-    if (starts_with(include.name, "carom/")) {
-        const std::string_view rest = std::string_view(include.name).substr(6);
-        return target_violation(root, layer, std::string(rest.substr(0, rest.find('/'))));
-    }
-    for (const std::string_view base : {"", "tests", "tools"}) {
-        const fs::path candidate = root / base / include.name;
-        if (!include.quoted || !fs::exists(candidate)) continue;
-        layer_of_path(root, candidate, first);
-        return target_violation(root, layer, first);
-    }
-    if (include.quoted) return "cannot be resolved";
-    return library_violation(layer, include.name);
+    return "cannot be resolved";
 }
 
 /// A target named in a CMakeLists.txt is an include path: carom::render in engine/ points upwards.

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "support/process.h"
 
@@ -27,12 +30,25 @@ class LayersSelfTest : public ::testing::Test {
         put("kernel/src/k.cpp",
             "#include \"carom/kernel/k.h\"\n#include <immintrin.h>\n#include \"inner.h\"\n");
         put("kernel/src/inner.h", "#pragma once\n");
+        put("kernel/src/march/m.h", "#include \"inner.h\"\n");
+        put("kernel/src/tolerance/t.h", "#pragma once\n");
+        put("kernel/ladder/l.h", "#include \"march/m.h\"\n#include \"inner.h\"\n");
+        put("kernel/reference/s.h", "#include \"carom/kernel/k.h\"\n");
         put("engine/src/e.cpp", "#include <Eigen/Core>\n#include \"carom/kernel/k.h\"\n");
+        put("engine/src/base/b.h", "#pragma once\n");
+        put("engine/src/contact/c.h", "#include \"base/b.h\"\n");
+        put("engine/src/scene/s.cpp", "#include \"contact/c.h\"\n#include \"carom/engine/plan.h\"\n");
+        put("engine/src/loop/l.h", "#include \"contact/c.h\"\n");
         put("engine/CMakeLists.txt",
             "target_link_libraries(carom_engine PUBLIC carom::kernel) # carom::tools\n");
+        put("render/src/stage/s.cpp", "#include \"base/b.h\"\n");
+        put("render/src/draw/d.h", "#pragma once\n");
         put("render/src/r.cpp", "#include <png.h>\n#include <GL/gl.h>\n#include \"carom/engine/e.h\"\n");
         put("tools/t.cpp", "#include <CLI/CLI.hpp>\n#include \"carom/render/r.h\"\n#include \"u.h\"\n");
         put("tools/u.h", "#pragma once\n");
+        put("tools/carom/p.cpp",
+            "#include \"ladder/l.h\"\n#include \"reference/s.h\"\n#include \"base/b.h\"\n");
+        put("tools/measure/m.cpp", "#include \"support/s.h\"\n#include \"contact/c.h\"\n");
         put("capi/src/c.cpp",
             "#include \"carom/carom.h\"\n#include \"c.h\"\n#include \"carom/engine/e.h\"\n");
         put("capi/src/c.h", "#pragma once\n");
@@ -77,6 +93,20 @@ TEST_F(LayersSelfTest, SeesEveryKindOfViolation) {
         {"capi/CMakeLists.txt", "target_link_libraries(carom_c carom::render)\n", "links carom::render"},
         {"render/src/r.cpp", "#include \"carom/carom.h\"\n", "outside the layers"},
         {"render/src/r.cpp", "#include HEADER\n", "not a literal name"},
+        {"kernel/src/k.cpp", "#include \"ladder/l.h\"\n", "kernel/ladder, which is not public"},
+        {"kernel/src/march/m.h", "#include \"tolerance/t.h\"\n", "another station"},
+        {"kernel/src/inner.h", "#include \"march/m.h\"\n", "room on the right"},
+        {"engine/src/base/b.h", "#include \"contact/c.h\"\n", "room on the right"},
+        {"engine/src/contact/c.h", "#include \"loop/l.h\"\n", "room on the right"},
+        {"engine/src/contact/c.h", "#include \"carom/engine/plan.h\"\n", "from a toolbox"},
+        {"engine/src/scene/s.cpp", "#include \"loop/l.h\"\n", "another station"},
+        {"engine/src/scene/s.cpp", "#include \"../loop/l.h\"\n", "another station"},
+        {"engine/src/junk/j.h", "#include \"base/b.h\"\n", "of no known room"},
+        {"engine/src/loop/l.h", "#include \"reference/s.h\"\n", "kernel/reference, which is not public"},
+        {"render/src/stage/s.cpp", "#include \"draw/d.h\"\n", "another station"},
+        {"render/src/stage/s.cpp", "#include \"contact/c.h\"\n", "engine/src, which is not public"},
+        {"tools/carom/p.cpp", "#include \"contact/c.h\"\n", "engine/src, which is not public"},
+        {"tools/carom/p.cpp", "#include \"support/s.h\"\n", "outside the layers"},
         {"engine/CMakeLists.txt", "target_link_libraries(carom_engine PUBLIC carom::render)\n",
          "links carom::render"},
         {"kernel/CMakeLists.txt", "target_link_libraries(carom_kernel carom_engine)\n", "links carom_engine"},

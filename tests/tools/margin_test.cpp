@@ -1,5 +1,7 @@
 // The bookkeeping of carom margin, on costs that are given.
-#include "margin.h"
+#include "margin/margin.h"
+
+#include <vector>
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,12 @@
 // Plots: well-formed, the same bytes each time, nothing that is no number.
-#include "plot.h"
+#include "report/plot.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "console.h"
 

@@ -3,15 +3,21 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "carom/engine/record.h"
+#include "reference/random_impacts.h"
 #include "support/process.h"
-#include "support/random_impacts.h"
 
 namespace carom {
+using namespace reference;
 namespace {
 
 using Json = nlohmann::json;
@@ -24,14 +30,14 @@ bool same_bits(double a, double b) {
 }
 
 /// Any finite double, all exponents alike; signed zeros and subnormals are among them.
-double any_double(test::SplitMix64& rng) {
+double any_double(reference::SplitMix64& rng) {
     for (;;) {
         const double value = std::bit_cast<double>(rng.next());
         if (std::isfinite(value)) return value;
     }
 }
 
-Segment any_segment(test::SplitMix64& rng, double start) {
+Segment any_segment(reference::SplitMix64& rng, double start) {
     Segment s;
     s.start = start;
     for (int i = 0; i < 3; ++i) {
@@ -52,7 +58,7 @@ Segment any_segment(test::SplitMix64& rng, double start) {
 }
 
 Record sample_record() {
-    test::SplitMix64 rng(7);
+    reference::SplitMix64 rng(7);
     Record record;
     record.table.preset = "nine_foot";
     record.table.width = 1.27;
@@ -273,7 +279,7 @@ TEST(RecordFile, HostileFilesAreErrors) {
 }
 
 TEST(RecordFile, AnyChangedByteIsReadOrRefused) {
-    test::SplitMix64 rng(11);
+    reference::SplitMix64 rng(11);
     Record small = sample_record();
     for (BallTrack& track : small.tracks) track.segments.resize(2);
     const TemporaryFolder folder;

@@ -27,12 +27,12 @@ struct BallBallModelInfo {
     BallBallModel model;
     const char* name;
     BallBallFunction collide;
-    bool reads_spin;         ///< the spins before matter, and the spins change
-    bool reads_friction;     ///< mu_b matters
-    bool reads_restitution;  ///< e_b matters
-    bool reads_cloth;        ///< mu_s and the sign of the cloth slip matter
-    bool rough_masses;       ///< with friction, takes balls of different mass; without it every model does
-    const char* source;
+    bool reads_spin = false;         ///< the spins before matter, and the spins change
+    bool reads_friction = false;     ///< mu_b matters
+    bool reads_restitution = false;  ///< e_b matters
+    bool reads_cloth = false;        ///< mu_s and the sign of the cloth slip matter
+    bool rough_masses = false;  ///< with friction, takes balls of different mass; without it every model does
+    const char* source = "";
 };
 
 /// The three models; equations and sources in docs/physics.md, "Ball-ball impact".

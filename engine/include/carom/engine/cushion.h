@@ -30,11 +30,11 @@ struct CushionModelInfo {
     CushionModel model;
     const char* name;
     CushionFunction resolve;
-    bool reads_spin;      ///< the spin before matters, and the spin changes
-    bool reads_friction;  ///< f_c matters
-    bool reads_cloth;     ///< mu_s matters
-    bool reads_height;    ///< the height of the nose matters
-    const char* source;
+    bool reads_spin = false;      ///< the spin before matters, and the spin changes
+    bool reads_friction = false;  ///< f_c matters
+    bool reads_cloth = false;     ///< mu_s matters
+    bool reads_height = false;    ///< the height of the nose matters
+    const char* source = "";
 };
 
 /// The five models; equations and sources in docs/physics.md, "Cushion impact".

@@ -8,7 +8,8 @@
 
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
-#include "carom/engine/record.h"
+#include "carom/engine/geometry.h"
+#include "carom/engine/motion.h"
 #include "carom/engine/scene.h"
 #include "carom/kernel/contact_phase.h"
 
@@ -19,23 +20,6 @@ struct EffectDecision {
     std::string keyword;
     bool in_force;
     std::string reason;
-};
-
-/// A straight cushion in final form; index as in scene.table.cushions.
-struct CushionLine {
-    Vec2 from;
-    Vec2 direction;  ///< unit
-    double length;
-    double height;
-};
-
-/// A round nose: a jaw, or the end of a cushion that no jaw rounds off (radius 0).
-struct Nose {
-    Vec2 center;
-    double radius;
-    double height;
-    EventType type;  ///< kBallJaw or kBallCushion
-    int index;       ///< of the jaw or cushion in scene.table
 };
 
 /// How detection looks for what a ball can meet: through all boxes, or in a tree of them (Box2D's). The
@@ -49,14 +33,12 @@ struct Plan {
     std::vector<BallSize> sizes;  ///< of every ball of the scene
     bool alike = true;            ///< all of one size
     double gravity = 9.81;
-    std::vector<CushionLine> cushions;
-    std::vector<Nose> noses;
-    std::vector<Pocket> pockets;
+    std::vector<MotionParams> motion;           ///< of every ball, without what the effects leave out
+    Geometry geometry;                          ///< empty lists where nothing can reach them
     const CushionModelInfo* cushion = nullptr;  ///< of straight noses and their ends
     const CushionModelInfo* jaw = nullptr;      ///< of round jaws
     std::vector<EffectDecision> effects;
-    // What the effects leave in the loop; cushions, noses and pockets above are empty where nothing can reach
-    // them.
+    // What the effects leave in the loop.
     bool pairs = true;            ///< two balls can meet
     bool sliding = true;          ///< friction of slipping balls
     bool rolling = true;          ///< resistance of rolling balls

@@ -3,11 +3,32 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 
 namespace carom {
 
 using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
+
+inline Vec2 planar(const Vec3& a) {
+    return {a.x(), a.y()};
+}
+
+inline double dot(const Vec2& a, const Vec2& b) {
+    return a.x() * b.x() + a.y() * b.y();
+}
+
+/// Length of a planar vector; no overflow, no underflow, no libm.
+inline double length(const Vec2& a) {
+    const double largest = std::max(std::abs(a.x()), std::abs(a.y()));
+    if (largest == 0.0) return 0.0;
+    // Squares stay normal numbers in this range; outside it, scale by a power of two (exact).
+    if (largest > 0x1p-500 && largest < 0x1p500) return std::sqrt(a.x() * a.x() + a.y() * a.y());
+    const double scale = largest < 1.0 ? 0x1p600 : 0x1p-600;
+    const double x = a.x() * scale, y = a.y() * scale;
+    return std::sqrt(x * x + y * y) / scale;
+}
 
 /// z-component of a x b.
 inline double cross(const Vec2& a, const Vec2& b) {

@@ -45,13 +45,15 @@ struct DrawBall {
 
 using Rgba = std::array<float, 4>;  ///< as on the screen, 0..1; the last is opacity
 
+enum class LineLayer : std::uint8_t { kUnderBalls, kOverBalls };
+
 /// A straight line in the table's space, of a width in pixels, with round ends. What stands before it hides
 /// it.
 struct DrawLine {
     Vec3 a{0.0, 0.0, 0.0}, b{0.0, 0.0, 0.0};
     float width = 2.0F;
     Rgba color{1.0F, 1.0F, 1.0F, 1.0F};
-    bool over_balls = false;
+    LineLayer layer = LineLayer::kUnderBalls;
 };
 
 /// A rectangle of the image [pixels], filled, or as the cell of one character.

@@ -1,6 +1,7 @@
 // Numbered PNG frames of a record, without a display.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>

@@ -1,0 +1,36 @@
+// The table as the loop sees it: lines, round noses and pockets in final form.
+#pragma once
+
+#include <vector>
+
+#include "carom/engine/record.h"
+#include "carom/engine/table.h"
+#include "carom/engine/vec.h"
+
+namespace carom {
+
+/// A straight cushion in final form; index as in scene.table.cushions.
+struct CushionLine {
+    Vec2 from;
+    Vec2 direction;  ///< unit
+    double length;
+    double height;
+};
+
+/// A round nose: a jaw, or the end of a cushion that no jaw rounds off (radius 0).
+struct Nose {
+    Vec2 center;
+    double radius;
+    double height;
+    EventType type;  ///< kBallJaw or kBallCushion
+    int index;       ///< of the jaw or cushion in scene.table
+};
+
+/// All parts of a table that a ball can meet.
+struct Geometry {
+    std::vector<CushionLine> cushions;
+    std::vector<Nose> noses;
+    std::vector<Pocket> pockets;
+};
+
+}  // namespace carom

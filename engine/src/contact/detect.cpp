@@ -1,0 +1,264 @@
+#include "contact/detect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "carom/engine/tolerances.h"
+#include "contact/roots.h"
+#include "physics/motion.h"
+
+namespace carom {
+
+namespace {
+
+constexpr double kNoise = kClosingUlp * std::numeric_limits<double>::epsilon();
+
+// Relative motion of two centres, and how large a closing speed is rounding.
+struct Relative {
+    Vec2 r, v, a;
+    double noise;  // m/s
+};
+
+Vec2 at(const Relative& m, double t) {
+    return {m.r.x() + t * (m.v.x() + 0.5 * t * m.a.x()), m.r.y() + t * (m.v.y() + 0.5 * t * m.a.y())};
+}
+Vec2 rate(const Relative& m, double t) {
+    return {m.v.x() + t * m.a.x(), m.v.y() + t * m.a.y()};
+}
+
+// Closing speed at t [m/s], positive while the distance falls.
+double closing_speed(const Relative& m, double t) {
+    const Vec2 r = at(m, t);
+    const double d = length(r);
+    return d > 0.0 ? -dot(r, rate(m, t)) / d : length(rate(m, t));
+}
+
+// The polynomial root, refined by the distance itself: Newton steps on |r(t)| - reach that are kept only
+// while the gap falls (at a graze they would run away), then at most one ulp-sized step back to the side that
+// does not penetrate.
+double refine(const Relative& m, double reach, double t, double horizon) {
+    double gap = length(at(m, t)) - reach;
+    for (int i = 0; i < 3 && gap != 0.0; ++i) {
+        const double closing = closing_speed(m, t);
+        if (!(closing > m.noise)) break;
+        const double next = std::clamp(t + gap / closing, 0.0, horizon);
+        const double next_gap = length(at(m, next)) - reach;
+        if (!(std::abs(next_gap) < std::abs(gap))) break;
+        t = next;
+        gap = next_gap;
+    }
+    if (gap < 0.0) {
+        const double closing = closing_speed(m, t);
+        const double back = closing > m.noise ? t + gap / closing : t;
+        const double earlier = std::min(back, t - std::numeric_limits<double>::epsilon() * t);
+        if (earlier >= 0.0) {
+            const double earlier_gap = length(at(m, earlier)) - reach;
+            if (earlier_gap >= 0.0 && earlier_gap <= -2.0 * gap) t = earlier;
+        }
+    }
+    return t;
+}
+
+// Speed by which a contact that is pressed together has to close to count as an impact: above the rounding,
+// and a vanishing share of what the closing acceleration reaches within the horizon.
+constexpr double kPressShare = 1e-12;
+
+double press_delay(double closing_acceleration, double noise, double horizon) {
+    return 2.0 * noise / closing_acceleration + kPressShare * std::min(horizon, 1.0);
+}
+
+// Steps towards a distant ball, and the share of the safe way that each of them takes.
+constexpr int kApproaches = 12;
+constexpr double kApproachShare = 0.99;
+
+// Straight relative path with signed acceleration `alpha` along it: solved in arc length, exact at grazing.
+double along_line(const Relative& m, double reach, double speed, double alpha, double horizon) {
+    const Vec2 e = m.v / speed;
+    const double along = -dot(m.r, e);  // arc length of the closest approach
+    if (!(along > 0.0)) return kNever;
+    const double miss = std::abs(cross(m.r, e));
+    if (!(miss < reach)) return kNever;
+    const double half_chord = std::sqrt((reach - miss) * (reach + miss));
+    // c / (b + sqrt(b^2 - c)) with c = |r|^2 - reach^2 from its factors: no cancellation near contact.
+    const double d = length(m.r);
+    const double s = (d - reach) * (d + reach) / (along + half_chord);
+    if (!(s >= 0.0)) return kNever;
+    const double end_speed_squared = speed * speed + 2.0 * alpha * s;
+    if (!(end_speed_squared >= 0.0)) return kNever;  // stops short
+    const double t = 2.0 * s / (speed + std::sqrt(end_speed_squared));
+    return t <= horizon ? refine(m, reach, t, horizon) : kNever;
+}
+
+// The same motion from a later origin, before which the gap cannot close. The coefficients of |r|^2 - reach^2
+// are as large as the squares of the ways until then; at a graze their rounding would decide (1e-11 m over
+// 100 m) instead of the distance.
+Relative brought_near(Relative m, double reach, double horizon, double& elapsed) {
+    for (int i = 0; i < kApproaches; ++i) {
+        const double gap = length(m.r) - reach;
+        if (!(gap > 0.25 * reach)) break;
+        const double speed = length(m.v), pull = length(m.a);
+        const double step =
+            kApproachShare * 2.0 * gap / (speed + std::sqrt(speed * speed + 2.0 * pull * gap));
+        elapsed += step;
+        if (!(elapsed < horizon)) break;
+        m.r = at(m, step);
+        m.v = rate(m, step);
+    }
+    return m;
+}
+
+// First time within the horizon at which |r| falls to reach, closing or only touching; c0 = |r|^2 - reach^2
+// now.
+double first_touch(const Relative& m, double reach, double c0, double horizon, bool straight) {
+    const double speed = length(m.v), pull = length(m.a);
+    if (speed == 0.0 && pull == 0.0) return kNever;
+    if (c0 > 0.0) {
+        const double gap = length(m.r) - reach;
+        if (horizon < kNever && gap > horizon * (speed + 0.5 * horizon * pull)) return kNever;  // too far
+        if (pull == 0.0) return along_line(m, reach, speed, 0.0, horizon);
+        if (straight && speed > 0.0) {
+            const double alpha = dot(m.a, m.v) / speed;
+            // The closed form holds while the motion does not turn back.
+            if (speed + alpha * horizon >= -4.0 * std::numeric_limits<double>::epsilon() * speed)
+                return along_line(m, reach, speed, alpha, horizon);
+        }
+    } else if (pull == 0.0) {
+        return kNever;  // touching, not closing, and on a straight line: parts for good
+    }
+    double elapsed = 0.0;
+    const Relative near = c0 > 0.0 ? brought_near(m, reach, horizon, elapsed) : m;
+    if (elapsed >= horizon) return kNever;
+    if (elapsed > 0.0) {
+        const double d = length(near.r);
+        c0 = (d - reach) * (d + reach);
+    }
+    const double c[5] = {c0, 2.0 * dot(near.r, near.v), dot(near.v, near.v) + dot(near.r, near.a),
+                         dot(near.v, near.a), 0.25 * dot(near.a, near.a)};
+    const double t = first_descent(c, horizon - elapsed);
+    return t == kNever ? kNever : refine(m, reach, std::min(horizon, elapsed + t), horizon);
+}
+
+// First contact that closes by more than rounding. A graze below that is passed over; a contact that closes
+// only because it is pressed together counts from when its closing speed can be told from 0.
+double time_to_reach(Relative m, double reach, double horizon, bool straight) {
+    const double d = length(m.r);
+    double c0 = (d - reach) * (d + reach);
+    double elapsed = 0.0;
+    if (c0 <= 0.0 && closing_speed(m, 0.0) > m.noise) return 0.0;
+    for (int grazes = 0; grazes < 4; ++grazes) {
+        const Vec2 v0 = m.v;
+        const double curving = -(dot(v0, v0) + dot(m.r, m.a));
+        const bool pressed_now = c0 <= 0.0 && curving > 0.0 && dot(m.r, m.v) <= 0.0;
+        const double t = pressed_now ? 0.0 : first_touch(m, reach, c0, horizon, straight);
+        if (t == kNever) return kNever;
+        if (!pressed_now && closing_speed(m, t) > m.noise) return elapsed + t;
+        const Vec2 r = at(m, t), v = rate(m, t);
+        const double closing_acceleration = -(dot(v, v) + dot(r, m.a)) / length(r);
+        if (closing_acceleration > 0.0) {
+            const double pressed = t + press_delay(closing_acceleration, m.noise, horizon - t);
+            return pressed <= horizon ? elapsed + pressed : kNever;
+        }
+        m.r = r;
+        m.v = v;
+        c0 = 0.0;
+        elapsed += t;
+        horizon -= t;
+        straight = false;
+    }
+    return kNever;
+}
+
+}  // namespace
+
+double time_to_ball(const Path& b1, const Path& b2, double reach) {
+    if (!b1.moves && !b2.moves) return kNever;
+    const Relative m{b2.r - b1.r, b2.v - b1.v, b2.a - b1.a,
+                     kNoise * ((length(b1.v) + b1.surface) + (length(b2.v) + b2.surface))};
+    const bool straight = (b1.straight && !b2.moves) || (b2.straight && !b1.moves);
+    return time_to_reach(m, reach, std::min(b1.horizon, b2.horizon), straight);
+}
+
+double time_to_circle(const Path& ball, const Vec2& center, double reach) {
+    if (!ball.moves) return kNever;
+    const Relative m{ball.r - center, ball.v, ball.a, kNoise * (length(ball.v) + ball.surface)};
+    return time_to_reach(m, reach, ball.horizon, ball.straight);
+}
+
+namespace {
+
+// First time at which a foot point outside [0, end] gets inside.
+double time_to_enter(double foot, double rate, double pull, double end, double horizon) {
+    if (foot < 0.0) return first_descent_quadratic(-foot, -rate, -pull, horizon);
+    if (foot > end) return first_descent_quadratic(foot - end, rate, pull, horizon);
+    return kNever;
+}
+
+}  // namespace
+
+double end_rounding(const Vec2& r, double line_length) {
+    return kEndUlp * std::numeric_limits<double>::epsilon() *
+           (std::abs(r.x()) + std::abs(r.y()) + line_length);
+}
+
+bool past_end(double left, double rate, double pull, double rounding) {
+    if (std::abs(left) > rounding) return left < 0.0;
+    return rate < 0.0 || (rate == 0.0 && pull < 0.0);
+}
+
+double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, double line_length, double R) {
+    if (!ball.moves) return kNever;
+    const Vec2 normal(-direction.y(), direction.x());
+    const Vec2 offset = ball.r - from;
+    const double d0 = dot(normal, offset), d1 = dot(normal, ball.v), d2 = dot(normal, ball.a);
+    const double noise = kNoise * (length(ball.v) + ball.surface);
+    const double rounding = end_rounding(ball.r, line_length);
+    const auto foot_inside = [&](double t) {
+        const double v = dot(direction, ball.v), pull = dot(direction, ball.a), rate = v + t * pull;
+        const double foot = dot(direction, offset) + t * (v + 0.5 * t * pull);
+        return !past_end(foot, rate, pull, rounding) && !past_end(line_length - foot, -rate, -pull, rounding);
+    };
+    double best = kNever;
+    for (const double side : {1.0, -1.0}) {
+        const double h0 = side * d0 - R, h1 = side * d1, h2 = side * d2;
+        const bool here = side * d0 >= 0.0;  // the ball is on this side now
+        double t = kNever;
+        if (here && h0 <= 0.0 && h1 < -noise)
+            t = 0.0;
+        else if (here && h0 <= 0.0 && h2 < 0.0 && !(h1 > noise && h1 * h1 > 2.0 * h2 * h0))
+            t = std::max(0.0, -h1 / h2) + press_delay(-h2, noise, ball.horizon);  // pressed against the nose
+        else
+            t = first_descent_quadratic(h0, h1, h2, ball.horizon);
+        if (t < best && t <= ball.horizon && h1 + t * h2 < -noise && foot_inside(t)) best = t;
+        // A ball held to the nose at the end comes round it and onto the cushion: closing when the foot point
+        // enters.
+        const double enter = time_to_enter(dot(direction, offset), dot(direction, ball.v),
+                                           dot(direction, ball.a), line_length, ball.horizon);
+        if (enter == kNever) continue;
+        const double h = h0 + enter * (h1 + 0.5 * enter * h2), rate = h1 + enter * h2;
+        if (h > 0.0 || !(h + R > 0.0)) continue;
+        double closing = kNever;
+        if (rate < -noise)
+            closing = enter;
+        else if (rate <= noise && h2 < 0.0)
+            closing = enter + press_delay(-h2, noise, ball.horizon - enter);
+        if (closing < best && closing <= ball.horizon && foot_inside(closing)) best = closing;
+    }
+    return best;
+}
+
+bool stays_off_line(const Path& ball, const Vec2& from, const Vec2& direction, double R, double window) {
+    const Vec2 normal(-direction.y(), direction.x());
+    const double height = dot(normal, ball.r - from);
+    const double sign = height < 0.0 ? -1.0 : 1.0;
+    return least(sign * height, sign * dot(normal, ball.v), 0.5 * sign * dot(normal, ball.a), window) >
+           R * (1.0 + kApartShare);
+}
+
+double time_to_pocket(const Path& ball, const Vec2& center, double radius) {
+    const double d = length(ball.r - center);
+    if (d < radius) return 0.0;
+    return time_to_circle(ball, center, radius);
+}
+
+}  // namespace carom

@@ -1,0 +1,145 @@
+#include "loop/box_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+// Box2D fattens its boxes by 0.1 units: of a centimetre, that is little.
+constexpr double kUnitsPerMetre = 100.0;
+// [units] Beyond every table; sums and products of a few stay far from overflow in single precision.
+constexpr double kFarthest = 1e15;
+// Conversion to float errs by at most 2^-24 of the value.
+constexpr double kOutward = 0x1p-23;
+
+double scaled(double x) {
+    return std::clamp(x * kUnitsPerMetre, -kFarthest, kFarthest);
+}
+float down(double x) {
+    const double y = scaled(x);
+    return static_cast<float>(y - kOutward * std::abs(y));
+}
+float up(double x) {
+    const double y = scaled(x);
+    return static_cast<float>(y + kOutward * std::abs(y));
+}
+
+// [-] Share of its circumference by which a block's box is widened in the tree.
+constexpr float kBlockMargin = 0.05f;
+// [-] Searches per box until blocks are formed anew: sorting costs about 100 ns a box.
+constexpr long kSearchesPerBox = 4;
+
+constexpr float kNowhere = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+BoxSearch::Rounded BoxSearch::outward(const Box& box) {
+    return {down(box.low_x), down(box.low_y), up(box.high_x), up(box.high_y)};
+}
+
+b2AABB BoxSearch::aabb_of(const Rounded& box) {
+    b2AABB aabb;
+    aabb.lowerBound.Set(box.low_x, box.low_y);
+    aabb.upperBound.Set(box.high_x, box.high_y);
+    return aabb;
+}
+
+void BoxSearch::set_up(int count, Search kind) {
+    const auto boxes = static_cast<std::size_t>(count);
+    const std::size_t group = kind == Search::kTree ? kBlock : 4;
+    const std::size_t size = (boxes + group - 1) / group * group;
+    for (std::vector<float>* low : {&low_x_, &low_y_}) low->assign(size, kNowhere);
+    for (std::vector<float>* high : {&high_x_, &high_y_}) high->assign(size, -kNowhere);
+    tree_.reset();
+    if (kind != Search::kTree) return;
+    tree_ = std::make_unique<b2DynamicTree>();
+    slot_.resize(boxes);
+    index_.resize(size, -1);
+    sorted_.resize(boxes);
+    proxy_.assign(size / kBlock, -1);
+    for (std::size_t i = 0; i < boxes; ++i) slot_[i] = index_[i] = static_cast<int>(i);
+    until_rebuild_ = 0;
+}
+
+void BoxSearch::set(std::size_t slot, const Rounded& box) {
+    low_x_[slot] = box.low_x;
+    low_y_[slot] = box.low_y;
+    high_x_[slot] = box.high_x;
+    high_y_[slot] = box.high_y;
+}
+
+void BoxSearch::place(int index, const Box& box) {
+    const Rounded rounded = outward(box);
+    const std::size_t s = slot(index);
+    set(s, rounded);
+    if (!tree_ || proxy_[s / kBlock] < 0) return;  // before the first build there are no blocks
+    if (!tree_->GetFatAABB(proxy_[s / kBlock]).Contains(aabb_of(rounded))) update_block(s / kBlock);
+}
+
+void BoxSearch::remove(int index) {
+    set(slot(index), {kNowhere, kNowhere, -kNowhere, -kNowhere});
+}
+
+// Tells the tree where a block is now, with some room to move.
+void BoxSearch::update_block(std::size_t block) {
+    Rounded around{kNowhere, kNowhere, -kNowhere, -kNowhere};
+    for (std::size_t i = block * kBlock; i < (block + 1) * kBlock; ++i) {
+        around.low_x = std::min(around.low_x, low_x_[i]);
+        around.low_y = std::min(around.low_y, low_y_[i]);
+        around.high_x = std::max(around.high_x, high_x_[i]);
+        around.high_y = std::max(around.high_y, high_y_[i]);
+    }
+    if (around.low_x > around.high_x) return;  // nothing is left in it
+    b2AABB aabb = aabb_of(around);
+    const float margin = kBlockMargin * (around.high_x - around.low_x + around.high_y - around.low_y);
+    aabb.lowerBound -= b2Vec2(margin, margin);
+    aabb.upperBound += b2Vec2(margin, margin);
+    tree_->MoveProxy(proxy_[block], aabb, b2Vec2(0.0f, 0.0f));
+}
+
+// Blocks of neighbours: strips of equal count by x, and within a strip by y.
+void BoxSearch::rebuild() {
+    const std::size_t count = slot_.size(), blocks = proxy_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto s = static_cast<std::size_t>(slot_[i]);
+        sorted_[i] = {low_x_[s], low_y_[s], high_x_[s], high_y_[s]};
+    }
+    const auto by = [this](auto middle) {
+        return [this, middle](int i, int j) {
+            const float p = middle(sorted_[static_cast<std::size_t>(i)]),
+                        q = middle(sorted_[static_cast<std::size_t>(j)]);
+            return p < q || (p == q && i < j);
+        };
+    };
+    // What is out stands at infinity - infinity; any place will do for it, but a comparison must not be NaN.
+    const auto finite = [](float sum) { return sum == sum ? sum : 0.0f; };
+    const auto middle_x = [finite](const Rounded& r) { return finite(r.low_x + r.high_x); };
+    const auto middle_y = [finite](const Rounded& r) { return finite(r.low_y + r.high_y); };
+    std::size_t strips = 1;
+    while (strips * strips < blocks) ++strips;
+    const std::size_t strip = (blocks + strips - 1) / strips * kBlock;
+    std::sort(index_.begin(), index_.begin() + static_cast<std::ptrdiff_t>(count), by(middle_x));
+    for (std::size_t begin = 0; begin < count; begin += strip)
+        std::sort(index_.begin() + static_cast<std::ptrdiff_t>(begin),
+                  index_.begin() + static_cast<std::ptrdiff_t>(std::min(begin + strip, count)), by(middle_y));
+    for (std::size_t s = 0; s < count; ++s) {
+        const auto i = static_cast<std::size_t>(index_[s]);
+        slot_[i] = static_cast<int>(s);
+        set(s, sorted_[i]);
+    }
+    for (std::size_t b = 0; b < blocks; ++b) {
+        if (proxy_[b] < 0) {
+            const b2AABB nothing{b2Vec2(0.0f, 0.0f), b2Vec2(0.0f, 0.0f)};
+            // A number in the pointer that the tree keeps for us: nobody follows it.
+            void* block = reinterpret_cast<void*>(b);  // NOLINT(performance-no-int-to-ptr): see above
+            proxy_[b] = tree_->CreateProxy(nothing, block);
+        }
+        update_block(b);
+    }
+    until_rebuild_ = kSearchesPerBox * static_cast<long>(count);
+}
+
+}  // namespace carom

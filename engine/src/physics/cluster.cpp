@@ -1,0 +1,174 @@
+#include "physics/cluster.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "carom/engine/tolerances.h"
+
+namespace carom {
+
+double fifth_root(double x) {
+    // x = 2^(5 q) f with f in [1, 32): start from a straight line in f, then Newton on y^5 = f with a fixed
+    // number of steps.
+    int exponent = static_cast<int>((std::bit_cast<std::uint64_t>(x) >> 52) & 0x7FF) - 1023;
+    if (exponent == -1023) return fifth_root(x * 0x1p500) * 0x1p-100;  // subnormal
+    int q = exponent / 5, left = exponent % 5;
+    if (left < 0) {
+        left += 5;
+        --q;
+    }
+    const std::uint64_t mantissa = std::bit_cast<std::uint64_t>(x) & 0x000FFFFFFFFFFFFFull;
+    const double f = std::bit_cast<double>(mantissa | (static_cast<std::uint64_t>(1023 + left) << 52));
+    double y = 1.0 + (f - 1.0) * (1.0 / 31.0);
+    for (int i = 0; i < 8; ++i) {
+        const double y2 = y * y;
+        y = 0.2 * (4.0 * y + f / (y2 * y2));
+    }
+    return y * std::bit_cast<double>(static_cast<std::uint64_t>(1023 + q) << 52);
+}
+
+double contact_length(double V) {
+    const double x = V * V / kContactStiffness;
+    return fifth_root(x * x);
+}
+
+double contact_time(double V) {
+    return kContactTimeFactor * contact_length(V) / V;
+}
+
+namespace {
+
+constexpr std::size_t kPerBall = 5;
+
+// The exponent p of the unloading law: the smallest power of 2 with e^2 >= 2.5 / (2.5 + p), so that the force
+// stays a push.
+int law_exponent(double e_b) {
+    int p = 1;
+    while (p < kLargestLawExponent && e_b * e_b < 2.5 / (2.5 + p)) p *= 2;
+    return p;
+}
+
+kernel::HertzLaw law_of(const ClusterSettings& s) {
+    const int p = law_exponent(s.e_b);
+    const double b = std::min(1.0, (1.0 - s.e_b * s.e_b) * 0.4 / (0.4 - 1.0 / (2.5 + p)));
+    return {1.0 - b, b, p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip};
+}
+
+}  // namespace
+
+void ClusterMap::load(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                      double R, double V) {
+    motion_.clear();
+    contacts_.clear();
+    for (const ClusterBall& ball : balls) {
+        motion_.push_back(ball.v.x() / V);
+        motion_.push_back(ball.v.y() / V);
+        for (int k = 0; k < 3; ++k) motion_.push_back(R * ball.w[k] / V);
+    }
+    const double L = contact_length(V);
+    for (const ClusterContact& c : contacts) contacts_.push_back({c.i, c.j, c.n.x(), c.n.y(), -c.gap / L});
+    const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
+    numbers_.resize(std::max(numbers_.size(), kernel::contact_phase_numbers(m, n)));
+    places_.resize(std::max(places_.size(), kernel::contact_phase_places(n)));
+}
+
+double ClusterMap::energy() const {
+    double e = 0.0;
+    for (std::size_t n = 0; n < motion_.size(); n += kPerBall) {
+        const double* y = &motion_[n];
+        e += 0.5 * (y[0] * y[0] + y[1] * y[1]) + 0.2 * (y[2] * y[2] + y[3] * y[3] + y[4] * y[4]);
+    }
+    return e;
+}
+
+// Step error can raise the energy where e = 1 and mu = 0: scale the velocities about their mean so that it
+// does not. Momentum and the signs of relative velocities are kept.
+void ClusterMap::keep_energy(double before) {
+    const double after = energy();
+    if (!(after > before)) return;
+    double mx = 0.0, my = 0.0, relative = 0.0;
+    for (std::size_t n = 0; n < motion_.size(); n += kPerBall) {
+        mx += motion_[n];
+        my += motion_[n + 1];
+    }
+    const std::size_t count = motion_.size() / kPerBall;
+    const auto balls = static_cast<double>(count);
+    mx /= balls;
+    my /= balls;
+    for (std::size_t n = 0; n < motion_.size(); n += kPerBall) {
+        const double x = motion_[n] - mx, y = motion_[n + 1] - my;
+        relative += 0.5 * (x * x + y * y);
+    }
+    const double wanted = relative - (after - before);
+    if (!(relative > 0.0) || !(wanted > 0.0)) return;
+    const double factor = std::sqrt(wanted / relative);
+    for (std::size_t n = 0; n < motion_.size(); n += kPerBall) {
+        motion_[n] = mx + factor * (motion_[n] - mx);
+        motion_[n + 1] = my + factor * (motion_[n + 1] - my);
+    }
+}
+
+long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                           const ClusterSettings& settings, double V) {
+    // A slow pair can be the first to touch where faster ones are about to: these set the scale, or their
+    // forces would need a million steps.
+    for (const ClusterContact& c : contacts) {
+        const Vec3 closing = balls[static_cast<std::size_t>(c.i)].v - balls[static_cast<std::size_t>(c.j)].v;
+        V = std::max(V, closing.x() * c.n.x() + closing.y() * c.n.y());
+    }
+    load(balls, contacts, settings.R, V);
+    const double before = energy();
+    const kernel::ContactPhase phase{static_cast<int>(balls.size()),
+                                     static_cast<int>(contacts.size()),
+                                     motion_.data(),
+                                     contacts_.data(),
+                                     numbers_.data(),
+                                     places_.data()};
+    const long steps = settings.integrate(phase, law_of(settings), settings.longest_step, kClusterLookAhead,
+                                          kClusterTimeLimit);
+    if (steps < 0) return steps;
+    keep_energy(before);
+    const double* y = motion_.data();
+    for (ClusterBall& ball : balls) {
+        ball.v = Vec3(y[0] * V, y[1] * V, 0.0);
+        for (int k = 0; k < 3; ++k) ball.w[k] = y[2 + k] * V / settings.R;
+        y += kPerBall;
+    }
+    return steps;
+}
+
+long ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                       double e_b) {
+    std::vector<Vec2> v;
+    v.reserve(balls.size());
+    for (const ClusterBall& b : balls) v.push_back(Vec2(b.v.x(), b.v.y()));
+    std::vector<double> impulse(contacts.size(), 0.0);
+    double scale = 0.0;
+    for (const Vec2& x : v) scale = std::max(scale, x.norm());
+    long sweeps = 0;
+    for (; sweeps < kRigidSweeps; ++sweeps) {
+        double change = 0.0;
+        for (std::size_t c = 0; c < contacts.size(); ++c) {
+            const auto i = static_cast<std::size_t>(contacts[c].i),
+                       j = static_cast<std::size_t>(contacts[c].j);
+            const Vec2& n = contacts[c].n;
+            const double closing = (v[i] - v[j]).dot(n);
+            const double next = std::max(0.0, impulse[c] + 0.5 * closing);
+            const double J = next - impulse[c];
+            impulse[c] = next;
+            v[i] -= J * n;
+            v[j] += J * n;
+            change = std::max(change, std::abs(J));
+        }
+        if (change <= 1e-16 * scale) break;
+    }
+    for (std::size_t b = 0; b < balls.size(); ++b) {
+        balls[b].v.x() = (1.0 + e_b) * v[b].x() - e_b * balls[b].v.x();
+        balls[b].v.y() = (1.0 + e_b) * v[b].y() - e_b * balls[b].v.y();
+    }
+    return sweeps;
+}
+
+}  // namespace carom

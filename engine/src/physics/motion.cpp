@@ -1,0 +1,128 @@
+#include "physics/motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "carom/engine/tolerances.h"
+
+namespace carom {
+
+namespace {
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+// Time left until |w_z| has decayed to 0.
+double spin_time(double w_z, const MotionParams& p) {
+    return w_z == 0.0 ? 0.0 : (p.spin > 0.0 ? std::abs(w_z) / p.spin : kInfinity);
+}
+}  // namespace
+
+Vec2 cloth_slip(const Vec3& v, const Vec3& w, double R) {
+    return {v.x() - R * w.y(), v.y() + R * w.x()};
+}
+
+MotionParams motion_params(const BallParams& balls, double gravity, double R) {
+    return {R, balls.mu_s * gravity, balls.mu_r * gravity, 5.0 * balls.mu_sp * gravity / (2.0 * R)};
+}
+
+namespace effects {
+
+// Friction of a slipping ball: a = -mu_s g u/|u|, dw_xy/dt = -(5 mu_s g / 2R) (u x z)/|u|, until t = 2|u|/(7
+// mu_s g).
+[[gnu::noinline]] void sliding_friction(Segment& s, const Vec2& u, double slip, const MotionParams& p) {
+    if (p.slide == 0.0) return;
+    const Vec2 direction = u / slip;
+    const double turn = 2.5 * p.slide / p.R;
+    s.a = -p.slide * direction;
+    s.dw = Vec2(-turn * direction.y(), turn * direction.x());
+    s.duration = 2.0 * slip / (7.0 * p.slide);
+}
+
+// Resistance of a rolling ball: a = -mu_r g v/|v|, until |v|/(mu_r g).
+[[gnu::noinline]] void rolling_resistance(Segment& s, double speed, const MotionParams& p) {
+    if (p.roll == 0.0) return;
+    s.duration = speed / p.roll;
+    s.a = planar(s.v) * (-p.roll / speed);
+    s.dw = Vec2(-s.a.y() / p.R, s.a.x() / p.R);
+}
+
+// Vertical spin decays; a ball that spins in place does so until it is gone.
+[[gnu::noinline]] void spin_decay(Segment& s, const MotionParams& p) {
+    if (s.w.z() == 0.0) return;
+    s.spin_decay = p.spin;
+    if (s.state == MotionState::kSpinning) s.duration = spin_time(s.w.z(), p);
+}
+
+}  // namespace effects
+
+Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& p) {
+    Segment s;
+    s.start = t;
+    s.r = r;
+    s.v = Vec3(v.x(), v.y(), 0.0);
+    s.w = Vec3(w.x(), w.y(), w.z() + 0.0);  // -0 is no spin either
+    s.a = Vec2::Zero();
+    s.dw = Vec2::Zero();
+    s.duration = kInfinity;
+    const Vec2 u = cloth_slip(s.v, s.w, p.R);
+    const double slip = length(u), speed = length(planar(s.v));
+    const double spin = std::sqrt(w.x() * w.x() + w.y() * w.y() + w.z() * w.z());
+    if (slip > kRollingUlp * kEpsilon * (speed + p.R * spin)) {
+        s.state = MotionState::kSliding;
+        if (p.sliding) effects::sliding_friction(s, u, slip, p);
+    } else if (speed > 0.0) {
+        s.state = MotionState::kRolling;
+        s.w.x() = -s.v.y() / p.R;
+        s.w.y() = s.v.x() / p.R;
+        if (p.rolling) effects::rolling_resistance(s, speed, p);
+    } else {
+        s.w.x() = s.w.y() = 0.0;
+        s.state = s.w.z() != 0.0 ? MotionState::kSpinning : MotionState::kStationary;
+    }
+    if (p.spin_decay) effects::spin_decay(s, p);
+    return s;
+}
+
+Segment pocketed_segment(double t, const Pocket& pocket) {
+    Segment s;
+    s.start = t;
+    s.r = Vec3(pocket.center.x(), pocket.center.y(), -pocket.depth);
+    s.v = s.w = Vec3::Zero();
+    s.a = s.dw = Vec2::Zero();
+    s.duration = kInfinity;
+    s.state = MotionState::kPocketed;
+    return s;
+}
+
+Segment after_transition(const Segment& s, const MotionParams& p) {
+    const double tau = s.duration;
+    const Vec3 r = position_at(s, tau);
+    Vec3 v = Vec3::Zero(), w(0.0, 0.0, spin_at(s, tau, p.R).z());
+    switch (s.state) {
+        case MotionState::kSliding: {
+            // v_f = v - (2/7) u, and the spin that rolls with it.
+            const Vec2 u = cloth_slip(s.v, s.w, p.R);
+            v = Vec3(s.v.x() - u.x() * (2.0 / 7.0), s.v.y() - u.y() * (2.0 / 7.0), 0.0);
+            w.x() = -v.y() / p.R;
+            w.y() = v.x() / p.R;
+            break;
+        }
+        case MotionState::kSpinning:
+            w.z() = 0.0;
+            break;
+        case MotionState::kRolling:
+        case MotionState::kStationary:
+        case MotionState::kPocketed:
+            break;
+    }
+    return start_segment(s.start + tau, r, v, w, p);
+}
+
+EventType transition_type(const Segment& segment, const Segment& next) {
+    if (segment.state == MotionState::kSliding) return EventType::kSlideRoll;
+    if (segment.state == MotionState::kSpinning) return EventType::kSpinStop;
+    return next.state == MotionState::kSpinning ? EventType::kRollSpin : EventType::kRollStop;
+}
+
+}  // namespace carom

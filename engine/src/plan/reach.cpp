@@ -1,0 +1,160 @@
+#include "plan/reach.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "carom/engine/ball_ball.h"
+#include "carom/engine/tolerances.h"
+#include "physics/cue.h"
+#include "physics/motion.h"
+
+namespace carom {
+namespace {
+
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+// A ball with the velocities that it starts with, struck by the cue or not.
+struct Start {
+    Vec2 place;
+    Vec3 v, w;
+    Segment segment;
+    BallSize size;
+};
+
+double distance_to(const Cushion& c, const Vec2& p) {
+    const Vec2 along = c.to - c.from;
+    const double s = std::clamp((p - c.from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    return length(p - c.from - s * along);
+}
+
+class Bounds {
+  public:
+    explicit Bounds(const Scene& scene)
+        : scene_(scene),
+          motion_(motion_params(scene.balls, scene.physics.gravity, scene.balls.R)),
+          time_(scene.stop.time.value_or(kUnbounded)) {
+        motion_.sliding = motion_.rolling = motion_.spin_decay = false;  // only the states are asked for
+        for (const BallStart& ball : scene.ball) {
+            Vec3 v = ball.velocity, w = ball.spin;
+            if (scene.cue && scene.cue->ball == ball.id) {
+                const StruckBall struck = strike(*scene.cue, scene.size_of(ball));
+                v = struck.v;
+                w = struck.w;
+            }
+            const BallSize size = scene.size_of(ball);
+            motion_.R = size.R;
+            starts_.push_back(
+                {ball.position.head<2>(), v, w, start_segment(0.0, ball.position, v, w, motion_), size});
+        }
+    }
+
+    Reach find() {
+        Reach reach;
+        int movers = 0, mover = -1;
+        for (std::size_t i = 0; i < starts_.size(); ++i) {
+            reach.slips = reach.slips || starts_[i].segment.state == MotionState::kSliding;
+            if (!translates(starts_[i].segment.state)) continue;
+            ++movers;
+            mover = static_cast<int>(i);
+        }
+        reach.moves = movers > 0;
+        std::vector<double> radius(starts_.size(), 0.0);
+        reach.why = "nothing moves";
+        if (movers == 1) {
+            const std::size_t m = static_cast<std::size_t>(mover);
+            radius[m] = alone(starts_[m]);
+            reach.why = fmt::format("ball {}, the only one that moves, goes no farther than {:.3g} m",
+                                    scene_.ball[m].id, radius[m]);
+        }
+        // The bound of a ball that meets nothing holds as long as it indeed meets nothing.
+        if (movers > 1 || meets_cushion(radius) || meets_ball(radius)) {
+            const double far = by_energy();
+            std::fill(radius.begin(), radius.end(), far);
+            reach.why = far < kUnbounded
+                            ? fmt::format("no ball goes farther than {:.3g} m until the stop", far)
+                            : std::string("nothing bounds how far a ball can go");
+        }
+        reach.pairs = meets_ball(radius);
+        reach.cushions = meets_cushion(radius);
+        reach.pockets = meets_pocket(radius);
+        return reach;
+    }
+
+  private:
+    static double wide(double x) { return x * (1.0 + kReachMargin); }
+
+    double alone(const Start& s) const {
+        const Vec2 u = cloth_slip(s.v, s.w, s.size.R);
+        double speed = length(s.v.head<2>()), far = 0.0;
+        if (s.segment.state == MotionState::kSliding) {
+            if (motion_.slide == 0.0) return wide(speed > 0.0 ? speed * time_ : 0.0);
+            const double t = 2.0 * length(u) / (7.0 * motion_.slide);
+            far = speed * t + 0.5 * motion_.slide * t * t;
+            speed = length(Vec2(s.v.head<2>() - (2.0 / 7.0) * u));
+        }
+        if (speed > 0.0) far += motion_.roll > 0.0 ? speed * speed / (2.0 * motion_.roll) : speed * time_;
+        return wide(far);
+    }
+
+    double by_energy() const {
+        const Physics& p = scene_.physics;
+        // The published sign, a coarse march and a loose tolerance gain energy.
+        const bool coarse = p.substeps ? *p.substeps < 100 : p.tolerance > 1e-6;
+        const bool gains = p.ball_ball == BallBallModel::kMathavan &&
+                           (p.cloth_slip == ClothSlipSign::kAsPublished || coarse);
+        if (gains || !(time_ < kUnbounded)) return kUnbounded;
+        // Per mass of the lightest ball, which could have all of it.
+        double lightest = kUnbounded, energy = 0.0;
+        for (const Start& s : starts_) lightest = std::min(lightest, s.size.m);
+        for (const Start& s : starts_)
+            energy += (s.size.m / lightest) *
+                      (0.5 * s.v.squaredNorm() + 0.2 * s.size.R * s.size.R * s.w.squaredNorm());
+        return wide(std::sqrt(2.0 * energy) * time_);
+    }
+
+    bool meets_ball(const std::vector<double>& radius) const {
+        for (std::size_t i = 0; i < starts_.size(); ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                if (radius[i] == 0.0 && radius[j] == 0.0) continue;  // both stay, even if they touch
+                if (length(starts_[i].place - starts_[j].place) <=
+                    wide(contact_distance(starts_[i].size.R, starts_[j].size.R)) + radius[i] + radius[j])
+                    return true;
+            }
+        }
+        return false;
+    }
+    bool meets_cushion(const std::vector<double>& radius) const {
+        for (std::size_t i = 0; i < starts_.size(); ++i) {
+            if (radius[i] == 0.0) continue;
+            const double near = wide(starts_[i].size.R) + radius[i];
+            for (const Cushion& c : scene_.table.cushions)
+                if (distance_to(c, starts_[i].place) <= near) return true;
+            for (const Jaw& j : scene_.table.jaws)
+                if (length(starts_[i].place - j.center) <= near + j.radius) return true;
+        }
+        return false;
+    }
+    bool meets_pocket(const std::vector<double>& radius) const {
+        for (std::size_t i = 0; i < starts_.size(); ++i)
+            for (const Pocket& p : scene_.table.pockets)
+                if (length(starts_[i].place - p.center) <= wide(p.radius) + radius[i]) return true;
+        return false;
+    }
+
+    const Scene& scene_;
+    MotionParams motion_;
+    double time_;
+    std::vector<Start> starts_;
+};
+
+}  // namespace
+
+Reach reach_of(const Scene& scene) {
+    return Bounds(scene).find();
+}
+
+}  // namespace carom

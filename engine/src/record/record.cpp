@@ -1,0 +1,259 @@
+// Looking at what happened: states, orientations, hash.
+#include "carom/engine/record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "base/fnv.h"
+#include "carom/engine/math.h"
+#include "physics/motion.h"
+
+namespace carom {
+
+const char* name(MotionState state) {
+    switch (state) {
+        case MotionState::kStationary:
+            return "stationary";
+        case MotionState::kSpinning:
+            return "spinning";
+        case MotionState::kSliding:
+            return "sliding";
+        case MotionState::kRolling:
+            return "rolling";
+        case MotionState::kPocketed:
+            return "pocketed";
+    }
+    return "unknown";
+}
+
+const char* name(EventType type) {
+    switch (type) {
+        case EventType::kCueStrike:
+            return "cue_strike";
+        case EventType::kBallBall:
+            return "ball_ball";
+        case EventType::kBallCluster:
+            return "ball_cluster";
+        case EventType::kBallCushion:
+            return "ball_cushion";
+        case EventType::kBallJaw:
+            return "ball_jaw";
+        case EventType::kBallPocket:
+            return "ball_pocket";
+        case EventType::kSlideRoll:
+            return "slide_roll";
+        case EventType::kRollSpin:
+            return "roll_spin";
+        case EventType::kRollStop:
+            return "roll_stop";
+        case EventType::kSpinStop:
+            return "spin_stop";
+        case EventType::kBallBallHold:
+            return "ball_ball_hold";
+        case EventType::kBallBallRelease:
+            return "ball_ball_release";
+        case EventType::kBallCushionHold:
+            return "ball_cushion_hold";
+        case EventType::kBallCushionRelease:
+            return "ball_cushion_release";
+        case EventType::kBallJawHold:
+            return "ball_jaw_hold";
+        case EventType::kBallJawRelease:
+            return "ball_jaw_release";
+    }
+    return "unknown";
+}
+
+const char* name(StopReason reason) {
+    switch (reason) {
+        case StopReason::kAtRest:
+            return "at rest";
+        case StopReason::kTime:
+            return "stop time";
+        case StopReason::kEvents:
+            return "number of events";
+    }
+    return "unknown";
+}
+
+namespace {
+
+// The segment in force at time t: the last that starts at or before it.
+std::size_t segment_index(const std::vector<Segment>& segments, double t) {
+    const auto later = std::upper_bound(segments.begin(), segments.end(), t,
+                                        [](double time, const Segment& s) { return time < s.start; });
+    return later == segments.begin() ? 0 : static_cast<std::size_t>(later - segments.begin()) - 1;
+}
+
+// Rotation by a vector (axis times angle).
+Eigen::Quaterniond rotation(const Vec3& turn) {
+    const double angle = std::sqrt(turn.x() * turn.x() + turn.y() * turn.y() + turn.z() * turn.z());
+    if (angle == 0.0) return Eigen::Quaterniond::Identity();
+    const auto [s, c] = sin_cos(0.5 * angle);
+    const double k = s / angle;
+    return {c, k * turn.x(), k * turn.y(), k * turn.z()};
+}
+
+// Angle a step, and steps that all balls of a record may take together: one that turns them more, which no
+// shot does, is followed more coarsely instead of for ever.
+constexpr double kLargestStep = 0.2, kMostSteps = 1e7;
+
+// Steps for w from w0 at the rate dw over `time`, if one turns the ball by `largest_step`.
+double step_count(const Vec3& w0, const Vec3& dw, double time, double largest_step) {
+    const double steps = std::max(w0.norm(), (w0 + time * dw).norm()) * time / largest_step;
+    return steps < kMostSteps ? steps : kMostSteps;
+}
+
+// Turning over `time` while w goes linearly from w0 at the rate dw.
+Eigen::Quaterniond turned(const Vec3& w0, const Vec3& dw, double time, double largest_step) {
+    const Vec3 swerve = w0.cross(dw);
+    if (swerve == Vec3::Zero()) return rotation(w0 * time + 0.5 * time * time * dw);  // fixed axis
+    // Magnus expansion to fourth order: Omega = h w_mid - h^3/12 w_mid x dw, at a fifth of a radian a step
+    // 1e-7 over a shot.
+    const int steps = 1 + static_cast<int>(step_count(w0, dw, time, largest_step));
+    const double h = time / steps;
+    Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+    for (int i = 0; i < steps; ++i) {
+        const Vec3 middle = w0 + (i + 0.5) * h * dw;
+        q = rotation(h * middle - h * h * h / 12.0 * middle.cross(dw)) * q;
+    }
+    return q.normalized();
+}
+
+// Turning of a segment over its first `tau` seconds; w_z stops decaying at 0.
+Eigen::Quaterniond segment_turn(const Segment& s, double tau, double largest_step) {
+    if (!(tau > 0.0)) return Eigen::Quaterniond::Identity();
+    const double sign = s.w.z() > 0.0 ? 1.0 : (s.w.z() < 0.0 ? -1.0 : 0.0);
+    const Vec3 dw(s.dw.x(), s.dw.y(), -sign * s.spin_decay);
+    const double spin_end = sign != 0.0 && s.spin_decay > 0.0 ? std::abs(s.w.z()) / s.spin_decay : 0.0;
+    if (sign == 0.0 || s.spin_decay == 0.0 || tau <= spin_end) {
+        return turned(s.w, sign == 0.0 ? Vec3(s.dw.x(), s.dw.y(), 0.0) : dw, tau, largest_step);
+    }
+    const Vec3 w_then(s.w.x() + spin_end * s.dw.x(), s.w.y() + spin_end * s.dw.y(), 0.0);
+    return turned(w_then, Vec3(s.dw.x(), s.dw.y(), 0.0), tau - spin_end, largest_step) *
+           turned(s.w, dw, spin_end, largest_step);
+}
+
+double largest_step_of(const std::vector<BallTrack>& tracks) {
+    double steps = 0.0;
+    for (const BallTrack& track : tracks) {
+        for (std::size_t i = 0; i + 1 < track.segments.size(); ++i) {
+            const Segment& s = track.segments[i];
+            const Vec3 dw(s.dw.x(), s.dw.y(), 0.0);  // w_z only decays
+            steps += step_count(s.w, dw, track.segments[i + 1].start - s.start, kLargestStep);
+        }
+    }
+    return kLargestStep * std::max(1.0, steps / kMostSteps);
+}
+
+}  // namespace
+
+// Orientation of every ball at the start of each of its segments.
+struct Record::Orientations {
+    std::once_flag once;
+    double largest_step = kLargestStep;
+    std::vector<std::vector<Eigen::Quaterniond>> at_start;
+};
+
+Vec3 spin_at(const Segment& s, double tau, double R) {
+    const double left = std::abs(s.w.z()) - s.spin_decay * tau;
+    const double w_z = !(left > 0.0) ? 0.0 : (s.w.z() < 0.0 ? -left : left);
+    if (s.state == MotionState::kRolling) {
+        const Vec3 v = velocity_at(s, tau);
+        return {-v.y() / R, v.x() / R, w_z};
+    }
+    return {s.w.x() + tau * s.dw.x(), s.w.y() + tau * s.dw.y(), w_z};
+}
+
+Record::Record() : orientations_(std::make_shared<Orientations>()) {}
+
+BallState Record::state_at(int ball, double t) const {
+    const BallTrack& track = tracks[static_cast<std::size_t>(ball)];
+    t = std::clamp(t, 0.0, duration);
+    const Segment& s = track.segments[segment_index(track.segments, t)];
+    const double tau = std::min(t - s.start, s.duration);
+    BallState state;
+    state.state = s.state;
+    state.position = position_at(s, tau);
+    state.velocity = velocity_at(s, tau);
+    state.spin = spin_at(s, tau, size(ball).R);
+    state.pocket = s.state == MotionState::kPocketed ? track.pocket : -1;
+    return state;
+}
+
+Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
+    std::call_once(orientations_->once, [this] {
+        const double largest_step = orientations_->largest_step = largest_step_of(tracks);
+        for (const BallTrack& track : tracks) {
+            std::vector<Eigen::Quaterniond> starts;
+            Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+            for (std::size_t i = 0; i < track.segments.size(); ++i) {
+                starts.push_back(q);
+                if (i + 1 < track.segments.size())
+                    q = (segment_turn(track.segments[i],
+                                      track.segments[i + 1].start - track.segments[i].start, largest_step) *
+                         q)
+                            .normalized();
+            }
+            orientations_->at_start.push_back(std::move(starts));
+        }
+    });
+    const BallTrack& track = tracks[static_cast<std::size_t>(ball)];
+    t = std::clamp(t, 0.0, duration);
+    const std::size_t i = segment_index(track.segments, t);
+    const Segment& s = track.segments[i];
+    return segment_turn(s, std::min(t - s.start, s.duration), orientations_->largest_step) *
+           orientations_->at_start[static_cast<std::size_t>(ball)][i];
+}
+
+std::string Record::hash() const {
+    Fnv fnv;
+    for (const BallTrack& track : tracks) {
+        fnv.add(static_cast<std::uint64_t>(track.segments.size()));
+        for (const Segment& s : track.segments) {
+            for (const double x :
+                 {s.start, s.r.x(), s.r.y(), s.r.z(), s.v.x(), s.v.y(), s.v.z(), s.w.x(), s.w.y(), s.w.z(),
+                  s.a.x(), s.a.y(), s.dw.x(), s.dw.y(), s.spin_decay, s.duration})
+                fnv.add(x);
+            fnv.add(static_cast<std::uint64_t>(s.state) + (s.held ? 256u : 0u));
+        }
+    }
+    for (const Event& e : events) {
+        fnv.add(e.time);
+        fnv.add(static_cast<std::uint64_t>(e.type));
+        fnv.add(static_cast<std::uint64_t>(e.a) + 1);
+        fnv.add(static_cast<std::uint64_t>(e.b) + 1);
+    }
+    fnv.add(duration);
+    return fmt::format("{:016x}", fnv.value());
+}
+
+std::string Record::partner_id(const Event& event) const {
+    if (event.b < 0) return "";
+    const auto index = static_cast<std::size_t>(event.b);
+    switch (event.type) {
+        case EventType::kBallBall:
+        case EventType::kBallCluster:
+        case EventType::kBallBallHold:
+        case EventType::kBallBallRelease:
+            return tracks[index].id;
+        case EventType::kBallCushion:
+        case EventType::kBallCushionHold:
+        case EventType::kBallCushionRelease:
+            return table.cushions[index].id;
+        case EventType::kBallJaw:
+        case EventType::kBallJawHold:
+        case EventType::kBallJawRelease:
+            return table.jaws[index].id;
+        case EventType::kBallPocket:
+            return table.pockets[index].id;
+        default:
+            return "";
+    }
+}
+
+}  // namespace carom

@@ -1,0 +1,236 @@
+#include "carom/engine/verify.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "carom/engine/tolerances.h"
+#include "physics/motion.h"
+#include "record/verify_effects.h"
+
+namespace carom {
+
+namespace {
+
+constexpr double kUlp = 2.220446049250313e-16;
+
+struct Moment {
+    std::vector<BallState> balls;
+};
+
+bool finite(const Vec3& a) {
+    return std::isfinite(a.x()) && std::isfinite(a.y()) && std::isfinite(a.z());
+}
+
+// Over the mass that all balls have unless they have their own: 1 in most scenes.
+double mass(const Record& record, int ball) {
+    return record.size(ball).m / record.balls.m;
+}
+
+double energy_of(const Record& record, int ball, const BallState& s) {
+    if (s.state == MotionState::kPocketed) return 0.0;
+    const double R = record.size(ball).R;
+    return mass(record, ball) * (0.5 * s.velocity.squaredNorm() + 0.2 * R * R * s.spin.squaredNorm());
+}
+
+class Checker {
+  public:
+    Checker(const Record& record, const Plan& plan) : record_(record), plan_(plan) {}
+
+    std::optional<Violation> run() {
+        check_finite();
+        double last_time = 0.0, last_energy = energy_at(record_, 0.0);
+        const double first_energy = std::max(last_energy, first_energy_after_cue());
+        for (event_ = 0; event_ < record_.events.size() && !found_; ++event_) {
+            const Event& e = record_.events[event_];
+            if (!(e.time >= last_time))
+                report("U2", fmt::format("time falls from {:.17g} to {:.17g} s", last_time, e.time));
+            last_time = e.time;
+            check_crowd();
+            // Several events at one instant: the state after the last of them is the one that must hold.
+            const bool last_of_instant =
+                event_ + 1 == record_.events.size() || record_.events[event_ + 1].time > e.time;
+            if (!last_of_instant) continue;
+            Moment now;
+            for (std::size_t i = 0; i < record_.tracks.size(); ++i)
+                now.balls.push_back(record_.state_at(static_cast<int>(i), e.time));
+            check_penetration(now);
+            check_rolling(e.time);
+            double energy = 0.0;
+            for (std::size_t i = 0; i < now.balls.size(); ++i)
+                energy += energy_of(record_, static_cast<int>(i), now.balls[i]);
+            if (e.type == EventType::kCueStrike) last_energy = energy;
+            if (keeps_energy() && energy > last_energy + 1e-12 * first_energy)
+                report("U4", fmt::format("energy rises from {:.17g} to {:.17g} J/kg", last_energy, energy));
+            last_energy = energy;
+        }
+        check_impacts();
+        check_rest();
+        return found_;
+    }
+
+  private:
+    double R(std::size_t ball) const { return record_.size(static_cast<int>(ball)).R; }
+
+    void report(const char* law, std::string message) {
+        if (!found_) found_ = Violation{event_, law, std::move(message)};
+    }
+
+    bool keeps_energy() const {
+        const Physics& physics = plan_.scene.physics;
+        return !plan_.ball_ball->reads_cloth ||
+               (physics.cloth_slip == ClothSlipSign::kConsistent && physics.substeps.value_or(100) >= 100);
+    }
+
+    double first_energy_after_cue() const {
+        const bool cue = !record_.events.empty() && record_.events[0].type == EventType::kCueStrike;
+        return cue ? energy_at(record_, record_.events[0].time) : 0.0;
+    }
+
+    void check_finite() {
+        for (const BallTrack& track : record_.tracks) {
+            for (const Segment& s : track.segments) {
+                const bool ok = std::isfinite(s.start) && finite(s.r) && finite(s.v) && finite(s.w) &&
+                                s.a.allFinite() && s.dw.allFinite() && std::isfinite(s.spin_decay) &&
+                                !std::isnan(s.duration) && s.duration >= 0.0;
+                if (!ok)
+                    report("U1", fmt::format("ball {} at {:.17g} s holds a number that is not finite",
+                                             track.id, s.start));
+            }
+        }
+    }
+
+    void check_crowd() {
+        const std::size_t cap = static_cast<std::size_t>(kEventCap);
+        if (event_ > cap && record_.events[event_].time - record_.events[event_ - cap].time < kEventCapSpan)
+            report("U8", "too many events in one span");
+    }
+
+    void check_penetration(const Moment& now) {
+        for (std::size_t i = 0; i < now.balls.size(); ++i) {
+            if (now.balls[i].state == MotionState::kPocketed) continue;
+            const Vec2 r = planar(now.balls[i].position);
+            for (std::size_t j = i + 1; j < now.balls.size(); ++j) {
+                if (now.balls[j].state == MotionState::kPocketed) continue;
+                const double gap = length(planar(now.balls[j].position) - r) - contact_distance(R(i), R(j));
+                if (gap < -kTouchTolerance)
+                    report("U3", fmt::format("balls {} and {} overlap by {:.3g} m", record_.tracks[i].id,
+                                             record_.tracks[j].id, -gap));
+            }
+            // A ball may cross a cushion's line only where the cushion is not.
+            for (const CushionLine& line : plan_.geometry.cushions) {
+                const Vec2 offset = r - line.from;
+                const double foot = line.direction.dot(offset);
+                const double gap = std::abs(cross(line.direction, offset)) - R(i);
+                if (foot >= 0.0 && foot <= line.length && gap < -kTouchTolerance)
+                    report("U3",
+                           fmt::format("ball {} is {:.3g} m deep in a cushion", record_.tracks[i].id, -gap));
+            }
+            for (const Nose& nose : plan_.geometry.noses) {
+                const double gap = length(r - nose.center) - nose.radius - R(i);
+                if (gap < -kTouchTolerance)
+                    report("U3", fmt::format("ball {} is {:.3g} m deep in a jaw or cushion end",
+                                             record_.tracks[i].id, -gap));
+            }
+        }
+    }
+
+    // What the segment holds: state_at takes the spin of a rolling ball from its velocity.
+    void check_rolling(double time) {
+        for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
+            const std::vector<Segment>& segments = record_.tracks[i].segments;
+            const auto next = std::upper_bound(segments.begin(), segments.end(), time,
+                                               [](double t, const Segment& s) { return t < s.start; });
+            if (next == segments.begin()) continue;
+            const Segment& s = *(next - 1);
+            if (s.state == MotionState::kRolling &&
+                length(cloth_slip(s.v, s.w, R(i))) > 1e-13 * length(planar(s.v)))
+                report("U7", fmt::format("ball {} rolls and slips", record_.tracks[i].id));
+        }
+    }
+
+    // Before and after a ball-ball impact: the ends of the segments that meet there.
+    void check_impacts() {
+        for (event_ = 0; event_ < record_.events.size() && !found_; ++event_) {
+            const Event& e = record_.events[event_];
+            if (e.type != EventType::kBallBall) continue;
+            // Only where each ball has exactly one segment that starts here: two impacts at one instant
+            // cannot be told apart.
+            const Segment *before1, *after1, *before2, *after2;
+            if (!around(e.a, e.time, before1, after1) || !around(e.b, e.time, before2, after2)) continue;
+            const Vec3 v1 = velocity_at(*before1, e.time - before1->start),
+                       v2 = velocity_at(*before2, e.time - before2->start);
+            const double R1 = R(static_cast<std::size_t>(e.a)), R2 = R(static_cast<std::size_t>(e.b));
+            const double m1 = mass(record_, e.a), m2 = mass(record_, e.b);
+            const Vec3 w1 = spin_at(*before1, e.time - before1->start, R1),
+                       w2 = spin_at(*before2, e.time - before2->start, R2);
+            Vec3 n3 = after2->r - after1->r;
+            n3.z() = 0.0;
+            n3.normalize();
+            const double scale = m1 * (v1.norm() + R1 * w1.norm()) + m2 * (v2.norm() + R2 * w2.norm());
+            const Vec3 change = m1 * (after1->v - v1) + m2 * (after2->v - v2);
+            const Vec3 dw1 = m1 * R1 * (after1->w - w1), dw2 = m2 * R2 * (after2->w - w2);
+            // The cloth gives at most mu_s of the vertical friction, which is at most mu_b of the normal
+            // impulse, all the way.
+            const double J_n =
+                std::max(m1 * std::abs((after1->v - v1).dot(n3)), m2 * std::abs((after2->v - v2).dot(n3)));
+            const bool cloth = plan_.balls.mu_s > 0.0 && plan_.ball_ball->reads_cloth;
+            const double limit =
+                cloth ? plan_.balls.mu_s * (plan_.balls.mu_b + plan_.balls.mu_b_more) * J_n : 0.0;
+            if (change.norm() > limit + 64.0 * kUlp * scale)
+                report("U5",
+                       fmt::format("the impact changes the pair's momentum by {:.3g} m/s", change.norm()));
+            const double rounding = 1e-12 * scale;
+            if (!cloth && (std::abs(dw1.dot(n3)) > rounding || std::abs(dw2.dot(n3)) > rounding ||
+                           (dw1 - dw2).norm() > rounding))
+                report(
+                    "U6",
+                    "the impact turns a ball about the line of centres, or the two spins change differently");
+        }
+    }
+
+    bool around(int ball, double time, const Segment*& before, const Segment*& after) const {
+        const std::vector<Segment>& segments = record_.tracks[static_cast<std::size_t>(ball)].segments;
+        const auto first = std::lower_bound(segments.begin(), segments.end(), time,
+                                            [](const Segment& s, double t) { return s.start < t; });
+        if (first == segments.begin() || first == segments.end() || first->start != time) return false;
+        if (first + 1 != segments.end() && (first + 1)->start == time) return false;
+        before = &*(first - 1);
+        after = &*first;
+        return true;
+    }
+
+    void check_rest() {
+        if (record_.stopped != StopReason::kAtRest || found_) return;
+        event_ = record_.events.size();
+        for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
+            const Segment& s = record_.tracks[i].segments.back();
+            const bool at_rest = s.state == MotionState::kStationary || s.state == MotionState::kPocketed;
+            if (!at_rest && std::isfinite(s.duration))
+                report("U9", fmt::format("ball {} has not come to rest", record_.tracks[i].id));
+        }
+    }
+
+    const Record& record_;
+    const Plan& plan_;
+    std::size_t event_ = 0;
+    std::optional<Violation> found_;
+};
+
+}  // namespace
+
+double energy_at(const Record& record, double t) {
+    double energy = 0.0;
+    for (std::size_t i = 0; i < record.tracks.size(); ++i)
+        energy += energy_of(record, static_cast<int>(i), record.state_at(static_cast<int>(i), t));
+    return energy;
+}
+
+std::optional<Violation> verify(const Record& record, const Plan& plan) {
+    if (auto violation = Checker(record, plan).run()) return violation;
+    return verify_skipped(record, plan);
+}
+
+}  // namespace carom

@@ -1,0 +1,118 @@
+#include "record/verify_effects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "contact/detect.h"
+#include "contact/roots.h"
+#include "physics/motion.h"
+
+namespace carom {
+namespace {
+
+class Skipped {
+  public:
+    Skipped(const Record& record, const Plan& plan) : record_(record), plan_(plan) {}
+
+    std::optional<Violation> run() {
+        const Scene& scene = plan_.scene;
+        const bool check_cushions = plan_.geometry.cushions.empty() && plan_.geometry.noses.empty() &&
+                                    !(scene.table.cushions.empty() && scene.table.jaws.empty());
+        const bool check_pockets = plan_.geometry.pockets.empty() && !scene.table.pockets.empty();
+        for (std::size_t i = 0; i < record_.tracks.size() && !found_; ++i) {
+            const std::vector<Segment>& segments = record_.tracks[i].segments;
+            for (std::size_t k = 0; k < segments.size() && !found_; ++k) {
+                ball_ = &record_.tracks[i].id;
+                R_ = record_.size(static_cast<int>(i)).R;
+                start_ = segments[k].start;
+                // A run that ends at rest leaves its last segments as they are for ever.
+                const double last = record_.stopped == StopReason::kAtRest ? kNever : record_.duration;
+                const double end = k + 1 < segments.size() ? segments[k + 1].start : last;
+                if (segments[k].state == MotionState::kPocketed || end < start_) continue;
+                check_frictions(segments[k], end > start_);
+                const Path path = path_of(segments[k], std::min(end - start_, segments[k].duration));
+                if (check_cushions) check_table(path);
+                if (check_pockets) check_pocket(path);
+                if (!plan_.pairs) check_pairs(static_cast<int>(i), path);
+            }
+        }
+        return found_;
+    }
+
+  private:
+    void need(const char* keyword, const std::string& what) {
+        if (found_) return;
+        std::size_t event = 0;
+        while (event < record_.events.size() && record_.events[event].time <= start_) ++event;
+        found_ = Violation{
+            event, "E",
+            fmt::format("the plan skips {}, but ball {} {} after {:.17g} s", keyword, *ball_, what, start_)};
+    }
+
+    static Path path_of(const Segment& s, double duration) {
+        return {s.r.head<2>(),      s.v.head<2>(), s.a, duration, s.state == MotionState::kRolling,
+                translates(s.state)};
+    }
+
+    // A segment that another one replaces at the same instant never came to pass.
+    void check_frictions(const Segment& s, bool lasts) {
+        if (!lasts) return;
+        const BallParams& p = plan_.scene.balls;
+        if (!plan_.spin_decay && p.mu_sp * plan_.gravity != 0.0 && s.w.z() != 0.0)
+            need("spin_decay", "has vertical spin");
+        if (!plan_.sliding && p.mu_s * plan_.gravity != 0.0 && s.state == MotionState::kSliding)
+            need("sliding", "slips");
+        if (!plan_.rolling && p.mu_r * plan_.gravity != 0.0 && s.state == MotionState::kRolling)
+            need("rolling", "rolls");
+    }
+
+    void check_table(const Path& path) {
+        for (const Cushion& c : plan_.scene.table.cushions) {
+            const Vec2 along = c.to - c.from;
+            const double extent = length(along);
+            const bool meets = time_to_line(path, c.from, along / extent, extent, R_) < kNever ||
+                               time_to_circle(path, c.from, R_) < kNever ||
+                               time_to_circle(path, c.to, R_) < kNever;
+            if (meets) need("cushions", "meets cushion " + c.id);
+        }
+        for (const Jaw& j : plan_.scene.table.jaws)
+            if (time_to_circle(path, j.center, R_ + j.radius) < kNever) need("cushions", "meets jaw " + j.id);
+    }
+
+    void check_pocket(const Path& path) {
+        for (const Pocket& p : plan_.scene.table.pockets) {
+            const bool inside = length(path.r - p.center) < p.radius;
+            if (inside || time_to_pocket(path, p.center, p.radius) < kNever)
+                need("pockets", "enters pocket " + p.id);
+        }
+    }
+
+    // One ball moves at most where no pair can meet: the others stay where they are.
+    void check_pairs(int ball, const Path& path) {
+        for (std::size_t j = 0; j < record_.tracks.size(); ++j) {
+            if (static_cast<int>(j) == ball) continue;
+            const Path other = path_of(record_.tracks[j].segments.front(), kNever);
+            if (path.moves &&
+                time_to_ball(path, other, contact_distance(R_, record_.size(static_cast<int>(j)).R)) < kNever)
+                need("ball-ball impacts", "meets ball " + record_.tracks[j].id);
+        }
+    }
+
+    const Record& record_;
+    const Plan& plan_;
+    double R_ = 0.0;  // of that ball
+    const std::string* ball_ = nullptr;
+    double start_ = 0.0;
+    std::optional<Violation> found_;
+};
+
+}  // namespace
+
+std::optional<Violation> verify_skipped(const Record& record, const Plan& plan) {
+    return Skipped(record, plan).run();
+}
+
+}  // namespace carom

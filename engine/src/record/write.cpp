@@ -1,0 +1,157 @@
+// write_record: a record as JSON, one segment or event per line. The reader is read.cpp.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "base/output_file.h"
+#include "carom/engine/record.h"
+#include "record/format.h"
+
+namespace carom {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+OrderedJson numbers(const Vec2& v) {
+    return OrderedJson::array({v.x(), v.y()});
+}
+
+OrderedJson numbers(const Vec3& v) {
+    return OrderedJson::array({v.x(), v.y(), v.z()});
+}
+
+/// JSON has no infinity: null stands for "never ends".
+OrderedJson duration_or_null(double seconds) {
+    return std::isinf(seconds) ? OrderedJson(nullptr) : OrderedJson(seconds);
+}
+
+OrderedJson table_json(const Table& table) {
+    OrderedJson cushions = OrderedJson::array(), jaws = OrderedJson::array(), pockets = OrderedJson::array();
+    for (const Cushion& c : table.cushions) {
+        cushions.push_back(
+            {{"id", c.id}, {"from", numbers(c.from)}, {"to", numbers(c.to)}, {"height", c.height}});
+    }
+    for (const Jaw& j : table.jaws) {
+        jaws.push_back(
+            {{"id", j.id}, {"center", numbers(j.center)}, {"radius", j.radius}, {"height", j.height}});
+    }
+    for (const Pocket& p : table.pockets) {
+        pockets.push_back(
+            {{"id", p.id}, {"center", numbers(p.center)}, {"radius", p.radius}, {"depth", p.depth}});
+    }
+    return {{"preset", table.preset}, {"width", table.width},
+            {"length", table.length}, {"corner", numbers(table.corner)},
+            {"cushions", cushions},   {"jaws", jaws},
+            {"pockets", pockets}};
+}
+
+OrderedJson balls_json(const BallParams& p) {
+    return {{"R", p.R},       {"m", p.m},     {"mu_s", p.mu_s}, {"mu_r", p.mu_r}, {"mu_sp", p.mu_sp},
+            {"mu_b", p.mu_b}, {"e_b", p.e_b}, {"e_c", p.e_c},   {"f_c", p.f_c}};
+}
+
+OrderedJson segment_json(const Segment& s) {
+    return {{"start", s.start},
+            {"state", name(s.state)},
+            {"r", numbers(s.r)},
+            {"v", numbers(s.v)},
+            {"w", numbers(s.w)},
+            {"a", numbers(s.a)},
+            {"dw", numbers(s.dw)},
+            {"spin_decay", s.spin_decay},
+            {"duration", duration_or_null(s.duration)},
+            {"held", s.held},
+            {"ends", s.ends}};
+}
+
+OrderedJson event_json(const Record& record, const Event& event, const EventCost* cost) {
+    OrderedJson out = {{"time", event.time}, {"type", name(event.type)}, {"a", event.a}, {"b", event.b}};
+    if (event.type == EventType::kBallCluster)
+        out["balls"] = record.clusters[static_cast<std::size_t>(event.detail)];
+    else if (event.detail >= 0)
+        out["nose"] = event.detail;
+    if (cost != nullptr) {
+        out["detect_ns"] = cost->detect_ns;
+        out["resolve_ns"] = cost->resolve_ns;
+        out["kernel_ns"] = cost->kernel_ns;
+        out["steps"] = cost->steps;
+        out["method"] = cost->method;
+    }
+    return out;
+}
+
+/// `,` between the items of a list, one item per line.
+class Lines {
+  public:
+    Lines(OutputFile& file, const char* indent) : file_(file), indent_(indent) {}
+    void add(const std::string& item) {
+        file_.write(first_ ? "\n" : ",\n");
+        file_.write(indent_);
+        file_.write(item);
+        first_ = false;
+    }
+
+  private:
+    OutputFile& file_;
+    const char* indent_;
+    bool first_ = true;
+};
+
+std::string dump(const OrderedJson& json) {
+    return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+}
+
+void write_tracks(const Record& record, OutputFile& file) {
+    file.write("\"tracks\": [");
+    bool first = true;
+    for (const BallTrack& track : record.tracks) {
+        file.write(first ? "\n" : ",\n");
+        first = false;
+        file.write(" {\"id\": " + dump(track.id) + ", \"pocket\": " + std::to_string(track.pocket));
+        if (track.own)
+            file.write(", \"radius\": " + dump(track.own->R) + ", \"mass\": " + dump(track.own->m));
+        file.write(", \"segments\": [");
+        Lines lines(file, "  ");
+        for (const Segment& segment : track.segments) lines.add(dump(segment_json(segment)));
+        file.write("]}");
+    }
+    file.write("],\n");
+}
+
+}  // namespace
+
+void write_record(const Record& record, const std::string& path) {
+    if (!record.costs.empty() && record.costs.size() != record.events.size()) {
+        throw std::runtime_error(path + ": the record has costs for " + std::to_string(record.costs.size()) +
+                                 " of " + std::to_string(record.events.size()) + " events");
+    }
+    OutputFile file(path);
+    file.write("{\"format\": \"" + std::string(kRecordFormat) +
+               "\", \"version\": " + std::to_string(kRecordVersion));
+    file.write(",\n\"duration\": " + dump(record.duration) + ", \"stopped\": " + dump(name(record.stopped)) +
+               ", \"start_time\": " + dump(record.start_time) + ", \"gravity\": " + dump(record.gravity) +
+               ", \"profiled\": " + (record.costs.empty() ? "false" : "true") +
+               ", \"setup_detect_ns\": " + dump(record.setup_detect_ns));
+    const RenderSettings& render = record.render;
+    OrderedJson view = {
+        {"fps", render.fps}, {"size", {render.width, render.height}}, {"camera", render.camera}};
+    if (render.eye && render.target) {
+        view["eye"] = numbers(*render.eye);
+        view["target"] = numbers(*render.target);
+    }
+    file.write(",\n\"render\": " + dump(view));
+    file.write(",\n\"table\": " + dump(table_json(record.table)));
+    file.write(",\n\"balls\": " + dump(balls_json(record.balls)) + ",\n");
+    write_tracks(record, file);
+    file.write("\"events\": [");
+    Lines lines(file, " ");
+    for (std::size_t i = 0; i < record.events.size(); ++i) {
+        lines.add(
+            dump(event_json(record, record.events[i], record.costs.empty() ? nullptr : &record.costs[i])));
+    }
+    file.write("]}\n");
+    file.commit();
+}
+
+}  // namespace carom

@@ -1,0 +1,220 @@
+// Rules that tie the sections of a scene together.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <unordered_map>
+
+#include "carom/engine/ball_ball.h"
+#include "carom/engine/cushion.h"
+#include "carom/engine/tolerances.h"
+#include "scene/sections.h"
+
+namespace carom::detail {
+namespace {
+
+Vec2 planar(const BallStart& ball) {
+    return ball.position.head<2>();
+}
+
+/// How deep two things may overlap and still count as touching, at this distance from the origin.
+double touch_tolerance(const Vec2& p) {
+    return std::max(kTouchTolerance, kTouchRounding * std::max(std::abs(p.x()), std::abs(p.y())));
+}
+
+double distance_to_segment(const Vec2& p, const Cushion& c) {
+    const Vec2 along = c.to - c.from;
+    const double s = std::clamp((p - c.from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    if (s <= 0.0) return (p - c.from).norm();
+    if (s >= 1.0) return (p - c.to).norm();
+    return std::abs(cross(p - c.from, along)) / along.norm();
+}
+
+void check_ids(const Section& top, const Scene& scene) {
+    std::unordered_map<std::string, SourceLocation> seen;
+    for (const BallStart& ball : scene.ball) {
+        const auto [first, fresh] = seen.emplace(ball.id, ball.where);
+        if (fresh) continue;
+        top.fail(ball.where,
+                 fmt::format("ball id {} is already used in line {}; give each ball an id of its own",
+                             in_quotes(ball.id), first->second.line));
+    }
+}
+
+void check_overlaps(const Section& top, const Scene& scene) {
+    for (std::size_t i = 0; i < scene.ball.size(); ++i) {
+        const Vec2 p = planar(scene.ball[i]);
+        const double R = scene.size_of(scene.ball[i]).R;
+        for (std::size_t j = 0; j < i; ++j) {
+            const double diameter = contact_distance(R, scene.size_of(scene.ball[j]).R);
+            const double least = diameter - touch_tolerance(p);
+            // Per axis first: most pairs are far apart.
+            const Vec2 d = p - planar(scene.ball[j]);
+            if (std::abs(d.x()) >= diameter || std::abs(d.y()) >= diameter) continue;
+            const double distance = d.norm();
+            if (distance >= least) continue;
+            top.fail(scene.ball[i].where, fmt::format("balls {} and {} overlap by {:.4g} m; move one of them",
+                                                      in_quotes(scene.ball[j].id),
+                                                      in_quotes(scene.ball[i].id), diameter - distance));
+        }
+    }
+}
+
+void check_reach(const Section& top, const Scene& scene) {
+    const auto refuse = [&](const BallStart& ball, const char* kind, const std::string& id, double depth) {
+        top.fail(ball.where, fmt::format("ball {} reaches {:.4g} m into {} {}; move it away",
+                                         in_quotes(ball.id), depth, kind, id));
+    };
+    for (const BallStart& ball : scene.ball) {
+        const Vec2 p = planar(ball);
+        const double touch = touch_tolerance(p), R = scene.size_of(ball).R;
+        for (const Cushion& c : scene.table.cushions) {
+            const double depth = R - distance_to_segment(p, c);
+            if (depth > touch) refuse(ball, "cushion", c.id, depth);
+        }
+        for (const Jaw& j : scene.table.jaws) {
+            const double depth = R + j.radius - (p - j.center).norm();
+            if (depth > touch) refuse(ball, "jaw", j.id, depth);
+        }
+    }
+}
+
+/// A nose at or above the top of the ball meets nothing.
+void check_noses(const Section& top, const Scene& scene) {
+    const auto check = [&](const char* kind, const std::string& id, double height) {
+        for (const BallStart& ball : scene.ball) {
+            const double R = scene.size_of(ball).R;
+            if (height < 2.0 * R) continue;
+            const std::string message = fmt::format(
+                "the nose of {} {} is {} m high, not below the top of a ball ({} m); "
+                "use larger balls or a lower cushion",
+                kind, id, height, 2.0 * R);
+            if (ball.own) top.fail(ball.where, message);
+            top.fail(top.has("table") ? "table" : "balls", message);
+        }
+    };
+    for (const Cushion& c : scene.table.cushions) check("cushion", c.id, c.height);
+    for (const Jaw& j : scene.table.jaws) check("jaw", j.id, j.height);
+}
+
+/// Balls of their own size: where the models of this scene have formulas for them.
+void check_sizes(const Section& top, const Scene& scene) {
+    if (scene.alike()) return;
+    const BallBallModelInfo& model = ball_ball_model(scene.physics.ball_ball);
+    const bool rough = model.reads_friction && scene.balls.ball_friction();
+    const BallSize first = scene.size_of(scene.ball.front());
+    for (const BallStart& ball : scene.ball) {
+        const BallSize size = scene.size_of(ball);
+        if (size == first) continue;
+        const SourceLocation where = ball.own ? ball.where : scene.ball.front().where;
+        const auto refuse = [&](const std::string& why) {
+            top.fail(where, fmt::format("balls {} and {} differ in size: {}",
+                                        in_quotes(scene.ball.front().id), in_quotes(ball.id), why));
+        };
+        if (rough && size.R != first.R)
+            refuse(
+                "friction between balls of different radius acts on a tilted line of centres, for which "
+                "there is no formula here; set balls.mu_b = 0 or physics.ball_ball = \"elastic\"");
+        if (rough && !model.rough_masses)
+            refuse(
+                fmt::format("the model {} takes balls of one mass; use physics.ball_ball = \"inelastic\" or "
+                            "set balls.mu_b = 0",
+                            model.name));
+        if (scene.ball.size() > 2 && scene.physics.clusters != ClusterModel::kSequential)
+            refuse(
+                fmt::format("clusters = \"{}\" takes balls that are alike; set physics.clusters = "
+                            "\"sequential\"",
+                            name(scene.physics.clusters)));
+    }
+}
+
+/// The integration of mathavan_2010 has to end.
+void check_cushion_model(const Section& top, const Scene& scene) {
+    const BallParams& p = scene.balls;
+    const auto check = [&](CushionModel model, const char* kind, const std::string& id, double height) {
+        if (model != CushionModel::kMathavan2010) return;
+        for (const BallStart& ball : scene.ball) {
+            const BallSize size = scene.size_of(ball);
+            if (mathavan_2010_ends({size.R, size.m, p.mu_s, p.e_c, p.f_c, height})) continue;
+            top.fail(
+                top.has("physics") ? "physics" : "balls",
+                fmt::format("with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the "
+                            "model mathavan_2010; "
+                            "lower one of them or use another cushion model",
+                            p.f_c, p.mu_s, kind, id));
+        }
+    };
+    for (const Cushion& c : scene.table.cushions) check(scene.physics.cushion, "cushion", c.id, c.height);
+    for (const Jaw& j : scene.table.jaws) check(scene.physics.jaw_model(), "jaw", j.id, j.height);
+}
+
+/// Whether impacts with the table can give a ball vertical spin.
+bool cushions_twist(const Scene& scene) {
+    const auto twists = [&](CushionModel model) {
+        return cushion_model(model).reads_friction && scene.balls.f_c > 0.0;
+    };
+    return (!scene.table.cushions.empty() && twists(scene.physics.cushion)) ||
+           (!scene.table.jaws.empty() && twists(scene.physics.jaw_model()));
+}
+
+/// What can be set going in a scene.
+struct Motions {
+    bool travel = false;  ///< some ball can move over the cloth
+    bool slip = false;    ///< some ball can slide on the cloth
+    bool twist = false;   ///< some ball can have vertical spin
+};
+
+Motions possible_motions(const Scene& scene) {
+    Motions m;
+    const bool struck = scene.cue && scene.cue->speed > 0.0;
+    m.travel = m.slip = struck;
+    m.twist = struck && scene.cue->side != 0.0;
+    for (const BallStart& ball : scene.ball) {
+        const double R = scene.size_of(ball).R;
+        const double vx = ball.velocity.x(), vy = ball.velocity.y(), wx = ball.spin.x(), wy = ball.spin.y();
+        m.travel = m.travel || vx != 0.0 || vy != 0.0 || wx != 0.0 || wy != 0.0;
+        const double slip = Vec2(vx - R * wy, vy + R * wx).norm();
+        const double scale = ball.velocity.norm() + R * ball.spin.norm();
+        m.slip = m.slip || slip > kRollingUlp * 0x1p-52 * scale;
+        m.twist = m.twist || ball.spin.z() != 0.0;
+    }
+    if (!m.travel) return m;
+    // An impact can turn rolling into sliding and, with friction, make vertical spin.
+    const bool cushions = !scene.table.cushions.empty() || !scene.table.jaws.empty();
+    const bool pairs = scene.ball.size() > 1;
+    m.slip = m.slip || cushions || pairs;
+    m.twist = m.twist || (pairs && scene.balls.ball_friction()) || cushions_twist(scene);
+    return m;
+}
+
+void check_rest(const Section& top, const Scene& scene) {
+    if (scene.stop.time || scene.stop.events) return;
+    const Motions m = possible_motions(scene);
+    const auto refuse = [&](const char* section, const char* cause, const char* result) {
+        top.fail(section,
+                 fmt::format(
+                     "with {} = 0 {} for ever and the run cannot end at rest; add [stop] with time or events",
+                     cause, result));
+    };
+    if (scene.physics.gravity == 0.0 && (m.travel || m.twist))
+        refuse("physics", "physics.gravity", "balls move");
+    if (scene.balls.mu_s == 0.0 && m.slip) refuse("balls", "balls.mu_s", "balls slide");
+    if (scene.balls.mu_r == 0.0 && m.travel) refuse("balls", "balls.mu_r", "balls roll");
+    if (scene.balls.mu_sp == 0.0 && m.twist) refuse("balls", "balls.mu_sp", "balls spin");
+}
+
+}  // namespace
+
+void check_scene(const Section& top, const Scene& scene) {
+    if (scene.ball.empty()) top.fail(SourceLocation{}, "there is no ball; add a [[ball]] or a [rack]");
+    check_ids(top, scene);
+    check_noses(top, scene);
+    check_sizes(top, scene);
+    check_cushion_model(top, scene);
+    check_overlaps(top, scene);
+    check_reach(top, scene);
+    check_rest(top, scene);
+}
+
+}  // namespace carom::detail

@@ -1,0 +1,96 @@
+// From text to a validated scene.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "carom/engine/tolerances.h"
+#include "scene/sections.h"
+
+namespace carom {
+namespace {
+
+toml::table parse_toml(std::string_view text, const std::string& name) {
+    try {
+        return toml::parse(text, name);
+    } catch (const toml::parse_error& error) {
+        const toml::source_position at = error.source().begin;
+        const SourceLocation where{static_cast<int>(at.line), static_cast<int>(at.column)};
+        const std::string_view what = error.description();
+        if (what.find("redefine") != std::string_view::npos) {
+            throw SceneError(
+                name, where,
+                fmt::format("this key or section is there already; keep one of the two ({})", what));
+        }
+        throw SceneError(name, where, fmt::format("not valid TOML; correct this place ({})", what));
+    }
+}
+
+[[noreturn]] void cannot_read(const std::string& path, const std::string& why) {
+    throw SceneError(path, {}, fmt::format("cannot be read: {}", why));
+}
+
+std::string read_text(const std::string& path) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) cannot_read(path, "there is no such file; check the path");
+    if (std::filesystem::is_directory(status))
+        cannot_read(path, "it is a directory; name a scene file in it");
+    std::ifstream in(path, std::ios::binary);
+    if (!in) cannot_read(path, "it cannot be opened; check its permissions");
+    std::string text(kMaxFileSize + 1, '\0');
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (in.bad()) cannot_read(path, "reading it failed");
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    return text;
+}
+
+void check_size(std::string_view text, const std::string& name) {
+    if (text.size() <= kMaxFileSize) return;
+    throw SceneError(name, {},
+                     fmt::format("is larger than {} MiB; a scene file is a few lines", kMaxFileSize >> 20));
+}
+
+}  // namespace
+
+namespace detail {
+
+toml::table read_toml(const std::string& path) {
+    const std::string text = read_text(path);
+    check_size(text, path);
+    return parse_toml(text, path);
+}
+
+Scene scene_from(const toml::table& file, const std::string& name) {
+    const Section top(file, name, "",
+                      {"table", "balls", "rack", "ball", "cue", "physics", "stop", "render", "effects"});
+    Scene scene;
+    scene.file = name;
+    read_physics(top, scene);
+    read_balls(top, scene);
+    read_table(top, scene);
+    read_ball_list(top, scene);
+    read_rack(top, scene);
+    read_cue(top, scene);
+    read_effects(top, scene);
+    read_stop(top, scene);
+    read_render(top, scene);
+    check_scene(top, scene);
+    return scene;
+}
+
+}  // namespace detail
+
+Scene parse_scene(std::string_view text, const std::string& name) {
+    check_size(text, name);
+    return detail::scene_from(parse_toml(text, name), name);
+}
+
+Scene read_scene(const std::string& path) {
+    return parse_scene(read_text(path), path);
+}
+
+}  // namespace carom

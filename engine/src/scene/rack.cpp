@@ -1,0 +1,174 @@
+#include "scene/rack.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/splitmix64.h"
+
+namespace carom {
+namespace {
+
+/// Balls per row, from the apex.
+std::vector<int> rows_of(const Rack& rack) {
+    switch (rack.game) {
+        case RackGame::kEightBall:
+            return {1, 2, 3, 4, 5};
+        case RackGame::kNineBall:
+            return {1, 2, 3, 2, 1};
+        case RackGame::kSnooker:
+            return {1, 2, 3, 4, 5};
+        case RackGame::kTriangle: {
+            std::vector<int> rows;
+            for (int n = 1; n <= rack.rows; ++n) rows.push_back(n);
+            return rows;
+        }
+        case RackGame::kThreeCushion:
+            return {};
+        case RackGame::kLine:
+            break;
+    }
+    return std::vector<int>(static_cast<std::size_t>(rack.count), 1);
+}
+
+/// Fisher-Yates.
+void shuffle(std::vector<int>& numbers, SplitMix64& random) {
+    for (std::size_t i = numbers.size(); i > 1; --i) {
+        std::swap(numbers[i - 1], numbers[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
+    }
+}
+
+/// World standardised rules: 8 in the middle of the third row, one solid and one stripe in the back corners,
+/// the rest at random.
+std::vector<int> eight_ball_numbers(SplitMix64& random) {
+    const int solid = 1 + random.below(7);
+    const int stripe = 9 + random.below(7);
+    const bool solid_left = random.below(2) == 0;
+    std::vector<int> rest;
+    for (int n = 1; n <= 15; ++n) {
+        if (n != 8 && n != solid && n != stripe) rest.push_back(n);
+    }
+    shuffle(rest, random);
+    std::vector<int> out;
+    std::size_t next = 0;
+    for (int slot = 0; slot < 15; ++slot) {
+        switch (slot) {
+            case 4:
+                out.push_back(8);
+                break;
+            case 10:
+                out.push_back(solid_left ? solid : stripe);
+                break;
+            case 14:
+                out.push_back(solid_left ? stripe : solid);
+                break;
+            default:
+                out.push_back(rest[next++]);
+        }
+    }
+    return out;
+}
+
+/// 1 at the apex, 9 in the middle, the rest at random.
+std::vector<int> nine_ball_numbers(SplitMix64& random) {
+    std::vector<int> rest = {2, 3, 4, 5, 6, 7, 8};
+    shuffle(rest, random);
+    return {1, rest[0], rest[1], rest[2], 9, rest[3], rest[4], rest[5], rest[6]};
+}
+
+std::vector<int> numbers_of(const Rack& rack, SplitMix64& random) {
+    if (rack.game == RackGame::kEightBall) return eight_ball_numbers(random);
+    if (rack.game == RackGame::kNineBall) return nine_ball_numbers(random);
+    int count = 0;
+    for (const int row : rows_of(rack)) count += row;
+    std::vector<int> out;
+    for (int n = 1; n <= count; ++n) out.push_back(n);
+    return out;
+}
+
+/// Balls with a spot of their own. Snooker: baulk line 737 mm from the cushion, radius of the D 292 mm, black
+/// spot 324 mm from the top cushion (rules of the WPBSA, section 1). Three-cushion: 182.5 mm between the two
+/// spots of the start position (rules of the UMB). Both recalled, not read again.
+std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
+    const Vec2 origin = table.corner;
+    const double middle = table.width / 2.0, l = table.length;
+    const auto at = [&](double x, double y) { return Vec2(origin.x() + x, origin.y() + y); };
+    if (rack.game == RackGame::kThreeCushion) {
+        const double aside = 0.1825 * (l / 2.84);
+        return {{"white", at(middle - aside, l / 4.0)},
+                {"yellow", at(middle, l / 4.0)},
+                {"red", at(middle, 3.0 * l / 4.0)}};
+    }
+    if (rack.game != RackGame::kSnooker) return {};
+    const double scale = l / 3.569;
+    const double baulk = 0.737 * scale, d = 0.292 * scale;
+    return {{"yellow", at(middle + d, baulk)},   {"green", at(middle - d, baulk)},
+            {"brown", at(middle, baulk)},        {"blue", at(middle, l / 2.0)},
+            {"pink", at(middle, 3.0 * l / 4.0)}, {"black", at(middle, l - 0.324 * scale)}};
+}
+
+/// Places without jitter, row by row, left to right.
+std::vector<Vec2> slots_of(const Rack& rack, const Vec2& apex, double R) {
+    const double pitch = 2.0 * R + rack.gap;
+    const double row_pitch = rack.game == RackGame::kLine ? pitch : pitch * (std::sqrt(3.0) / 2.0);
+    std::vector<Vec2> out;
+    const std::vector<int> rows = rows_of(rack);
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+        const double y = apex.y() + static_cast<double>(row) * row_pitch;
+        for (int k = 0; k < rows[row]; ++k) {
+            const int twice = 2 * k - (rows[row] - 1);  // half pitches from the axis, with sign
+            const double aside = std::abs(twice) * (0.5 * pitch);
+            // Rounded to what apex.x + aside can hold, apex.x +- offset are both exact, so left and right
+            // mirror bit for bit.
+            const double offset = (std::abs(apex.x()) + aside) - std::abs(apex.x());
+            out.emplace_back(twice < 0 ? apex.x() - offset : apex.x() + offset, y);
+        }
+    }
+    return out;
+}
+
+/// Metropolis sampling of hard discs: valid from the first step (the rack without jitter) to the last.
+void add_jitter(std::vector<Vec2>& places, const Rack& rack, double R, SplitMix64& random) {
+    // With a gap of 0 only the rim is free at first; a hundred rounds let every ball of a rack move.
+    constexpr int kRounds = 100;
+    const std::vector<Vec2> slots = places;
+    const double contact = 4.0 * R * R;
+    const double reach = 2.0 * R + 3.0 * rack.jitter;  // two corners of two boxes, 2 sqrt(2) jitter
+    std::vector<std::vector<std::size_t>> near(slots.size());
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+        for (std::size_t j = 0; j < slots.size(); ++j) {
+            if (i != j && (slots[i] - slots[j]).squaredNorm() < reach * reach) near[i].push_back(j);
+        }
+    }
+    for (int round = 0; round < kRounds; ++round) {
+        for (std::size_t i = 0; i < slots.size(); ++i) {
+            const double dx = rack.jitter * (2.0 * random.uniform() - 1.0);
+            const double dy = rack.jitter * (2.0 * random.uniform() - 1.0);
+            const Vec2 place = slots[i] + Vec2(dx, dy);
+            const bool free = std::none_of(near[i].begin(), near[i].end(), [&](std::size_t j) {
+                return (place - places[j]).squaredNorm() < contact;
+            });
+            if (free) places[i] = place;
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R) {
+    Vec2 apex = foot_spot(table);
+    if (rack.game == RackGame::kSnooker) apex.y() += 2.0 * R + rack.gap;
+    SplitMix64 random(rack.seed);
+    const std::vector<int> numbers = numbers_of(rack, random);
+    std::vector<Vec2> slots = slots_of(rack, apex, R);
+    if (rack.jitter > 0.0) add_jitter(slots, rack, R, random);
+    std::vector<RackedBall> out(slots.size());
+    for (std::size_t i = 0; i < slots.size(); ++i)
+        out[static_cast<std::size_t>(numbers[i] - 1)] = {std::to_string(numbers[i]), slots[i]};
+    for (const RackedBall& ball : spotted(rack, table)) out.push_back(ball);
+    return out;
+}
+
+}  // namespace carom

@@ -1,0 +1,38 @@
+// One reader per section of a scene file. Each takes the file's top level and fills its part of the scene.
+#pragma once
+
+#include <string>
+
+#include "carom/engine/tolerances.h"
+#include "scene/reader.h"
+
+namespace carom::detail {
+
+/// Places on and off the table.
+inline constexpr Interval kCoordinate = at_least(-kMaxCoordinate, kMaxCoordinate, "m");
+
+void read_balls(const Section& top, Scene& scene);
+/// Needs scene.balls (default nose height).
+void read_table(const Section& top, Scene& scene);
+/// Written balls. Needs scene.balls.
+void read_ball_list(const Section& top, Scene& scene);
+/// Racked balls, after the written ones. Needs scene.balls and scene.table.
+void read_rack(const Section& top, Scene& scene);
+/// Needs scene.ball.
+void read_cue(const Section& top, Scene& scene);
+void read_physics(const Section& top, Scene& scene);
+/// Checked against what the scene needs when it is planned.
+void read_effects(const Section& top, Scene& scene);
+void read_stop(const Section& top, Scene& scene);
+void read_render(const Section& top, Scene& scene);
+
+/// What no single section can see: ids that are used twice, balls that overlap or reach into a cushion, noses
+/// no ball can meet, a run that would never end. @throws SceneError
+void check_scene(const Section& top, const Scene& scene);
+
+/// A file as toml++ reads it. @throws SceneError where it cannot be read or is no TOML
+toml::table read_toml(const std::string& path);
+/// From there to a validated scene; `name` stands for the file in messages. @throws SceneError
+Scene scene_from(const toml::table& file, const std::string& name);
+
+}  // namespace carom::detail

@@ -1,0 +1,17 @@
+// Section 3.3: the double loop, compression and restitution apart, around the baseline's arithmetic.
+#pragma once
+
+#include "ladder/branch_hints.h"
+
+namespace carom::kernel {
+namespace {
+
+struct TwoStage {
+    template <int kSign>
+    static long loop(FrameState& s, const ImpactParams& p, int n) {
+        return two_stage_loop<BranchHintsStep, kSign>(s, p, n);
+    }
+};
+
+}  // namespace
+}  // namespace carom::kernel

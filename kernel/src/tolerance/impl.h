@@ -1,0 +1,92 @@
+// One impact by tolerance: check, scale, solve, project back. Built once per instruction set;
+// CAROM_TOLERANCE_NAME is the name of the function.
+#pragma once
+
+#include "tolerance/solve.h"
+
+namespace carom::kernel {
+namespace {
+
+// Slip of a rolling ball is rounding noise: below this share of the speeds it is zero.
+constexpr double kSlipNoise = 0x1p-49;
+
+CAROM_INLINE bool tolerance_in_range(const ImpactParams& p, double tolerance) {
+    return tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance && p.mu_b <= kLargestFriction &&
+           p.mu_s1 <= kLargestFriction && p.mu_s2 <= kLargestFriction;
+}
+
+// Looser than this nothing is gained, and the iteration may stop so early that energy rises.
+constexpr double kLoosestSolved = 1e-3;
+
+// The canonical form of an impact, and whether it is ball 2 that is pressed on the cloth.
+CAROM_INLINE bool pose(const FrameState& s, const ImpactParams& p, double tolerance, Problem& problem) {
+    const double R = p.R, n = s.v1y - s.v2y, scale = 1.0 / n;
+    const double x = s.v1x - s.v2x - R * (s.w1z + s.w2z), z = R * (s.w1x + s.w2x);
+    const bool second = z < 0.0, published = p.cloth_slip == ClothSlip::kAsPublished;
+    const double vx = second ? s.v2x : -s.v1x, vy = second ? s.v2y : -s.v1y;
+    const double wx = R * (second ? s.w2x : -s.w1x), wy = R * (second ? s.w2y : -s.w1y);
+    const double a = published ? vx + wy : vx - wy, b = published ? vy - wx : vy + wx;
+    const double noise = kSlipNoise * ((absolute(vx) + absolute(wy)) + (absolute(vy) + absolute(wx)));
+    const double slight = largest(noise, (0.01 * tolerance) * n);
+    problem.from_rest = a * a + b * b <= slight * slight;
+    problem.start.x = x * scale;
+    problem.start.z = absolute(z) * scale;
+    problem.start.a = problem.from_rest ? 0.0 : a * scale;
+    problem.start.b = problem.from_rest ? 0.0 : b * scale;
+    problem.start.v = -1.0;
+    problem.model.mu_b = p.mu_b;
+    problem.model.mu_s = second ? p.mu_s2 : p.mu_s1;
+    problem.model.sigma = published ? 2.5 : -2.5;
+    problem.model.kappa = published ? -1.5 : 3.5;
+    problem.model.e_b = p.e_b;
+    problem.tolerance = tolerance;
+    return second;
+}
+
+// Adds the impulses to the velocities.
+CAROM_INLINE void apply(const Impulses& t, double n, double R, bool second, FrameState& s) {
+    const double p = n * t.p, xi = n * t.xi, zeta = second ? n * t.zeta : -(n * t.zeta);
+    const double g_a = n * t.g_a, g_b = n * t.g_b, spin = 2.5 / R;
+    const double a1 = second ? 0.0 : g_a, b1 = second ? 0.0 : g_b, a2 = second ? -g_a : 0.0,
+                 b2 = second ? -g_b : 0.0;
+    s.v1x += a1 - xi;
+    s.v1y += b1 - p;
+    s.v2x += a2 + xi;
+    s.v2y += b2 + p;
+    s.w1x += spin * (zeta + b1);
+    s.w1y -= spin * a1;
+    s.w1z += spin * xi;
+    s.w2x += spin * (zeta + b2);
+    s.w2y -= spin * a2;
+    s.w2z += spin * xi;
+}
+
+CAROM_INLINE void solve_impact(const Ball& ball1, const Ball& ball2, const ImpactParams& params,
+                               double tolerance, ImpactResult& result) {
+    if (!tolerance_in_range(params, tolerance)) {
+        copy_input(ball1, ball2, ImpactStatus::kBadParameter, result);
+        return;
+    }
+    Frame frame;
+    FrameState state;
+    if (enter_frame(ball1, ball2, params, frame, state, result) != ImpactStatus::kOk) return;
+    Problem problem;
+    Solution solution;
+    const double n = state.v1y - state.v2y;
+    const bool second = pose(state, params, smallest(tolerance, kLoosestSolved), problem);
+    solve(problem, solution);
+    apply(solution.total, n, params.R, second, state);
+    leave_frame(ball1, ball2, frame, state, solution.sweeps, result);
+    result.method = solution.method;
+    // Spins of a radius next to zero overflow.
+    if (!(finite(result.w1) && finite(result.w2))) copy_input(ball1, ball2, ImpactStatus::kBadState, result);
+}
+
+}  // namespace
+
+void CAROM_TOLERANCE_NAME(const Ball& ball1, const Ball& ball2, const ImpactParams& params, double tolerance,
+                          ImpactResult& result) noexcept {
+    solve_impact(ball1, ball2, params, tolerance, result);
+}
+
+}  // namespace carom::kernel

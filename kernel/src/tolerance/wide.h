@@ -1,0 +1,367 @@
+// One collocation of many impacts at once: a lane is an impact, the nodes stand in arrays.
+//
+// Legend: tolerance_collocation.h. A lane sees only its own numbers, so that its bits depend neither on the
+// width of the registers nor on its neighbours: each keeps the impulses of the sweep at which it converged
+// itself.
+#pragma once
+
+#include "tolerance/collocation.h"
+#include "tolerance/tables.h"
+
+namespace carom::kernel {
+namespace {
+
+#if defined(__AVX512F__)
+constexpr int kWidth = 8;
+#else
+constexpr int kWidth = 4;
+#endif
+typedef double Wide __attribute__((vector_size(8 * kWidth)));
+typedef decltype(Wide{} < Wide{}) WideMask;
+
+CAROM_INLINE Wide wide(double x) {
+    return Wide{} + x;
+}
+
+CAROM_INLINE Wide wide_load(const double* from) {
+    Wide v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return v;
+}
+
+CAROM_INLINE void wide_store(double* to, Wide v) {
+    __builtin_memcpy(to, &v, sizeof v);
+}
+
+CAROM_INLINE Wide wide_root(Wide v) {
+#if defined(__AVX512F__)
+    return (Wide)_mm512_maskz_sqrt_pd(0xff, (__m512d)v);  // the plain form warns in gcc 12
+#else
+    return square_root(v);
+#endif
+}
+
+CAROM_INLINE Wide choose(WideMask mask, Wide yes, Wide no) {
+    return (Wide)(((WideMask)yes & mask) | ((WideMask)no & ~mask));
+}
+
+CAROM_INLINE Wide magnitude(Wide v) {
+    return (Wide)((WideMask)v & (WideMask{} + 0x7fffffffffffffffL));
+}
+
+CAROM_INLINE bool any(WideMask mask) {
+#if defined(__AVX512F__)
+    return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0;
+#elif defined(__AVX__)
+    return _mm256_testz_si256((__m256i)mask, (__m256i)mask) == 0;
+#else
+    return ((mask[0] | mask[1]) | (mask[2] | mask[3])) != 0;
+#endif
+}
+
+template <int N>
+struct WideTables;
+
+template <>
+struct WideTables<4> {
+    static constexpr const double* nodes = kNodes4;
+    static constexpr const double* weights = kWeights4;
+    static constexpr const double* integral = kIntegral4[0];
+    static constexpr const double* top = kTop4;
+    static constexpr const double* before = kBefore4[0];
+    static constexpr const double* before_late = kBeforeLate4[0];
+    static constexpr const double* after_late = kAfterLate4[0];
+    static constexpr int sweeps = 24;
+};
+
+template <>
+struct WideTables<8> {
+    static constexpr const double* nodes = kNodes8;
+    static constexpr const double* weights = kWeights8;
+    static constexpr const double* integral = kIntegral8[0];
+    static constexpr const double* top = kTop8;
+    static constexpr const double* before = kBefore8[0];
+    static constexpr const double* before_late = kBeforeLate8[0];
+    static constexpr const double* after_late = kAfterLate8[0];
+    static constexpr int sweeps = 24;
+};
+
+struct WideModel {
+    Wide mu_b, mu_s, e_b;
+    double sigma, kappa;
+};
+
+struct WideStart {
+    Wide x, z, a, b;
+};
+
+struct WideResult {
+    Wide p, xi, zeta, g_a, g_b;
+    Wide sweeps;
+    WideMask converged;
+};
+
+template <int N>
+struct WideNodes {
+    Wide x[N], z[N], a[N], b[N], root_s[N], root_u[N], xi[N], zeta[N], g_a[N], g_b[N];
+};
+
+// sum_j row[j] f[j], in a written order
+template <int N>
+CAROM_INLINE Wide wide_dot(const double* row, int stride, const Wide (&f)[N]) {
+    Wide even = row[0] * f[0], odd = row[stride] * f[1];
+    for (int j = 2; j < N; j += 2) {
+        even += row[j * stride] * f[j];
+        odd += row[(j + 1) * stride] * f[j + 1];
+    }
+    return even + odd;
+}
+
+// Integrals from 0 to every node. The nodes lie symmetrically, so that the even and the odd part of f need
+// only half a table each: `even` and `odd` are half the sum and half the difference of mirrored columns.
+struct Mirrored8 {
+    double even[4][4], odd[4][4];
+    constexpr Mirrored8() : even{}, odd{} {
+        for (int i = 0; i < 4; ++i) {
+            for (int j = 0; j < 4; ++j) {
+                even[i][j] = 0.5 * (kIntegral8[j][i] + kIntegral8[7 - j][i]);
+                odd[i][j] = 0.5 * (kIntegral8[j][i] - kIntegral8[7 - j][i]);
+            }
+        }
+    }
+};
+constexpr Mirrored8 kMirrored8;
+
+// integral[i] = start + h Int f up to node i
+template <int N>
+CAROM_INLINE void wide_integrals(Wide start, Wide h, const Wide (&f)[N], Wide (&integral)[N]) {
+    if constexpr (N == 4) {
+        for (int i = 0; i < N; ++i) integral[i] = start + h * wide_dot<N>(WideTables<N>::integral + i, N, f);
+    } else {
+        constexpr int H = N / 2;
+        Wide sums[H], differences[H];
+        for (int j = 0; j < H; ++j) {
+            sums[j] = f[j] + f[N - 1 - j];
+            differences[j] = f[j] - f[N - 1 - j];
+        }
+        const Wide total = wide_dot<H>(WideTables<N>::weights, 1, sums);
+        for (int i = 0; i < H; ++i) {
+            const Wide even = wide_dot<H>(kMirrored8.even[i], 1, sums);
+            const Wide odd = wide_dot<H>(kMirrored8.odd[i], 1, differences);
+            integral[i] = start + h * (odd + even);
+            integral[N - 1 - i] = start + h * (odd + (total - even));
+        }
+    }
+}
+
+enum class Roots : unsigned char { kFresh, kCarried, kMixed };
+
+// Forces at the nodes. Reciprocal roots are fresh, or the old ones corrected by one cubic Newton step; mixed:
+// fresh in the lanes of `exact`.
+template <int N, Roots kRoots>
+CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exact = WideMask{}) {
+    Wide worst = {};
+    for (int i = 0; i < N; ++i) {
+        const Wide ss = n.x[i] * n.x[i] + n.z[i] * n.z[i], uu = n.a[i] * n.a[i] + n.b[i] * n.b[i];
+        Wide fresh_s, fresh_u;
+        if constexpr (kRoots != Roots::kCarried) {
+            // One division for both roots.
+            const Wide s = wide_root(ss), u = wide_root(uu), share = 1.0 / (s * u);
+            fresh_s = share * u;
+            fresh_u = share * s;
+        }
+        if constexpr (kRoots == Roots::kFresh) {
+            n.root_s[i] = fresh_s;
+            n.root_u[i] = fresh_u;
+        } else {
+            const Wide rs = 1.0 - ss * (n.root_s[i] * n.root_s[i]),
+                       ru = 1.0 - uu * (n.root_u[i] * n.root_u[i]);
+            n.root_s[i] += n.root_s[i] * (rs * (0.5 + 0.375 * rs));
+            n.root_u[i] += n.root_u[i] * (ru * (0.5 + 0.375 * ru));
+            Wide left = rs * rs + ru * ru;
+            if constexpr (kRoots == Roots::kMixed) {
+                n.root_s[i] = choose(exact, fresh_s, n.root_s[i]);
+                n.root_u[i] = choose(exact, fresh_u, n.root_u[i]);
+                left = choose(exact, Wide{}, left);
+            }
+            worst += left;
+        }
+        const Wide by_s = m.mu_b * n.root_s[i];
+        n.xi[i] = by_s * n.x[i];
+        n.zeta[i] = by_s * n.z[i];
+        const Wide by_u = (m.mu_s * n.root_u[i]) * n.zeta[i];
+        n.g_a[i] = by_u * n.a[i];
+        n.g_b[i] = by_u * n.b[i];
+    }
+    return worst;
+}
+
+template <int N>
+CAROM_INLINE Wide wide_slips(const WideModel& m, const WideStart& start, Wide h, WideNodes<N>& n) {
+    Wide dx[N], dz[N], da[N], db[N], change = {};
+    for (int i = 0; i < N; ++i) {
+        dx[i] = n.g_a[i] - 7.0 * n.xi[i];
+        dz[i] = 2.5 * n.g_b[i] - 5.0 * n.zeta[i];
+        da[i] = n.xi[i] - m.kappa * n.g_a[i];
+        db[i] = 1.0 - (m.sigma * n.zeta[i] + m.kappa * n.g_b[i]);
+    }
+    Wide nx[N], nz[N], na[N], nb[N];
+    wide_integrals<N>(start.x, h, dx, nx);
+    wide_integrals<N>(start.z, h, dz, nz);
+    wide_integrals<N>(start.a, h, da, na);
+    wide_integrals<N>(start.b, h, db, nb);
+    const Wide mu2 = m.mu_s * m.mu_s;
+    for (int i = 0; i < N; ++i) {
+        const Wide x = nx[i], z = nz[i], a = na[i], b = nb[i];
+        const Wide ex = x - n.x[i], ez = z - n.z[i], ea = a - n.a[i], eb = b - n.b[i];
+        change += (ex * ex + ez * ez) * (n.root_s[i] * n.root_s[i]) +
+                  mu2 * ((ea * ea + eb * eb) * (n.root_u[i] * n.root_u[i]));
+        n.x[i] = x;
+        n.z[i] = z;
+        n.a[i] = a;
+        n.b[i] = b;
+    }
+    return change;
+}
+
+// As EndRows. `t` is where they stand.
+template <int N>
+struct WideRows {
+    Wide t, before[N], before_late[N], after_late[N];
+};
+
+template <int N>
+CAROM_INLINE Wide wide_polynomial(const double* table, Wide t) {
+    Wide value = wide(table[(N - 1) * N]);
+    for (int k = N - 2; k >= 0; --k) value = value * t + table[k * N];
+    return value;
+}
+
+template <int N>
+CAROM_INLINE void wide_set_rows(Wide t, WideRows<N>& rows) {
+    rows.t = t;
+    for (int j = 0; j < N; ++j) {
+        rows.before[j] = wide_polynomial<N>(WideTables<N>::before + j, t);
+        rows.before_late[j] = wide_polynomial<N>(WideTables<N>::before_late + j, t);
+        rows.after_late[j] = wide_polynomial<N>(WideTables<N>::after_late + j, t);
+    }
+}
+
+// sum_j a[j] b[j]
+template <int N>
+CAROM_INLINE Wide wide_dot(const Wide (&a)[N], const Wide (&b)[N]) {
+    Wide even = a[0] * b[0], odd = a[1] * b[1];
+    for (int j = 2; j < N; j += 2) {
+        even += a[j] * b[j];
+        odd += a[j + 1] * b[j + 1];
+    }
+    return even + odd;
+}
+
+template <int N>
+CAROM_INLINE Wide wide_find_end(const WideModel& m, const Wide (&g_b)[N], const WideRows<N>& rows,
+                                Wide& p_c) {
+    const Wide lost = 1.0 - wide_dot<N>(rows.after_late, g_b);
+    const Wide share = 2.0 - wide_dot<N>(rows.before, g_b);
+    const Wide both = 1.0 / (lost * share);
+    p_c = both * lost;
+    const Wide work = p_c * (1.0 - p_c * (1.0 - wide_dot<N>(rows.before_late, g_b)));
+    return p_c + m.e_b * wide_root(work * (both * share));
+}
+
+// The forces of the sweep at which a lane converged.
+template <int N>
+struct WideForces {
+    Wide xi[N], zeta[N], g_a[N], g_b[N];
+};
+
+template <int N>
+CAROM_INLINE void wide_keep(WideMask lanes, const WideNodes<N>& n, WideForces<N>& kept) {
+    if (!any(lanes)) return;
+    for (int i = 0; i < N; ++i) {
+        kept.xi[i] = choose(lanes, n.xi[i], kept.xi[i]);
+        kept.zeta[i] = choose(lanes, n.zeta[i], kept.zeta[i]);
+        kept.g_a[i] = choose(lanes, n.g_a[i], kept.g_a[i]);
+        kept.g_b[i] = choose(lanes, n.g_b[i], kept.g_b[i]);
+    }
+}
+
+// As resolved().
+template <int N>
+CAROM_INLINE WideMask wide_resolved(const WideModel& m, Wide p, double tolerance, const WideForces<N>& f) {
+    using T = WideTables<N>;
+    const Wide tx = wide_dot<N>(T::top, 1, f.xi), tz = wide_dot<N>(T::top, 1, f.zeta);
+    const Wide ta = wide_dot<N>(T::top, 1, f.g_a), tb = wide_dot<N>(T::top, 1, f.g_b);
+    const Wide s2 = tx * tx + tz * tz, g2 = ta * ta + tb * tb;
+    return (7.0 * p * s2 <= 3.0 * tolerance * m.mu_b) &
+           (81.0 * (p * p) * (g2 * wide_root(g2)) <= 9.0 * (tolerance * tolerance) * (m.mu_b * m.mu_s));
+}
+
+template <int N>
+CAROM_INLINE void wide_integrate(Wide p, const WideForces<N>& f, WideResult& out) {
+    using T = WideTables<N>;
+    out.p = p;
+    out.xi = p * wide_dot<N>(T::weights, 1, f.xi);
+    out.zeta = p * wide_dot<N>(T::weights, 1, f.zeta);
+    out.g_a = p * wide_dot<N>(T::weights, 1, f.g_a);
+    out.g_b = p * wide_dot<N>(T::weights, 1, f.g_b);
+}
+
+// Solves `wanted` lanes; those that do not converge are not in `out.converged`.
+template <int N>
+CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, WideMask wanted,
+                                 double tolerance, WideResult& out) {
+    using T = WideTables<N>;
+    WideNodes<N> n;
+    Wide h = 0.5 * (1.0 + m.e_b), t_c = 2.0 / (1.0 + m.e_b) - 1.0;
+    WideRows<N> rows;
+    wide_set_rows<N>(t_c, rows);
+    const Wide share = m.mu_b / wide_root(start.x * start.x + start.z * start.z);
+    const Wide xi0 = share * start.x, zeta0 = share * start.z;
+    for (int i = 0; i < N; ++i) {
+        const Wide p = h * T::nodes[i];
+        n.x[i] = start.x - p * (7.0 * xi0);
+        n.z[i] = start.z - p * (5.0 * zeta0);
+        n.a[i] = start.a + p * xi0;
+        n.b[i] = start.b + p * (1.0 - m.sigma * zeta0);
+    }
+    wide_forces<N, Roots::kFresh>(m, n);
+    const Wide mu2 = m.mu_s * m.mu_s, reach2 = (7.0 * m.mu_b * h) * (7.0 * m.mu_b * h);
+    Wide steep = {};
+    for (int i = 0; i < N; ++i) steep += n.root_s[i] * n.root_s[i] + mu2 * (n.root_u[i] * n.root_u[i]);
+    const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))),
+               end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
+    const double sweep_goal = 8.0 * tolerance * tolerance;
+    const Wide root_goal = (0.05 * tolerance * tolerance) / (m.mu_b * m.mu_b);
+    Wide dh_before = {};
+    WideMask open = wanted, finished = {};
+    WideForces<N> kept = {};
+    for (int k = 1; k < T::sweeps && any(open); ++k) {
+        const Wide change = wide_slips<N>(m, start, h, n);
+        Wide p_c;
+        const Wide h_new = wide_find_end<N>(m, n.g_b, rows, p_c), dh = h_new - h;
+        // Rows are set anew in the lanes where that matters; the others keep theirs, whatever their
+        // neighbours do.
+        const WideMask moved = open & (magnitude(t_c - rows.t) * m.mu_b * m.mu_s > kRowsGoal * tolerance);
+        if (any(moved)) wide_set_rows<N>(choose(moved, t_c, rows.t), rows);
+        t_c = 2.0 * p_c / h_new - 1.0;
+        h = h_new;
+        const Wide r = wide_forces<N, Roots::kCarried>(m, n);
+        const Wide left = (change + dh * dh * steep) * slope + (dh * dh + dh_before * dh_before) * end_slope;
+        const double slow = 1.0 + 0.03125 * (k * k);
+        const WideMask now = open & (left * slow <= sweep_goal) & (r * r * r <= root_goal);
+        dh_before = dh;
+        wide_keep<N>(now, n, kept);
+        finished |= now;
+        out.sweeps = choose(now, wide(k + 1.0), out.sweeps);
+        open &= ~now;
+    }
+    // The rows of a lane stand still once it has converged.
+    Wide p_c;
+    const Wide p = wide_find_end<N>(m, kept.g_b, rows, p_c);
+    out.converged = finished & wide_resolved<N>(m, p, tolerance, kept);
+    wide_integrate<N>(p, kept, out);
+}
+
+}  // namespace
+}  // namespace carom::kernel

@@ -1,0 +1,111 @@
+// One stretch of many impacts at once, as collocate() does for one. Legend: tolerance_collocation.h.
+//
+// A lane sees only its own numbers: its bits depend neither on the width of the registers nor on its
+// neighbours.
+#pragma once
+
+#include "tolerance/wide.h"
+
+namespace carom::kernel {
+namespace {
+
+struct WideStretch {
+    WideModel m;
+    WideStart start;
+    Wide v, h, work, root_s;    // h: impulse asked for, a first guess for stretches that end by themselves
+    WideMask to_zero, to_work;  // the end of compression, the end of restitution; otherwise a given impulse
+    WideMask exact;             // fresh roots in every sweep
+    WideMask wanted;
+    double tolerance;
+};
+
+// Sweeps after which a stretch is cut that has not been cut before: others wait for it.
+constexpr int kPatience = 10;
+
+struct WideStretchResult {
+    WideResult t;
+    Wide done;  // work of the normal impulse
+};
+
+// Int_0^1 (1 - tau) f dtau
+template <int N>
+CAROM_INLINE Wide wide_late_share(const Wide (&f)[N]) {
+    using T = WideTables<N>;
+    Wide even = (T::weights[0] * (1.0 - T::nodes[0])) * f[0];
+    Wide odd = (T::weights[1] * (1.0 - T::nodes[1])) * f[1];
+    for (int j = 2; j < N; j += 2) {
+        even += (T::weights[j] * (1.0 - T::nodes[j])) * f[j];
+        odd += (T::weights[j + 1] * (1.0 - T::nodes[j + 1])) * f[j + 1];
+    }
+    return even + odd;
+}
+
+// As find_end.
+template <int N>
+CAROM_INLINE Wide wide_stretch_end(const WideStretch& w, WideMask open_end, const Wide (&g_b)[N]) {
+    if (!any(open_end)) return w.h;
+    const Wide lost = 1.0 - wide_late_share<N>(g_b);
+    const Wide share = 2.0 - wide_dot<N>(WideTables<N>::weights, 1, g_b);
+    const Wide by_work = w.v + wide_root(w.v * w.v + 4.0 * (lost * w.work));
+    const Wide h = choose(w.to_zero, -w.v, 2.0 * w.work) / choose(w.to_zero, share, by_work);
+    return choose(open_end, h, w.h);
+}
+
+template <int N>
+CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
+    using T = WideTables<N>;
+    const WideModel& m = w.m;
+    const WideMask open_end = w.to_zero | w.to_work;
+    WideNodes<N> n;
+    Wide h = w.h;
+    const Wide share = m.mu_b * w.root_s;
+    const Wide xi0 = share * w.start.x, zeta0 = share * w.start.z;
+    for (int i = 0; i < N; ++i) {
+        const Wide p = h * T::nodes[i];
+        n.x[i] = w.start.x - p * (7.0 * xi0);
+        n.z[i] = w.start.z - p * (5.0 * zeta0);
+        n.a[i] = w.start.a + p * xi0;
+        n.b[i] = w.start.b + p * (1.0 - m.sigma * zeta0);
+    }
+    wide_forces<N, Roots::kFresh>(m, n);
+    const Wide mu2 = m.mu_s * m.mu_s, reach2 = (7.0 * m.mu_b * h) * (7.0 * m.mu_b * h);
+    Wide steep = {};
+    for (int i = 0; i < N; ++i) steep += n.root_s[i] * n.root_s[i] + mu2 * (n.root_u[i] * n.root_u[i]);
+    const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))),
+               end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
+    const double sweep_goal = 8.0 * w.tolerance * w.tolerance;
+    const Wide root_goal = (0.05 * w.tolerance * w.tolerance) / (m.mu_b * m.mu_b);
+    Wide dh_before = {};
+    WideMask open = w.wanted, finished = {};
+    WideForces<N> kept = {};
+    out.t.sweeps = wide(T::sweeps);
+    for (int k = 1; k < T::sweeps && any(open); ++k) {
+        const Wide change = wide_slips<N>(m, w.start, h, n);
+        const Wide h_new = wide_stretch_end<N>(w, open_end, n.g_b), dh = h_new - h;
+        h = h_new;
+        Wide r = {};
+        if (k < 3)
+            wide_forces<N, Roots::kFresh>(m, n);
+        else if (any(w.exact & open))
+            r = wide_forces<N, Roots::kMixed>(m, n, w.exact);
+        else
+            r = wide_forces<N, Roots::kCarried>(m, n);
+        const Wide left = (change + dh * dh * steep) * slope + (dh * dh + dh_before * dh_before) * end_slope;
+        const double slow = 1.0 + 0.03125 * (k * k);
+        const WideMask now = open & (left * slow <= sweep_goal) & (r * r * r <= root_goal);
+        dh_before = dh;
+        wide_keep<N>(now, n, kept);
+        finished |= now;
+        out.t.sweeps = choose(now, wide(k + 1.0), out.t.sweeps);
+        // A NaN stays one, and what is slow at first is cheaper in two stretches.
+        open &= ~now & (left == left);  // NOLINT(misc-redundant-expression): asks for a NaN
+        if (k >= kPatience) open &= w.exact;
+    }
+    h = wide_stretch_end<N>(w, open_end, kept.g_b);
+    out.t.converged = finished & wide_resolved<N>(m, h, w.tolerance, kept);
+    wide_integrate<N>(h, kept, out.t);
+    out.done = w.v * h + h * h * (1.0 - wide_late_share<N>(kept.g_b));
+}
+
+}  // namespace
+}  // namespace carom::kernel

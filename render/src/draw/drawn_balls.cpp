@@ -1,0 +1,140 @@
+#include "draw/drawn_balls.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+
+namespace carom::render {
+
+namespace {
+
+// How far a shadow's quad reaches, in radii; the shader has the same number.
+constexpr double kShadowReach = 2.5;
+
+float linear(float srgb) {
+    return srgb * srgb;  // the shaders' gamma
+}
+
+BallInstance make_instance(const DrawBall& ball, const Vec3& origin, double distance) {
+    const auto f = [](double value) { return static_cast<float>(value); };
+    const Vec3 center = ball.center - origin;
+    const Eigen::Quaterniond& q = ball.orientation;
+    const BallStyle& style = ball.style;
+    return {{f(center.x()), f(center.y()), f(center.z()), f(ball.radius)},
+            {f(q.x()), f(q.y()), f(q.z()), f(q.w())},
+            {linear(style.color[0]), linear(style.color[1]), linear(style.color[2]),
+             static_cast<float>(style.number)},
+            {static_cast<float>(style.pattern), ball.in_pocket ? 1.0F : 0.0F, f(distance)}};
+}
+
+PixelBox whole(FrameSize size) {
+    return {0, 0, size.width, size.height};
+}
+
+// The whole image if part of the ball is behind the eye.
+PixelBox box_of(const DrawBall& ball, const Camera& camera) {
+    const double reach = (ball.in_pocket ? 1.0 : kShadowReach) * ball.radius;
+    const PixelBox all = whole(camera.size);
+    Vec2 low(1e9, 1e9), high(-1e9, -1e9);
+    for (int i = 0; i < 8; ++i) {
+        const Vec3 corner = ball.center + Vec3((i & 1) ? reach : -reach, (i & 2) ? reach : -reach,
+                                               (i & 4) ? ball.radius : -ball.radius);
+        const std::optional<Vec2> pixel = camera.project(corner);
+        if (!pixel) return all;
+        low = low.cwiseMin(*pixel);
+        high = high.cwiseMax(*pixel);
+    }
+    const auto inside = [](double value, int limit) {
+        return static_cast<int>(std::clamp(value, 0.0, double(limit)));
+    };
+    return {inside(low.x() - 2.0, all.x1), inside(low.y() - 2.0, all.y1), inside(high.x() + 3.0, all.x1),
+            inside(high.y() + 3.0, all.y1)};
+}
+
+// A plain ball and one that is not must not meet: they are drawn by different programs, one after the other.
+void spread_not_plain(std::vector<DrawnBall>& balls) {
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (DrawnBall& ball : balls) {
+            if (!ball.plain) continue;
+            ball.plain = std::none_of(balls.begin(), balls.end(), [&](const DrawnBall& other) {
+                return !other.plain && other.box.meets(ball.box);
+            });
+            changed = changed || !ball.plain;
+        }
+    }
+}
+
+}  // namespace
+
+ClothMap::ClothMap(const std::vector<std::uint8_t>& rgba, FrameSize size)
+    : columns_((size.width + kSide - 1) / kSide),
+      cloth_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>((size.height + kSide - 1) / kSide),
+             true) {
+    const std::uint8_t* alpha = rgba.data() + 3;
+    for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x, alpha += 4) {
+            if (*alpha != 255) cloth_[place(x / kSide, y / kSide)] = false;
+        }
+    }
+}
+
+bool ClothMap::all_cloth(const PixelBox& box) const {
+    if (cloth_.empty()) return false;
+    for (int y = box.y0 / kSide; y * kSide < box.y1; ++y) {
+        for (int x = box.x0 / kSide; x * kSide < box.x1; ++x) {
+            if (!cloth_[place(x, y)]) return false;
+        }
+    }
+    return true;
+}
+
+std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth) {
+    const Vec3 origin(list.table->origin.x(), list.table->origin.y(), 0.0);
+    std::vector<DrawnBall> balls;
+    for (const DrawBall& ball : list.balls) {
+        const double distance = (ball.center - list.camera.eye).norm();
+        // An eye inside a ball, or past it, sees nothing of it.
+        if (distance <= 1.05 * ball.radius || list.camera.depth(ball.center) <= -ball.radius) continue;
+        const PixelBox box = box_of(ball, list.camera);
+        if (box.x1 <= box.x0 || box.y1 <= box.y0) continue;
+        balls.push_back(
+            {make_instance(ball, origin, distance), box, !ball.in_pocket && cloth.all_cloth(box)});
+    }
+    // Far balls first, so that near ones blend their soft edges over them.
+    std::stable_sort(balls.begin(), balls.end(), [](const DrawnBall& a, const DrawnBall& b) {
+        return a.instance.pattern[2] > b.instance.pattern[2];
+    });
+    spread_not_plain(balls);
+    return balls;
+}
+
+std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPicture& after, FrameSize size) {
+    if (before.table == 0 || before.table != after.table || before.overlay || after.overlay)
+        return {whole(size)};
+    std::vector<PixelBox> boxes;
+    const auto add_missing = [&boxes](const DrawnPicture& from, const DrawnPicture& in) {
+        for (const DrawnBall& ball : from.balls) {
+            if (std::find(in.balls.begin(), in.balls.end(), ball) == in.balls.end())
+                boxes.push_back(ball.box);
+        }
+    };
+    add_missing(before, after);
+    add_missing(after, before);
+    return boxes;
+}
+
+std::vector<bool> balls_inside(const std::vector<DrawnBall>& balls, std::vector<PixelBox>& boxes) {
+    std::vector<bool> inside(balls.size(), false);
+    for (std::size_t checked = 0; checked < boxes.size(); ++checked) {
+        const PixelBox box = boxes[checked];
+        for (std::size_t i = 0; i < balls.size(); ++i) {
+            if (inside[i] || !balls[i].box.meets(box)) continue;
+            inside[i] = true;
+            boxes.push_back(balls[i].box);
+        }
+    }
+    return inside;
+}
+
+}  // namespace carom::render

@@ -1,0 +1,246 @@
+#include "carom/render/renderer.h"
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "carom/render/error.h"
+#include "draw/drawn_balls.h"
+#include "draw/overlay_layer.h"
+#include "draw/shaders.h"
+#include "draw/static_layer.h"
+#include "font/glyphs.h"
+#include "gl/context.h"
+#include "gl/objects.h"
+
+namespace carom::render {
+
+struct Renderer::Impl {
+    std::unique_ptr<gl::Context> context;
+    gl::Api api;
+    std::unique_ptr<StaticLayer> table_layer;
+    std::unique_ptr<OverlayLayer> overlay_layer;
+    /// One way of drawing balls: those that meet nothing but cloth need no look at the table.
+    struct BallBatch {
+        GLuint shadow_program = 0, ball_program = 0, array = 0, buffer = 0;
+        std::vector<BallInstance> instances;
+    };
+    BallBatch plain, other;
+    GLuint glyphs = 0;
+    // Two images in turn: one can be read while the next is drawn.
+    struct Target {
+        GLuint color = 0, framebuffer = 0;
+        std::shared_ptr<const DrawnPicture> shows = std::make_shared<DrawnPicture>();
+    };
+    std::array<Target, 2> targets;
+    std::size_t current = 0;  // the target of the last draw()
+    FrameSize size{0, 0};
+    std::shared_ptr<const TableMesh> table;  // of the static layer
+    Camera camera;
+    int table_samples = 0;
+    std::uint64_t table_number = 0;  // of the static layer
+    ClothMap cloth;
+    std::vector<std::uint8_t> table_pixels;
+
+    explicit Impl(Backend backend) : context(gl::make_context(backend)) {
+        context->make_current();
+        api = gl::load_api(context->lookup());
+        table_layer = std::make_unique<StaticLayer>(api);
+        const std::vector<std::uint8_t> atlas = glyph_atlas();
+        glyphs = gl::make_texture(api, kGlyphColumns * kGlyphWidth, kGlyphRows * kGlyphHeight, GL_R8, GL_RED,
+                                  GL_UNSIGNED_BYTE, atlas.data(), true);
+        overlay_layer = std::make_unique<OverlayLayer>(api, glyphs);
+        make_batch(plain, shaders::kPlain);
+        make_batch(other, "");
+    }
+
+    void make_batch(BallBatch& batch, const char* defines) {
+        batch.shadow_program =
+            shaders::make_program(api, shaders::kShadowVertex, shaders::kShadowFragment, defines);
+        batch.ball_program =
+            shaders::make_program(api, shaders::kBallVertex, shaders::kBallFragment, defines);
+        api.GenVertexArrays(1, &batch.array);
+        api.GenBuffers(1, &batch.buffer);
+        api.BindVertexArray(batch.array);
+        api.BindBuffer(GL_ARRAY_BUFFER, batch.buffer);
+        const auto attribute = [&](GLuint index, GLint count, std::size_t offset) {
+            api.EnableVertexAttribArray(index);
+            api.VertexAttribPointer(index, count, GL_FLOAT, GL_FALSE, sizeof(BallInstance),
+                                    gl::buffer_offset(offset));
+            api.VertexAttribDivisor(index, 1);
+        };
+        attribute(0, 4, offsetof(BallInstance, center_radius));
+        attribute(1, 4, offsetof(BallInstance, orientation));
+        attribute(2, 4, offsetof(BallInstance, color_number));
+        attribute(3, 3, offsetof(BallInstance, pattern));
+    }
+
+    void resize(FrameSize wanted) {
+        if (wanted == size) return;
+        if (wanted.width < 1 || wanted.height < 1) throw RenderError("an image needs at least one pixel");
+        for (Target& target : targets) {
+            if (target.color != 0) {
+                api.DeleteFramebuffers(1, &target.framebuffer);
+                api.DeleteTextures(1, &target.color);
+            }
+            target.color = gl::make_texture(api, wanted.width, wanted.height, GL_RGBA8, GL_RGBA,
+                                            GL_UNSIGNED_BYTE, nullptr);
+            target.framebuffer = gl::make_framebuffer(api, target.color, 0);
+            target.shows = std::make_shared<DrawnPicture>();
+        }
+        size = wanted;
+    }
+
+    // Fills both batches with the chosen balls.
+    void upload(const std::vector<DrawnBall>& balls, const std::vector<bool>& chosen) {
+        plain.instances.clear();
+        other.instances.clear();
+        for (std::size_t i = 0; i < balls.size(); ++i) {
+            if (chosen[i]) (balls[i].plain ? plain : other).instances.push_back(balls[i].instance);
+        }
+        for (BallBatch* batch : {&plain, &other}) {
+            if (batch->instances.empty()) continue;
+            api.BindBuffer(GL_ARRAY_BUFFER, batch->buffer);
+            api.BufferData(GL_ARRAY_BUFFER,
+                           static_cast<GLsizeiptr>(batch->instances.size() * sizeof(BallInstance)),
+                           batch->instances.data(), GL_STREAM_DRAW);
+        }
+    }
+
+    // With the program that is in use.
+    void draw_round(const BallBatch& batch) {
+        api.BindVertexArray(batch.array);
+        api.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, shaders::kRoundCorners,
+                                static_cast<GLsizei>(batch.instances.size()));
+    }
+
+    void draw_shadows(const BallBatch& batch, const View& view) {
+        if (batch.instances.empty()) return;
+        view.set(api, batch.shadow_program);
+        gl::bind_texture(api, batch.shadow_program, 0, "u_background", table_layer->color());
+        draw_round(batch);
+    }
+
+    void draw_balls(const BallBatch& batch, const View& view) {
+        if (batch.instances.empty()) return;
+        view.set(api, batch.ball_program);
+        gl::bind_texture(api, batch.ball_program, 0, "u_occluders", table_layer->occluders());
+        gl::bind_texture(api, batch.ball_program, 1, "u_glyphs", glyphs);
+        draw_round(batch);
+    }
+
+    void draw_table(const DrawList& list, const View& view) {
+        if (table == list.table && camera == list.camera && table_samples == list.table_samples) return;
+        // A camera that moves needs its map for one frame only: not worth making.
+        const bool stays = list.table_samples > kMovingSamples;
+        table_layer->draw(*list.table, view, list.table_samples, !stays);
+        table = list.table;
+        camera = list.camera;
+        table_samples = list.table_samples;
+        static std::atomic<std::uint64_t> last_number{0};
+        table_number = ++last_number;
+        cloth = ClothMap();
+        if (!stays) return;
+        table_pixels.resize(std::size_t{4} * static_cast<std::size_t>(size.width) *
+                            static_cast<std::size_t>(size.height));
+        read_boxes(table_layer->framebuffer(), {{0, 0, size.width, size.height}}, table_pixels.data());
+        cloth = ClothMap(table_pixels, size);
+        table_pixels = {};
+    }
+
+    // Puts the table back into the boxes.
+    void restore_table(const std::vector<PixelBox>& boxes, const Target& target) {
+        api.BindFramebuffer(GL_READ_FRAMEBUFFER, table_layer->framebuffer());
+        api.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
+        for (const PixelBox& box : boxes) {
+            api.BlitFramebuffer(box.x0, box.y0, box.x1, box.y1, box.x0, box.y0, box.x1, box.y1,
+                                GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        }
+    }
+
+    void draw(const DrawList& list) {
+        context->make_current();
+        const View view = make_view(list.camera, *list.table);
+        resize(list.camera.size);
+        draw_table(list, view);
+        api.Viewport(0, 0, size.width, size.height);
+        current = 1 - current;
+        Target& target = targets[current];
+        auto next = std::make_shared<DrawnPicture>();
+        next->table = table_number;
+        next->overlay = !list.lines.empty() || !list.boxes.empty();
+        next->balls = visible_balls(list, cloth);
+        std::vector<PixelBox> boxes = differing_boxes(*target.shows, *next, size);
+        upload(next->balls, balls_inside(next->balls, boxes));
+        restore_table(boxes, target);
+        target.shows = std::move(next);
+
+        api.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+        api.Disable(GL_DEPTH_TEST);
+        api.Enable(GL_BLEND);
+        // Shadows only darken: one factor for all channels is the driver's fast way.
+        api.BlendFuncSeparate(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+        draw_shadows(plain, view);
+        draw_shadows(other, view);
+        api.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+        overlay_layer->draw_lines(list, view, table_layer->occluders(), LineLayer::kUnderBalls);
+        draw_balls(plain, view);
+        draw_balls(other, view);
+        overlay_layer->draw_lines(list, view, table_layer->occluders(), LineLayer::kOverBalls);
+        overlay_layer->draw_boxes(list, view);
+    }
+
+    void read_boxes(GLuint framebuffer, const std::vector<PixelBox>& boxes, std::uint8_t* rgba) {
+        api.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+        api.PixelStorei(GL_PACK_ALIGNMENT, 4);
+        api.PixelStorei(GL_PACK_ROW_LENGTH, size.width);
+        for (const PixelBox& box : boxes) {
+            const std::size_t first =
+                static_cast<std::size_t>(box.y0) * static_cast<std::size_t>(size.width) +
+                static_cast<std::size_t>(box.x0);
+            api.ReadPixels(box.x0, box.y0, box.x1 - box.x0, box.y1 - box.y0, GL_RGBA, GL_UNSIGNED_BYTE,
+                           rgba + 4 * first);
+        }
+    }
+
+    void read(const Target& target, Image& image, std::shared_ptr<const DrawnPicture>& shows) {
+        context->make_current();
+        if (!(image.size == size)) shows.reset();
+        image.resize(size);
+        read_boxes(target.framebuffer, differing_boxes(shows ? *shows : DrawnPicture{}, *target.shows, size),
+                   image.rgbx.data());
+        shows = target.shows;
+    }
+};
+
+Renderer::Renderer(Backend backend) : impl_(std::make_unique<Impl>(backend)) {}
+
+Renderer::~Renderer() = default;
+
+void Renderer::draw(const DrawList& list) {
+    impl_->draw(list);
+    impl_->api.Flush();
+}
+
+void Renderer::finish() {
+    impl_->context->make_current();
+    impl_->api.Finish();
+}
+
+void Renderer::read(Image& image) {
+    std::shared_ptr<const DrawnPicture> nothing;
+    impl_->read(impl_->targets[impl_->current], image, nothing);
+}
+
+void Renderer::read(KeptImage& image) {
+    impl_->read(impl_->targets[impl_->current], image.image_, image.shows_);
+}
+
+void Renderer::read_previous(KeptImage& image) {
+    impl_->read(impl_->targets[1 - impl_->current], image.image_, image.shows_);
+}
+
+}  // namespace carom::render

@@ -1,0 +1,51 @@
+// Camera and lamp; put before every other source. All positions are relative to the origin of the table mesh: floats then
+// keep a tenth of a micrometre on any table.
+uniform mat4 u_view_projection;
+uniform vec3 u_eye;
+uniform vec3 u_forward;
+uniform vec3 u_right_scaled;    // times the tangent of half the horizontal angle
+uniform vec3 u_up_scaled;       // times the tangent of half the vertical angle
+uniform vec2 u_size;            // pixels
+uniform vec3 u_lamp;            // centre of a level rectangle
+uniform vec2 u_lamp_half;
+uniform float u_lamp_endless;   // 1: light does not fall off
+
+// Radiance to what a screen expects and back, by gamma 2: a root is a fraction of the cost of the exact curve, and no
+// colour shows the difference as both ways agree. A soft shoulder above one half keeps highlights from clipping hard.
+vec3 to_screen(vec3 c) {
+    vec3 over = 1.0 + max(c - 0.5, 0.0);
+    return sqrt(min(max(c, 0.0), 0.5) + 0.5 - 0.5 / (over * over));
+}
+vec3 from_screen(vec3 c) { return c * c; }
+
+// Eight corners around a unit circle in the order of a triangle strip, for quads of round things.
+vec2 octagon_corner(int i) {
+    int around = (i & 1) == 0 ? i / 2 : 7 - i / 2;
+    float a = (float(around) + 0.5) * 0.78539816;
+    return vec2(cos(a), sin(a)) * 1.0823922;   // 1 / cos(pi / 8): the circle lies inside
+}
+
+// Light of the lamp on a surface at p with normal n, 1 straight below it: taken from the point of the rectangle that is
+// nearest, which is smooth and costs one root where an integral would cost dozens.
+float lamp_light(vec3 p, vec3 n) {
+    vec2 away = p.xy - u_lamp.xy, reach = 0.6 * u_lamp_half;
+    vec3 to = vec3(clamp(away, -reach, reach) - away, u_lamp.z - p.z);
+    if (u_lamp_endless > 0.5) to = vec3(0.0, 0.0, u_lamp.z);
+    float inverse = inversesqrt(dot(to, to));
+    return max(dot(n, to) * inverse, 0.0) * (u_lamp.z * u_lamp.z * inverse * inverse);
+}
+
+// How much of the lamp a mirror at p sends along direction r; blur widens its edge [m at the lamp].
+float lamp_mirror(vec3 p, vec3 r, float blur) {
+    if (r.z < 0.02) return 0.0;
+    vec2 half_size = u_lamp_endless > 0.5 ? vec2(0.22, 0.5) * u_lamp.z : u_lamp_half;
+    vec2 middle = u_lamp_endless > 0.5 ? p.xy : u_lamp.xy;
+    vec2 at = p.xy + r.xy * ((u_lamp.z - p.z) / r.z) - middle;
+    vec2 e = abs(at) - half_size;
+    return smoothstep(blur, -blur, e.x) * smoothstep(blur, -blur, e.y);
+}
+
+vec3 pixel_ray(vec2 pixel) {
+    vec2 s = 2.0 * pixel / u_size - 1.0;
+    return u_forward + s.x * u_right_scaled - s.y * u_up_scaled;
+}

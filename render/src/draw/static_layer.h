@@ -1,0 +1,57 @@
+// The table seen by one camera, drawn once with many samples a pixel and kept as textures.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "draw/view.h"
+#include "gl/api.h"
+
+namespace carom::render {
+
+class StaticLayer {
+  public:
+    explicit StaticLayer(const gl::Api& api);
+    ~StaticLayer();
+    StaticLayer(const StaticLayer&) = delete;
+    StaticLayer& operator=(const StaticLayer&) = delete;
+
+    /// Draws the table: `samples` jittered passes, averaged in linear light. again_soon: keep the memory that
+    /// only drawing needs.
+    void draw(const TableMesh& table, const View& view, int samples, bool again_soon);
+
+    GLuint color() const { return color_; }  ///< RGBA8; alpha: how much of the pixel is cloth
+    GLuint occluders() const {
+        return occluders_;
+    }  ///< RGBA32F: four distances along the view, over the pixel
+    GLuint framebuffer() const { return color_framebuffer_; }
+
+  private:
+    struct Scratch;
+    void upload(const TableMesh& table);
+    void resize(int width, int height);
+    void set_table_uniforms(const TableMesh& table, const View& view, GLuint program, double jx, double jy);
+    void draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, int pass, int samples);
+    void add_pass(const Scratch& scratch, int pass, int samples);
+    void keep_depths(const View& view, const Scratch& scratch, int samples);
+
+    const gl::Api& api_;
+    /// What is drawn one after the other; kBlended: paint and seams that lie on the cloth.
+    enum Part : std::uint8_t { kCloth, kWood, kSmall, kFloor, kBlended, kParts };
+    /// Vertices that one program draws.
+    struct Group {
+        GLuint program = 0;
+        GLint first = 0;
+        GLsizei count = 0;
+    };
+    std::array<Group, kParts> groups_;
+    GLuint add_program_, depth_program_, resolve_program_;
+    GLuint vertex_array_ = 0, buffer_ = 0, empty_array_ = 0;
+    const TableMesh* uploaded_ = nullptr;
+    int width_ = 0, height_ = 0;
+    std::unique_ptr<Scratch> scratch_;
+    GLuint color_ = 0, occluders_ = 0, color_framebuffer_ = 0, occluders_framebuffer_ = 0;
+};
+
+}  // namespace carom::render

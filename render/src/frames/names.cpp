@@ -1,0 +1,83 @@
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <string>
+
+#include "carom/render/sequence.h"
+
+namespace carom::render {
+
+double frame_time(double from, long k, double fps) {
+    return from + static_cast<double>(k) / fps;
+}
+
+long frame_count(double from, double to, double fps) {
+    if (!(fps > 0.0) || !std::isfinite(fps)) throw RenderError("fps must be a number above 0");
+    if (!std::isfinite(from) || !std::isfinite(to))
+        throw RenderError("the first and last time must be finite");
+    if (to < from) return 0;
+    const double frames = (to - from) * fps;
+    if (frames > 1e9) throw RenderError("more than 1e9 frames; lower --fps or give --to");
+    // The product above is rounded: what counts is the time that each frame really shows.
+    long last = static_cast<long>(frames);
+    while (frame_time(from, last + 1, fps) <= to) ++last;
+    while (last > 0 && frame_time(from, last, fps) > to) --last;
+    return last + 1;
+}
+
+namespace {
+
+struct Conversion {
+    std::size_t begin = 0, end = 0;
+    int width = 0;  // padded with zeros
+};
+
+// "%d" or "%0Nd" at `at`; nothing if it is something else.
+std::optional<Conversion> read_conversion(const std::string& pattern, std::size_t at) {
+    std::size_t i = at + 1;
+    Conversion found{at, 0, 0};
+    if (i < pattern.size() && pattern[i] == '0') {
+        std::size_t digits = 0;
+        for (++i; i < pattern.size() && std::isdigit(static_cast<unsigned char>(pattern[i])) != 0;
+             ++i, ++digits) {
+            found.width = 10 * found.width + (pattern[i] - '0');
+            if (digits == 2) return std::nullopt;
+        }
+        if (digits == 0) return std::nullopt;
+    }
+    if (i >= pattern.size() || pattern[i] != 'd') return std::nullopt;
+    found.end = i + 1;
+    return found;
+}
+
+}  // namespace
+
+std::string frame_path(const std::string& pattern, long k) {
+    const auto refuse = [&] {
+        throw RenderError("bad frame pattern '" + pattern +
+                          "'; give exactly one %d or %0Nd, like frames/%05d.png");
+    };
+    std::string path;
+    int conversions = 0;
+    for (std::size_t i = 0; i < pattern.size();) {
+        if (pattern[i] != '%') {
+            path += pattern[i++];
+        } else if (i + 1 < pattern.size() && pattern[i + 1] == '%') {
+            path += '%';
+            i += 2;
+        } else {
+            const std::optional<Conversion> found = read_conversion(pattern, i);
+            if (!found || ++conversions > 1) refuse();
+            const std::string digits = std::to_string(k);
+            const auto width = static_cast<std::size_t>(found->width);
+            if (digits.size() < width) path.append(width - digits.size(), '0');
+            path += digits;
+            i = found->end;
+        }
+    }
+    if (conversions != 1) refuse();
+    return path;
+}
+
+}  // namespace carom::render

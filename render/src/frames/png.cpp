@@ -1,0 +1,105 @@
+#include "carom/render/png.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csetjmp>
+#include <cstdio>
+#include <cstring>
+
+#include "carom/render/error.h"
+
+namespace carom::render {
+
+namespace {
+
+// libpng reports errors by longjmp; the text is kept here until it is safe to throw.
+struct Failure {
+    std::array<char, 200> text{};
+};
+
+void keep_error(png_structp png, png_const_charp message) {
+    auto* failure = static_cast<Failure*>(png_get_error_ptr(png));
+    std::snprintf(failure->text.data(), failure->text.size(), "%s", message);
+    png_longjmp(png, 1);
+}
+
+void ignore_warning(png_structp, png_const_charp) {}
+
+void append_bytes(png_structp png, png_bytep data, png_size_t length) {
+    auto* bytes = static_cast<std::vector<std::uint8_t>*>(png_get_io_ptr(png));
+    bytes->insert(bytes->end(), data, data + length);
+}
+
+void flush_nothing(png_structp) {}
+
+// Plain data only between setjmp and longjmp: no destructor may be skipped.
+bool encode_rows(png_structp png, png_infop info, const Image& image, int level) {
+    if (setjmp(png_jmpbuf(png))) return false;
+    const auto width = static_cast<png_uint_32>(image.size.width),
+               height = static_cast<png_uint_32>(image.size.height);
+    png_set_IHDR(png, info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
+    png_set_compression_level(png, level);
+    png_set_compression_buffer_size(png, 256 * 1024);
+    png_write_info(png, info);
+    png_set_filler(png, 0, PNG_FILLER_AFTER);  // drops the fourth channel; libpng wants it after the info
+    for (png_uint_32 y = 0; y < height; ++y)
+        png_write_row(png, image.rgbx.data() + std::size_t{4} * y * width);
+    png_write_end(png, info);
+    return true;
+}
+
+bool decode_rows(png_structp png, png_infop info, std::FILE* file, Image& image) {
+    if (setjmp(png_jmpbuf(png))) return false;
+    png_init_io(png, file);
+    png_read_info(png, info);
+    png_set_expand(png);
+    png_set_strip_16(png);
+    png_set_gray_to_rgb(png);
+    png_set_strip_alpha(png);
+    png_set_filler(png, 0xFF, PNG_FILLER_AFTER);
+    png_read_update_info(png, info);
+    const png_uint_32 width = png_get_image_width(png, info), height = png_get_image_height(png, info);
+    image.resize({static_cast<int>(width), static_cast<int>(height)});
+    for (png_uint_32 y = 0; y < height; ++y)
+        png_read_row(png, image.rgbx.data() + std::size_t{4} * y * width, nullptr);
+    return true;
+}
+
+}  // namespace
+
+void encode_png(const Image& image, int level, std::vector<std::uint8_t>& bytes) {
+    Failure failure;
+    bytes.clear();
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &failure, keep_error, ignore_warning);
+    png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
+    if (info == nullptr) {
+        png_destroy_write_struct(&png, nullptr);
+        throw RenderError(
+            "libpng cannot start: out of memory, or another version than the one carom was built with");
+    }
+    png_set_write_fn(png, &bytes, append_bytes, flush_nothing);
+    const bool good = encode_rows(png, info, image, level);
+    png_destroy_write_struct(&png, &info);
+    if (!good) throw RenderError(std::string("libpng cannot encode the frame: ") + failure.text.data());
+}
+
+Image read_png(const std::string& path) {
+    std::FILE* file = std::fopen(path.c_str(), "rb");
+    if (file == nullptr) throw RenderError(path + ": " + std::strerror(errno));
+    Failure failure;
+    Image image;
+    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &failure, keep_error, ignore_warning);
+    png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
+    const bool good = info != nullptr && decode_rows(png, info, file, image);
+    png_destroy_read_struct(&png, &info, nullptr);
+    std::fclose(file);
+    if (!good) throw RenderError(path + ": not a readable PNG file: " + failure.text.data());
+    return image;
+}
+
+}  // namespace carom::render

@@ -1,0 +1,236 @@
+#include "carom/render/sequence.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+#include <thread>
+
+#include "carom/render/draw_list.h"
+#include "carom/render/png.h"
+#include "carom/render/renderer.h"
+#include "frames/writer.h"
+
+namespace carom::render {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void make_folder(const std::string& pattern) {
+    const std::filesystem::path folder = std::filesystem::path(frame_path(pattern, 0)).parent_path();
+    if (folder.empty()) return;
+    std::error_code error;
+    std::filesystem::create_directory(folder, error);
+    if (!std::filesystem::is_directory(folder)) {
+        throw RenderError(folder.string() + ": cannot make the folder: " +
+                          (error ? error.message() : std::string("something else has this name")));
+    }
+}
+
+// Finished frames get their name only when they are whole; what is checked is that they are of this sequence.
+bool is_frame_of_size(const std::string& path, FrameSize size) {
+    std::FILE* file = std::fopen(path.c_str(), "rb");
+    if (file == nullptr) return false;
+    std::array<unsigned char, 24> head{};
+    const bool whole = std::fread(head.data(), 1, head.size(), file) == head.size();
+    std::fclose(file);
+    const auto number = [&](std::size_t i) {
+        return (unsigned{head[i]} << 24U) | (unsigned{head[i + 1]} << 16U) | (unsigned{head[i + 2]} << 8U) |
+               head[i + 3];
+    };
+    // Signature, then the header chunk with width and height.
+    constexpr std::array<unsigned char, 8> kSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+    return whole && std::equal(kSignature.begin(), kSignature.end(), head.begin()) &&
+           number(16) == static_cast<unsigned>(size.width) &&
+           number(20) == static_cast<unsigned>(size.height);
+}
+
+std::vector<FrameTiming> frames_to_do(const Record& record, const SequenceOptions& options) {
+    const long count = frame_count(options.from, options.to.value_or(record.duration), options.fps);
+    if (options.frame && (*options.frame < 0 || *options.frame >= count)) {
+        throw RenderError("no frame " + std::to_string(*options.frame) + ": there are " +
+                          std::to_string(count) + ", counted from 0");
+    }
+    std::vector<FrameTiming> frames;
+    for (long k = options.frame.value_or(0); k < (options.frame ? *options.frame + 1 : count); ++k) {
+        if (options.resume && is_frame_of_size(frame_path(options.pattern, k), options.size)) continue;
+        FrameTiming timing;
+        timing.frame = k;
+        timing.time = frame_time(options.from, k, options.fps);
+        frames.push_back(timing);
+    }
+    return frames;
+}
+
+int thread_count(const SequenceOptions& options) {
+    if (options.jobs < 0) throw RenderError("the number of jobs must be at least 0");
+    if (options.raw) return 1;
+    if (options.jobs == 1) return 0;
+    if (options.jobs > 1) return std::min(options.jobs, 64);
+    if (options.pattern.empty()) return 0;
+    const unsigned cores = std::thread::hardware_concurrency();
+    return static_cast<int>(std::clamp(cores, 1U, 16U));
+}
+
+StageOptions stage_options(const SequenceOptions& options) {
+    return {options.camera, options.view, options.overlay, options.size, options.table_samples};
+}
+
+void check_options(const SequenceOptions& options) {
+    if (options.png_level < 0 || options.png_level > 9) throw RenderError("the PNG level must be 0 to 9");
+    if (options.size.width < 1 || options.size.height < 1)
+        throw RenderError("an image needs at least one pixel");
+    if (options.resume && (options.pattern.empty() || options.raw)) {
+        throw RenderError("only frames in files can be resumed");
+    }
+}
+
+// Draws frame after frame. With threads, reading frame k - 1 back overlaps with drawing frame k.
+class FrameLoop {
+  public:
+    FrameLoop(const Record& record, const SequenceOptions& options, std::vector<FrameTiming>& frames)
+        : options_(options),
+          frames_(frames),
+          stage_(record, stage_options(options)),
+          renderer_(options.backend),
+          threads_(thread_count(options)),
+          writer_(options, threads_) {}
+
+    void run(long skipped) {
+        const long total = skipped + static_cast<long>(frames_.size());
+        if (frames_.empty()) return;
+        // Compiles the shaders and draws the table, which belongs to no frame.
+        renderer_.draw(list_of(0));
+        renderer_.finish();
+        if (options_.overlay.margin && !options_.frame_cost_ms) measure_first();
+        for (std::size_t i = 0; i < frames_.size(); ++i) {
+            draw(i);
+            if (threads_ == 0)
+                read(i, Picture::kLast);
+            else if (i > 0)
+                read(i - 1, Picture::kOneBefore);
+            if (options_.progress) options_.progress(skipped + static_cast<long>(i) + 1, total);
+        }
+        if (threads_ > 0) read(frames_.size() - 1, Picture::kLast);
+        writer_.finish();
+    }
+
+  private:
+    DrawList list_of(std::size_t i) {
+        std::optional<FrameCost> cost;
+        if (options_.overlay.margin) {
+            cost =
+                FrameCost{options_.frame_cost_ms ? options_.frame_cost_ms(frames_[i].frame) : last_cost_ms(i),
+                          1e3 / options_.fps};
+        }
+        return stage_.at(frames_[i].time, cost);
+    }
+
+    // The time that the frame itself takes is not known while it is drawn: that of frames just before stands
+    // for it.
+    double last_cost_ms(std::size_t i) {
+        const double encode_ms = writer_.last_encode_ms();
+        // With threads, frame i - 1 is not read back yet.
+        const std::size_t back = threads_ > 0 ? 2 : 1;
+        return (options_.simulate_ms ? options_.simulate_ms(frames_[i].frame) : 0.0) +
+               (i > 0 ? frames_[i - 1].draw_ms : first_.draw_ms) +
+               (i >= back ? frames_[i - back].readback_ms : first_.readback_ms) +
+               (encode_ms > 0.0 ? encode_ms : first_.encode_ms);
+    }
+
+    // The first frames have none before them: the first is drawn once more for its times.
+    void measure_first() {
+        KeptImage image;
+        std::vector<std::uint8_t> bytes;
+        renderer_.read(image);
+        Clock::time_point mark = Clock::now();
+        renderer_.draw(list_of(0));
+        renderer_.finish();
+        first_.draw_ms = ms_since(mark);
+        renderer_.read(image);
+        first_.readback_ms = ms_since(mark);
+        options_.raw ? pack_rgb(image.image(), bytes) : encode_png(image.image(), options_.png_level, bytes);
+        first_.encode_ms = ms_since(mark);
+    }
+
+    void draw(std::size_t i) {
+        Clock::time_point mark = Clock::now();
+        renderer_.draw(list_of(i));
+        if (threads_ == 0) renderer_.finish();
+        frames_[i].draw_ms = ms_since(mark);
+    }
+
+    // Which of the two pictures that the renderer keeps.
+    enum class Picture : std::uint8_t { kLast, kOneBefore };
+    void read(std::size_t i, Picture picture) {
+        std::unique_ptr<KeptImage> image = writer_.acquire();
+        Clock::time_point mark = Clock::now();
+        picture == Picture::kOneBefore ? renderer_.read_previous(*image) : renderer_.read(*image);
+        frames_[i].readback_ms = ms_since(mark);
+        writer_.submit(std::move(image), frames_[i]);
+    }
+
+    const SequenceOptions& options_;
+    std::vector<FrameTiming>& frames_;
+    Stage stage_;
+    Renderer renderer_;
+    int threads_;
+    FrameWriter writer_;
+    FrameTiming first_;
+};
+
+}  // namespace
+
+std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOptions& options) {
+    check_options(options);
+    const bool files = !options.pattern.empty() && !options.raw;
+    if (files) frame_path(options.pattern, 0);
+    std::vector<FrameTiming> frames = frames_to_do(record, options);
+    const long count =
+        options.frame ? 1 : frame_count(options.from, options.to.value_or(record.duration), options.fps);
+    if (files) make_folder(options.pattern);
+    FrameLoop(record, options, frames).run(count - static_cast<long>(frames.size()));
+    return frames;
+}
+
+void render_sheet(const Record& record, const SequenceOptions& options, int columns, int rows,
+                  const std::string& path) {
+    check_options(options);
+    if (columns < 1 || rows < 1 || columns > options.size.width / 16 || rows > options.size.height / 16) {
+        throw RenderError("a sheet needs at least one column and one row, and 16 pixels for each");
+    }
+    constexpr int kGap = 2;  // pixels between the pictures
+    StageOptions cell = stage_options(options);
+    cell.size = {(options.size.width - kGap * (columns - 1)) / columns,
+                 (options.size.height - kGap * (rows - 1)) / rows};
+    cell.overlay.clock = true;
+    const Stage stage(record, cell);
+    Renderer renderer(options.backend);
+    Image sheet, picture;
+    sheet.resize(options.size);
+    const double to = options.to.value_or(record.duration);
+    const int last = columns * rows - 1;
+    for (int i = 0; i <= last; ++i) {
+        renderer.draw(stage.at(last == 0 ? options.from : options.from + (to - options.from) * i / last));
+        renderer.read(picture);
+        const int left = i % columns * (cell.size.width + kGap),
+                  top = i / columns * (cell.size.height + kGap);
+        for (int y = 0; y < cell.size.height; ++y) {
+            const std::size_t at =
+                4 * (static_cast<std::size_t>(top + y) * static_cast<std::size_t>(sheet.size.width) +
+                     static_cast<std::size_t>(left));
+            std::copy_n(picture.pixel(0, y), std::size_t{4} * static_cast<std::size_t>(cell.size.width),
+                        sheet.rgbx.begin() + static_cast<std::ptrdiff_t>(at));
+        }
+        if (options.progress) options.progress(i + 1, last + 1);
+    }
+    std::vector<std::uint8_t> bytes;
+    encode_png(sheet, options.png_level, bytes);
+    write_file(path, bytes);
+}
+
+}  // namespace carom::render

@@ -1,0 +1,135 @@
+#include "frames/writer.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "carom/render/png.h"
+
+namespace carom::render {
+
+double ms_since(std::chrono::steady_clock::time_point& mark) {
+    const auto now = std::chrono::steady_clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - mark).count();
+    mark = now;
+    return ms;
+}
+
+void pack_rgb(const Image& image, std::vector<std::uint8_t>& bytes) {
+    const std::size_t pixels = image.rgbx.size() / 4;
+    bytes.resize(3 * pixels);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        bytes[3 * i] = image.rgbx[4 * i];
+        bytes[3 * i + 1] = image.rgbx[4 * i + 1];
+        bytes[3 * i + 2] = image.rgbx[4 * i + 2];
+    }
+}
+
+namespace {
+
+// Bytes of all images in flight together: what keeps a run with many threads small.
+constexpr double kMemory = 64e6;
+
+// One image a thread, one waiting for each, and one being filled; fewer where they are large.
+std::size_t image_limit(FrameSize size, int threads) {
+    const double fit = kMemory / (4.0 * size.width * size.height);
+    return static_cast<std::size_t>(std::max(2.0, std::min(2.0 * threads + 1.0, fit)));
+}
+
+}  // namespace
+
+FrameWriter::FrameWriter(const SequenceOptions& options, int threads)
+    : options_(options), limit_(image_limit(options.size, threads)) {
+    // A thread without an image to work on would only wait.
+    threads = std::min(threads, static_cast<int>(limit_));
+    for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
+}
+
+FrameWriter::~FrameWriter() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+        tasks_.clear();
+    }
+    task_ready_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+}
+
+void FrameWriter::write(const Image& image, FrameTiming& timing, std::vector<std::uint8_t>& bytes) const {
+    auto mark = std::chrono::steady_clock::now();
+    if (options_.raw) {
+        pack_rgb(image, bytes);
+        timing.encode_ms = ms_since(mark);
+        options_.raw(bytes.data(), bytes.size());
+    } else {
+        encode_png(image, options_.png_level, bytes);
+        timing.encode_ms = ms_since(mark);
+        if (!options_.pattern.empty()) write_file(frame_path(options_.pattern, timing.frame), bytes);
+    }
+    timing.write_ms = ms_since(mark);
+}
+
+void FrameWriter::work() {
+    std::vector<std::uint8_t> bytes;
+    std::unique_lock lock(mutex_);
+    while (true) {
+        task_ready_.wait(lock, [this] { return stopping_ || !tasks_.empty(); });
+        if (stopping_) return;
+        Task task = std::move(tasks_.front());
+        tasks_.pop_front();
+        lock.unlock();
+        std::exception_ptr failure;
+        try {
+            write(task.image->image(), *task.timing, bytes);
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        lock.lock();
+        last_encode_ms_ = task.timing->encode_ms;
+        idle_.push_back(std::move(task.image));
+        --in_flight_;
+        if (failure && !failure_) failure_ = failure;
+        image_ready_.notify_all();
+    }
+}
+
+std::unique_ptr<KeptImage> FrameWriter::acquire() {
+    std::unique_lock lock(mutex_);
+    image_ready_.wait(lock, [&] { return failure_ || !idle_.empty() || images_ < limit_; });
+    if (failure_) std::rethrow_exception(failure_);
+    if (idle_.empty()) {
+        ++images_;
+        return std::make_unique<KeptImage>();
+    }
+    std::unique_ptr<KeptImage> image = std::move(idle_.back());
+    idle_.pop_back();
+    return image;
+}
+
+void FrameWriter::submit(std::unique_ptr<KeptImage> image, FrameTiming& timing) {
+    if (threads_.empty()) {
+        write(image->image(), timing, bytes_);
+        last_encode_ms_ = timing.encode_ms;
+        idle_.push_back(std::move(image));
+        return;
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        tasks_.push_back({std::move(image), &timing});
+        ++in_flight_;
+    }
+    task_ready_.notify_one();
+}
+
+double FrameWriter::last_encode_ms() {
+    const std::lock_guard lock(mutex_);
+    return last_encode_ms_;
+}
+
+void FrameWriter::finish() {
+    std::unique_lock lock(mutex_);
+    image_ready_.wait(lock, [this] { return failure_ || in_flight_ == 0; });
+    if (failure_) std::rethrow_exception(failure_);
+}
+
+}  // namespace carom::render

@@ -1,0 +1,84 @@
+// The OpenGL entry points that the renderer uses, found at run time: the same list serves OSMesa and EGL.
+#pragma once
+
+#include <GL/glcorearb.h>
+
+#include "gl/context.h"
+
+namespace carom::render::gl {
+
+// clang-format off
+#define CAROM_GL_FUNCTIONS(X) \
+    X(PFNGLATTACHSHADERPROC, AttachShader) \
+    X(PFNGLBINDBUFFERPROC, BindBuffer) \
+    X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer) \
+    X(PFNGLBINDTEXTUREPROC, BindTexture) \
+    X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray) \
+    X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate) \
+    X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer) \
+    X(PFNGLBUFFERDATAPROC, BufferData) \
+    X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus) \
+    X(PFNGLACTIVETEXTUREPROC, ActiveTexture) \
+    X(PFNGLCLEARPROC, Clear) \
+    X(PFNGLCLEARCOLORPROC, ClearColor) \
+    X(PFNGLCOLORMASKPROC, ColorMask) \
+    X(PFNGLCOMPILESHADERPROC, CompileShader) \
+    X(PFNGLCREATEPROGRAMPROC, CreateProgram) \
+    X(PFNGLCREATESHADERPROC, CreateShader) \
+    X(PFNGLDELETEBUFFERSPROC, DeleteBuffers) \
+    X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers) \
+    X(PFNGLDELETEPROGRAMPROC, DeleteProgram) \
+    X(PFNGLDELETESHADERPROC, DeleteShader) \
+    X(PFNGLDELETETEXTURESPROC, DeleteTextures) \
+    X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays) \
+    X(PFNGLDEPTHFUNCPROC, DepthFunc) \
+    X(PFNGLDEPTHMASKPROC, DepthMask) \
+    X(PFNGLDISABLEPROC, Disable) \
+    X(PFNGLDRAWARRAYSPROC, DrawArrays) \
+    X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced) \
+    X(PFNGLENABLEPROC, Enable) \
+    X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
+    X(PFNGLFINISHPROC, Finish) \
+    X(PFNGLFLUSHPROC, Flush) \
+    X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D) \
+    X(PFNGLGENBUFFERSPROC, GenBuffers) \
+    X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers) \
+    X(PFNGLGENTEXTURESPROC, GenTextures) \
+    X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays) \
+    X(PFNGLGETERRORPROC, GetError) \
+    X(PFNGLGETINTEGERVPROC, GetIntegerv) \
+    X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog) \
+    X(PFNGLGETPROGRAMIVPROC, GetProgramiv) \
+    X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog) \
+    X(PFNGLGETSHADERIVPROC, GetShaderiv) \
+    X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation) \
+    X(PFNGLLINKPROGRAMPROC, LinkProgram) \
+    X(PFNGLPIXELSTOREIPROC, PixelStorei) \
+    X(PFNGLREADPIXELSPROC, ReadPixels) \
+    X(PFNGLSHADERSOURCEPROC, ShaderSource) \
+    X(PFNGLTEXIMAGE2DPROC, TexImage2D) \
+    X(PFNGLTEXPARAMETERIPROC, TexParameteri) \
+    X(PFNGLUNIFORM1FPROC, Uniform1f) \
+    X(PFNGLUNIFORM1IPROC, Uniform1i) \
+    X(PFNGLUNIFORM2FPROC, Uniform2f) \
+    X(PFNGLUNIFORM3FPROC, Uniform3f) \
+    X(PFNGLUNIFORM4FPROC, Uniform4f) \
+    X(PFNGLUNIFORM4FVPROC, Uniform4fv) \
+    X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv) \
+    X(PFNGLUSEPROGRAMPROC, UseProgram) \
+    X(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor) \
+    X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer) \
+    X(PFNGLVIEWPORTPROC, Viewport)
+// clang-format on
+
+/// One pointer per function, named without the gl prefix.
+struct Api {
+#define CAROM_GL_MEMBER(type, fn) type fn = nullptr;
+    CAROM_GL_FUNCTIONS(CAROM_GL_MEMBER)
+#undef CAROM_GL_MEMBER
+};
+
+/// Finds every function; @throws RenderError naming the first that the driver lacks.
+Api load_api(Lookup lookup);
+
+}  // namespace carom::render::gl

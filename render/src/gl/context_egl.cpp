@@ -1,0 +1,110 @@
+// EGL without any surface or display server: what replaces OSMesa since Mesa 25.1.
+//
+// The few types and numbers of EGL 1.5 that are needed stand here, so that building needs no EGL header.
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "carom/render/error.h"
+#include "gl/context.h"
+#include "gl/shared_library.h"
+
+namespace carom::render::gl {
+namespace {
+
+constexpr const char* kPackage = "libegl1 (with libegl-mesa0)";
+
+using Handle = void*;  // EGLDisplay, EGLContext, EGLSurface, EGLConfig
+using EglInt = std::int32_t;
+constexpr unsigned kPlatformSurfaceless = 0x31DD;  // EGL_PLATFORM_SURFACELESS_MESA
+constexpr unsigned kOpenGlApi = 0x30A2;            // EGL_OPENGL_API
+constexpr EglInt kContextMajor = 0x3098;           // EGL_CONTEXT_MAJOR_VERSION
+constexpr EglInt kContextMinor = 0x30FB;           // EGL_CONTEXT_MINOR_VERSION
+constexpr EglInt kProfileMask = 0x30FD;            // EGL_CONTEXT_OPENGL_PROFILE_MASK
+constexpr EglInt kCoreProfile = 0x1;               // EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT
+constexpr EglInt kNone = 0x3038;                   // EGL_NONE
+
+struct EglLibrary {
+    Handle (*get_platform_display)(unsigned, void*, const std::intptr_t*);
+    unsigned (*initialize)(Handle, EglInt*, EglInt*);
+    unsigned (*bind_api)(unsigned);
+    Handle (*create_context)(Handle, Handle, Handle, const EglInt*);
+    unsigned (*destroy_context)(Handle, Handle);
+    unsigned (*make_current)(Handle, Handle, Handle, Handle);
+    void* (*get_proc_address)(const char*);
+};
+
+const EglLibrary& egl() {
+    static const EglLibrary library = [] {
+        const std::array<const char*, 2> names{"libEGL.so.1", "libEGL.so"};
+        void* handle = open_library(names.data(), static_cast<int>(names.size()), kPackage);
+        EglLibrary found{};
+        const auto find = [handle](auto& function, const char* symbol) {
+            function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
+                find_symbol(handle, symbol, kPackage));
+        };
+        find(found.get_platform_display, "eglGetPlatformDisplay");
+        find(found.initialize, "eglInitialize");
+        find(found.bind_api, "eglBindAPI");
+        find(found.create_context, "eglCreateContext");
+        find(found.destroy_context, "eglDestroyContext");
+        find(found.make_current, "eglMakeCurrent");
+        find(found.get_proc_address, "eglGetProcAddress");
+        return found;
+    }();
+    return library;
+}
+
+void* lookup_egl(const char* function) {
+    return egl().get_proc_address(function);
+}
+
+// One display for the process: it is shared by every context and never terminated.
+Handle display() {
+    static const Handle shared = [] {
+        Handle opened = egl().get_platform_display(kPlatformSurfaceless, nullptr, nullptr);
+        if (opened == nullptr || egl().initialize(opened, nullptr, nullptr) == 0) {
+            throw RenderError(
+                "EGL has no surfaceless platform; install the Debian packages libegl-mesa0 and "
+                "libgl1-mesa-dri, or use --gl osmesa");
+        }
+        return opened;
+    }();
+    return shared;
+}
+
+class EglContext final : public Context {
+  public:
+    EglContext() {
+        Handle shared = display();
+        egl().bind_api(kOpenGlApi);
+        const std::array<EglInt, 7> attributes{kContextMajor, 3,    kContextMinor, 3, kProfileMask,
+                                               kCoreProfile,  kNone};
+        context_ = egl().create_context(shared, nullptr, nullptr, attributes.data());
+        if (context_ == nullptr) {
+            throw RenderError(
+                "EGL gives no OpenGL 3.3 core context; install the Debian package libgl1-mesa-dri, or "
+                "use --gl osmesa");
+        }
+    }
+    ~EglContext() override { egl().destroy_context(display(), context_); }
+
+    void make_current() override {
+        if (egl().make_current(display(), nullptr, nullptr, context_) == 0) {
+            throw RenderError("eglMakeCurrent without a surface failed; use --gl osmesa");
+        }
+    }
+    void release() override { egl().make_current(display(), nullptr, nullptr, nullptr); }
+    Lookup lookup() const override { return &lookup_egl; }
+
+  private:
+    Handle context_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<Context> make_egl_context() {
+    return std::make_unique<EglContext>();
+}
+
+}  // namespace carom::render::gl

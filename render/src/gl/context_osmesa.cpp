@@ -1,0 +1,89 @@
+// OSMesa: Mesa's software renderer into memory.
+//
+// The few types and numbers of it that are needed stand here, so that building needs no header of OSMesa:
+// Mesa dropped it in 25.1, and the library of an older Mesa still works.
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "carom/render/error.h"
+#include "gl/context.h"
+#include "gl/shared_library.h"
+
+namespace carom::render::gl {
+namespace {
+
+constexpr const char* kOsmesaPackage = "libosmesa6";
+
+using Handle = void*;                       // OSMesaContext
+constexpr int kFormat = 0x22;               // OSMESA_FORMAT
+constexpr int kRgba = 0x1908;               // OSMESA_RGBA
+constexpr int kProfile = 0x33;              // OSMESA_PROFILE
+constexpr int kOsmesaCoreProfile = 0x34;    // OSMESA_CORE_PROFILE
+constexpr int kOsmesaContextMajor = 0x36;   // OSMESA_CONTEXT_MAJOR_VERSION
+constexpr int kOsmesaContextMinor = 0x37;   // OSMESA_CONTEXT_MINOR_VERSION
+constexpr int kDepthBits = 0x30;            // OSMESA_DEPTH_BITS
+constexpr unsigned kUnsignedByte = 0x1401;  // GL_UNSIGNED_BYTE
+
+struct OsmesaLibrary {
+    Handle (*create)(const int*, Handle);
+    void (*destroy)(Handle);
+    unsigned char (*make_current)(Handle, void*, unsigned, int, int);
+    void* (*get_proc_address)(const char*);
+};
+
+const OsmesaLibrary& osmesa() {
+    static const OsmesaLibrary library = [] {
+        const std::array<const char*, 3> names{"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"};
+        void* handle = open_library(names.data(), static_cast<int>(names.size()), kOsmesaPackage);
+        OsmesaLibrary found{};
+        const auto find = [handle](auto& function, const char* symbol) {
+            function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
+                find_symbol(handle, symbol, kOsmesaPackage));
+        };
+        find(found.create, "OSMesaCreateContextAttribs");
+        find(found.destroy, "OSMesaDestroyContext");
+        find(found.make_current, "OSMesaMakeCurrent");
+        find(found.get_proc_address, "OSMesaGetProcAddress");
+        return found;
+    }();
+    return library;
+}
+
+void* lookup_osmesa(const char* function) {
+    return osmesa().get_proc_address(function);
+}
+
+class OsmesaContext final : public Context {
+  public:
+    OsmesaContext() {
+        const std::array<int, 11> attributes{
+            kFormat,    kRgba, kProfile, kOsmesaCoreProfile, kOsmesaContextMajor, 3, kOsmesaContextMinor, 3,
+            kDepthBits, 0,     0};
+        context_ = osmesa().create(attributes.data(), nullptr);
+        if (context_ == nullptr) throw RenderError("OSMesa gives no OpenGL 3.3 core context; use --gl egl");
+    }
+    ~OsmesaContext() override { osmesa().destroy(context_); }
+
+    void make_current() override {
+        if (!osmesa().make_current(context_, pixels_.data(), kUnsignedByte, kSide, kSide)) {
+            throw RenderError("OSMesaMakeCurrent failed; use --gl egl");
+        }
+    }
+    void release() override { osmesa().make_current(nullptr, nullptr, 0, 0, 0); }
+    Lookup lookup() const override { return &lookup_osmesa; }
+
+  private:
+    // The default framebuffer is never drawn to: all drawing goes to framebuffer objects, as with EGL.
+    static constexpr int kSide = 16;
+    std::array<std::uint8_t, std::size_t{kSide} * kSide * 4> pixels_{};
+    Handle context_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<Context> make_osmesa_context() {
+    return std::make_unique<OsmesaContext>();
+}
+
+}  // namespace carom::render::gl

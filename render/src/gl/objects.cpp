@@ -1,0 +1,87 @@
+#include "gl/objects.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "carom/render/error.h"
+
+namespace carom::render::gl {
+
+namespace {
+
+GLuint compile(const Api& api, GLenum stage, std::span<const char* const> prologue, const char* source) {
+    const GLuint shader = api.CreateShader(stage);
+    std::vector<const char*> sources(prologue.begin(), prologue.end());
+    sources.push_back(source);
+    api.ShaderSource(shader, static_cast<GLsizei>(sources.size()), sources.data(), nullptr);
+    api.CompileShader(shader);
+    GLint compiled = 0;
+    api.GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (compiled == 0) {
+        std::string log(2048, '\0');
+        GLsizei length = 0;
+        api.GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
+        log.resize(static_cast<std::size_t>(length));
+        throw RenderError("the OpenGL driver rejects a shader of carom: " + log);
+    }
+    return shader;
+}
+
+}  // namespace
+
+GLuint make_program(const Api& api, std::span<const char* const> prologue, const char* vertex,
+                    const char* fragment) {
+    const GLuint program = api.CreateProgram();
+    const std::array<GLuint, 2> stages{compile(api, GL_VERTEX_SHADER, prologue, vertex),
+                                       compile(api, GL_FRAGMENT_SHADER, prologue, fragment)};
+    for (GLuint stage : stages) api.AttachShader(program, stage);
+    api.LinkProgram(program);
+    for (GLuint stage : stages) api.DeleteShader(stage);
+    GLint linked = 0;
+    api.GetProgramiv(program, GL_LINK_STATUS, &linked);
+    if (linked == 0) {
+        std::string log(2048, '\0');
+        GLsizei length = 0;
+        api.GetProgramInfoLog(program, static_cast<GLsizei>(log.size()), &length, log.data());
+        log.resize(static_cast<std::size_t>(length));
+        throw RenderError("the OpenGL driver cannot link a shader of carom: " + log);
+    }
+    return program;
+}
+
+GLuint make_texture(const Api& api, int width, int height, GLenum internal_format, GLenum format, GLenum type,
+                    const void* texels, bool linear) {
+    GLuint texture = 0;
+    api.GenTextures(1, &texture);
+    api.BindTexture(GL_TEXTURE_2D, texture);
+    const GLint filter = linear ? GL_LINEAR : GL_NEAREST;
+    api.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+    api.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+    api.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    api.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    api.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    api.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal_format), width, height, 0, format, type,
+                   texels);
+    return texture;
+}
+
+GLuint make_framebuffer(const Api& api, GLuint color, GLuint depth) {
+    GLuint framebuffer = 0;
+    api.GenFramebuffers(1, &framebuffer);
+    api.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    api.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color, 0);
+    if (depth != 0) api.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
+    if (api.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+        throw RenderError("the OpenGL driver refuses an image of this size; use a smaller --size");
+    }
+    return framebuffer;
+}
+
+void bind_texture(const Api& api, GLuint program, int unit, const char* sampler, GLuint texture) {
+    api.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    api.BindTexture(GL_TEXTURE_2D, texture);
+    api.Uniform1i(api.GetUniformLocation(program, sampler), unit);
+}
+
+}  // namespace carom::render::gl

@@ -1,0 +1,84 @@
+#include "carom/render/draw_list.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stage/overlay_lines.h"
+
+namespace carom::render {
+
+namespace {
+
+// Places along every ball's path: the ends of its segments and points between them.
+std::vector<Vec2> visited_places(const Record& record) {
+    constexpr int kPieces = 4;
+    std::vector<Vec2> places;
+    for (const BallTrack& track : record.tracks) {
+        for (std::size_t i = 0; i < track.segments.size(); ++i) {
+            const Segment& segment = track.segments[i];
+            if (segment.state == MotionState::kPocketed) continue;
+            const double next = i + 1 < track.segments.size() ? track.segments[i + 1].start : record.duration;
+            const double lasts = std::min(std::max(0.0, next - segment.start), segment.duration);
+            for (int piece = 0; piece <= kPieces; ++piece) {
+                const Vec3 place = position_at(segment, lasts * piece / kPieces);
+                if (place.allFinite()) places.push_back(place.head<2>());
+                if (lasts == 0.0) break;
+            }
+        }
+    }
+    return places;
+}
+
+// The ball that came last to each pocket is the one that shows.
+bool is_covered(const Record& record, std::size_t ball, double t) {
+    const auto arrival = [&](std::size_t i) {
+        const Segment& last = record.tracks[i].segments.back();
+        return last.state == MotionState::kPocketed ? last.start : -1.0;
+    };
+    const int pocket = record.tracks[ball].pocket;
+    for (std::size_t other = 0; other < record.tracks.size(); ++other) {
+        if (other == ball || record.tracks[other].pocket != pocket) continue;
+        const double when = arrival(other), mine = arrival(ball);
+        if (when >= 0.0 && when <= t && (when > mine || (when == mine && other > ball))) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+Stage::Stage(const Record& record, const StageOptions& options)
+    : record_(record),
+      options_(options),
+      table_(std::make_shared<const TableMesh>(
+          make_table_mesh(record.table, record.balls.R, visited_places(record)))),
+      camera_(record, *table_, options.camera, options.view, options.size) {
+    for (std::size_t i = 0; i < record.tracks.size(); ++i) {
+        styles_.push_back(ball_style(record.tracks[i].id, record.table.preset, static_cast<int>(i)));
+    }
+}
+
+DrawList Stage::at(double t, std::optional<FrameCost> cost) const {
+    DrawList list;
+    list.table = table_;
+    list.camera = camera_.at(t);
+    list.table_samples =
+        camera_.moves() ? std::min(options_.table_samples, kMovingSamples) : options_.table_samples;
+    for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
+        const BallState state = record_.state_at(static_cast<int>(i), t);
+        if (!state.position.allFinite()) continue;
+        DrawBall ball;
+        ball.in_pocket = state.state == MotionState::kPocketed;
+        if (ball.in_pocket && is_covered(record_, i, t)) continue;
+        ball.center = state.position;
+        ball.orientation = record_.orientation_at(static_cast<int>(i), t);
+        // Two pixels at least: on a cloth of kilometres the balls would otherwise be lost.
+        ball.radius = std::max(record_.size(static_cast<int>(i)).R,
+                               2.0 / std::max(list.camera.scale(state.position), 1e-12));
+        ball.style = styles_[i];
+        list.balls.push_back(ball);
+    }
+    add_overlay(list, record_, options_.overlay, t, cost);
+    return list;
+}
+
+}  // namespace carom::render

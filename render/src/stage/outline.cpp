@@ -1,0 +1,205 @@
+#include "stage/outline.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace carom::render {
+
+namespace {
+
+// [m] Ends closer than this are drawn as joined: far below a pixel, far above the rounding of typed
+// coordinates.
+constexpr double kJoin = 1e-5;
+
+// [m] An end lies on a jaw when it is this close to its circle: tangent points typed with four decimals
+// count.
+constexpr double kOnJaw = 2e-4;
+
+// [rad] Length of one straight piece of a drawn arc.
+constexpr double kArcStep = 0.06;
+
+struct Link {
+    int end = -1;  // the end it leads to: 2 * cushion for `from`, 2 * cushion + 1 for `to`
+    int jaw = -1;  // by way of this jaw's arc, or -1
+};
+
+const Vec2& point_of(const Table& table, int end) {
+    const Cushion& cushion = table.cushions[static_cast<std::size_t>(end / 2)];
+    return end % 2 == 0 ? cushion.from : cushion.to;
+}
+
+int jaw_at(const Table& table, const Vec2& point) {
+    for (std::size_t j = 0; j < table.jaws.size(); ++j) {
+        if (std::abs((point - table.jaws[j].center).norm() - table.jaws[j].radius) < kOnJaw)
+            return static_cast<int>(j);
+    }
+    return -1;
+}
+
+std::vector<Link> link_ends(const Table& table) {
+    const int ends = 2 * static_cast<int>(table.cushions.size());
+    std::vector<Link> links(static_cast<std::size_t>(ends));
+    const auto join = [&](int a, int b, int jaw) {
+        links[static_cast<std::size_t>(a)] = {b, jaw};
+        links[static_cast<std::size_t>(b)] = {a, jaw};
+    };
+    const auto free = [&](int a) { return links[static_cast<std::size_t>(a)].end < 0; };
+    for (int a = 0; a < ends; ++a) {
+        for (int b = a + 1; b < ends && free(a); ++b) {
+            if (free(b) && b / 2 != a / 2 && (point_of(table, a) - point_of(table, b)).norm() < kJoin)
+                join(a, b, -1);
+        }
+    }
+    for (int a = 0; a < ends; ++a) {
+        const int jaw = free(a) ? jaw_at(table, point_of(table, a)) : -1;
+        for (int b = a + 1; b < ends && jaw >= 0 && free(a); ++b) {
+            if (free(b) && b / 2 != a / 2 && jaw_at(table, point_of(table, b)) == jaw) join(a, b, jaw);
+        }
+    }
+    return links;
+}
+
+// The inner points of the shorter arc from a to b.
+void append_arc(Chain& chain, const Jaw& jaw, const Vec2& a, const Vec2& b) {
+    const Vec2 start = a - jaw.center, stop = b - jaw.center;
+    const double angle = std::atan2(cross(start, stop), start.dot(stop));
+    const int pieces = std::max(2, static_cast<int>(std::ceil(std::abs(angle) / kArcStep)));
+    for (int i = 1; i < pieces; ++i) {
+        const double turn = angle * i / pieces, c = std::cos(turn), s = std::sin(turn);
+        chain.points.push_back(jaw.center +
+                               Vec2(c * start.x() - s * start.y(), s * start.x() + c * start.y()));
+        chain.heights.push_back(jaw.height);
+    }
+    chain.has_jaw = true;
+}
+
+Chain walk(const Table& table, const std::vector<Link>& links, int first_end, std::vector<char>& used) {
+    Chain chain;
+    int end = first_end;
+    while (true) {
+        const int cushion = end / 2, other = end ^ 1;
+        used[static_cast<std::size_t>(cushion)] = 1;
+        const double height = table.cushions[static_cast<std::size_t>(cushion)].height;
+        // A joint without a jaw was pushed as the end of the cushion before.
+        if (chain.points.empty() || (chain.points.back() - point_of(table, end)).norm() >= kJoin) {
+            chain.points.push_back(point_of(table, end));
+            chain.heights.push_back(height);
+        }
+        chain.points.push_back(point_of(table, other));
+        chain.heights.push_back(height);
+        const Link next = links[static_cast<std::size_t>(other)];
+        if (next.end < 0) return chain;
+        if (next.jaw >= 0) {
+            append_arc(chain, table.jaws[static_cast<std::size_t>(next.jaw)], point_of(table, other),
+                       point_of(table, next.end));
+        }
+        if (used[static_cast<std::size_t>(next.end / 2)]) {
+            chain.closed = true;
+            if ((chain.points.back() - chain.points.front()).norm() < kJoin) {
+                chain.points.pop_back();
+                chain.heights.pop_back();
+            }
+            return chain;
+        }
+        end = next.end;
+    }
+}
+
+}  // namespace
+
+std::vector<Chain> join_outline(const Table& table) {
+    const std::vector<Link> links = link_ends(table);
+    std::vector<char> used(table.cushions.size(), 0);
+    std::vector<Chain> chains;
+    // Open chains start at a free end; what is left after them are rings.
+    for (int pass = 0; pass < 2; ++pass) {
+        for (std::size_t end = 0; end < links.size(); ++end) {
+            const bool start = pass == 1 || links[end].end < 0;
+            if (start && !used[end / 2]) chains.push_back(walk(table, links, static_cast<int>(end), used));
+        }
+    }
+    return chains;
+}
+
+double signed_area(const std::vector<Vec2>& polygon) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        sum += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
+    return 0.5 * sum;
+}
+
+bool contains(const std::vector<Vec2>& polygon, const Vec2& point) {
+    bool inside = false;
+    for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+        const Vec2 &a = polygon[i], &b = polygon[j];
+        if ((a.y() > point.y()) == (b.y() > point.y())) continue;
+        if (point.x() < a.x() + (b.x() - a.x()) * (point.y() - a.y()) / (b.y() - a.y())) inside = !inside;
+    }
+    return inside;
+}
+
+std::vector<Vec2> offset_left(const std::vector<Vec2>& points, bool closed, double distance) {
+    const std::size_t n = points.size();
+    const auto left = [&](std::size_t a, std::size_t b) -> std::optional<Vec2> {
+        const Vec2 along = points[b] - points[a];
+        if (along.norm() == 0.0) return std::nullopt;
+        return Vec2(-along.y(), along.x()).normalized();
+    };
+    std::vector<Vec2> moved(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        std::optional<Vec2> before, after;
+        if (closed || i > 0) before = left((i + n - 1) % n, i);
+        if (closed || i + 1 < n) after = left(i, (i + 1) % n);
+        if (!before) before = after;
+        if (!after) after = before;
+        if (!before) {
+            moved[i] = points[i];
+            continue;
+        }
+        const Vec2 middle = *before + *after;
+        // |middle|^2 / 2 = 1 + cos(turn); moving by middle / (1 + cos) keeps both edges at the distance.
+        const double spread = std::max(0.5 * middle.squaredNorm(), 0.3);
+        moved[i] = points[i] + middle * (distance / spread);
+    }
+    return moved;
+}
+
+std::vector<int> triangulate(const std::vector<Vec2>& polygon) {
+    std::vector<int> left(polygon.size()), triangles;
+    for (std::size_t i = 0; i < polygon.size(); ++i) left[i] = static_cast<int>(i);
+    const auto at = [&](int i) -> const Vec2& { return polygon[static_cast<std::size_t>(i)]; };
+    const auto is_ear = [&](int a, int b, int c) {
+        if (cross(at(b) - at(a), at(c) - at(b)) <= 0.0) return false;
+        for (int p : left) {
+            if (p == a || p == b || p == c) continue;
+            if (cross(at(b) - at(a), at(p) - at(a)) >= 0.0 && cross(at(c) - at(b), at(p) - at(b)) >= 0.0 &&
+                cross(at(a) - at(c), at(p) - at(c)) >= 0.0) {
+                return false;
+            }
+        }
+        return true;
+    };
+    while (left.size() >= 3) {
+        const std::size_t n = left.size();
+        std::size_t ear = n;
+        for (std::size_t i = 0; i < n && ear == n; ++i) {
+            if (is_ear(left[(i + n - 1) % n], left[i], left[(i + 1) % n])) ear = i;
+        }
+        // None left: collinear rest, or an outline that crosses itself; any cut ends the loop.
+        if (ear == n) ear = 0;
+        for (std::size_t k : std::array<std::size_t, 3>{(ear + n - 1) % n, ear, (ear + 1) % n}) {
+            triangles.push_back(left[k]);
+        }
+        left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
+    }
+    return triangles;
+}
+
+void reverse(Chain& chain) {
+    std::reverse(chain.points.begin(), chain.points.end());
+    std::reverse(chain.heights.begin(), chain.heights.end());
+}
+
+}  // namespace carom::render

@@ -1,0 +1,197 @@
+#include "stage/overlay_lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "stage/overlay_boxes.h"
+
+namespace carom::render {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kOnCloth = 0.0012;  // [m] height of lines on the cloth
+
+// [s] For how long a ring shows a new event.
+constexpr double kRingTime = 0.33;
+
+Rgba state_color(MotionState state) {
+    switch (state) {
+        case MotionState::kSliding:
+            return {1.0F, 0.62F, 0.18F, 1.0F};
+        case MotionState::kRolling:
+            return {0.94F, 0.94F, 0.90F, 1.0F};
+        default:
+            return {0.55F, 0.75F, 1.0F, 1.0F};
+    }
+}
+
+// Width that suits the image: thin lines on small frames.
+float line_width(const DrawList& list, double pixels_at_720) {
+    const double shorter = std::min(list.camera.size.width, list.camera.size.height);
+    return static_cast<float>(std::max(1.0, pixels_at_720 * shorter / 720.0));
+}
+
+void add_trail(DrawList& list, const BallTrack& track, double t, float width) {
+    for (std::size_t i = 0; i < track.segments.size(); ++i) {
+        const Segment& segment = track.segments[i];
+        if (segment.start >= t || segment.state == MotionState::kPocketed) return;
+        const double end = i + 1 < track.segments.size() ? std::min(track.segments[i + 1].start, t) : t;
+        const double lasts = std::min(end - segment.start, segment.duration);
+        if (!(lasts > 0.0) || segment.v.norm() == 0.0) continue;
+        // Only a path whose acceleration is not along its velocity bends.
+        const Vec2 v = segment.v.head<2>();
+        const bool bends = std::abs(cross(v, segment.a)) > 1e-9 * v.norm() * segment.a.norm();
+        const int pieces = bends ? 8 : 1;
+        Vec3 before = segment.r;
+        for (int piece = 1; piece <= pieces; ++piece) {
+            const Vec3 next = position_at(segment, lasts * piece / pieces);
+            list.lines.push_back({{before.x(), before.y(), kOnCloth},
+                                  {next.x(), next.y(), kOnCloth},
+                                  width,
+                                  state_color(segment.state),
+                                  LineLayer::kUnderBalls});
+            before = next;
+        }
+    }
+}
+
+void add_circle(DrawList& list, const Vec3& center, double radius, double from, double to, float width,
+                const Rgba& color, LineLayer layer) {
+    const int pieces = std::max(3, static_cast<int>(std::ceil(std::abs(to - from) / 0.2)));
+    const auto point = [&](int i) {
+        const double angle = from + (to - from) * i / pieces;
+        return Vec3(center + radius * Vec3(std::cos(angle), std::sin(angle), 0.0));
+    };
+    for (int i = 0; i < pieces; ++i) list.lines.push_back({point(i), point(i + 1), width, color, layer});
+}
+
+bool is_impact(EventType type) {
+    return type == EventType::kBallBall || type == EventType::kBallCluster ||
+           type == EventType::kBallCushion || type == EventType::kBallJaw || type == EventType::kBallPocket ||
+           type == EventType::kCueStrike;
+}
+
+Rgba event_color(EventType type) {
+    switch (type) {
+        case EventType::kBallCushion:
+        case EventType::kBallJaw:
+            return {0.35F, 0.75F, 1.0F, 1.0F};
+        case EventType::kBallPocket:
+            return {0.75F, 0.45F, 1.0F, 1.0F};
+        case EventType::kCueStrike:
+            return {1.0F, 1.0F, 1.0F, 1.0F};
+        default:
+            return {1.0F, 0.30F, 0.25F, 1.0F};
+    }
+}
+
+void add_events(DrawList& list, const Record& record, double t) {
+    for (const Event& event : record.events) {
+        if (event.time > t) break;
+        if (!is_impact(event.type) || event.a < 0) continue;
+        const double when = std::nextafter(event.time, -1.0);  // before a pocket takes the ball away
+        Vec3 place = record.state_at(event.a, when).position;
+        const bool pair =
+            event.b >= 0 && (event.type == EventType::kBallBall || event.type == EventType::kBallCluster);
+        if (pair) place = 0.5 * (place + record.state_at(event.b, when).position);
+        place.z() = kOnCloth;
+        const Rgba color = event_color(event.type);
+        list.lines.push_back({place, place, line_width(list, 6.0), color, LineLayer::kUnderBalls});
+        const double age = (t - event.time) / kRingTime;
+        if (age >= 1.0) continue;
+        Rgba fading = color;
+        fading[3] = static_cast<float>(1.0 - age);
+        add_circle(list, place, record.balls.R * (1.0 + 2.0 * age), 0.0, 2.0 * kPi, line_width(list, 2.0),
+                   fading, LineLayer::kOverBalls);
+    }
+}
+
+void add_arrow_head(DrawList& list, const Vec3& tip, const Vec3& along, double size, float width,
+                    const Rgba& color) {
+    const Vec3 side(-along.y(), along.x(), 0.0);
+    for (double sign : {-1.0, 1.0}) {
+        list.lines.push_back(
+            {tip, tip - size * (along + sign * 0.6 * side), width, color, LineLayer::kOverBalls});
+    }
+}
+
+// A dark copy under the lines from `first` on: yellow on a yellow ball is not seen otherwise.
+void add_outline(DrawList& list, std::size_t first, float wider) {
+    std::vector<DrawLine> dark(list.lines.begin() + static_cast<std::ptrdiff_t>(first), list.lines.end());
+    for (DrawLine& line : dark) {
+        line.width += wider;
+        line.color = {0.0F, 0.0F, 0.0F, 0.85F};
+    }
+    list.lines.insert(list.lines.begin() + static_cast<std::ptrdiff_t>(first), dark.begin(), dark.end());
+}
+
+void add_spin(DrawList& list, const Record& record, double t) {
+    const std::size_t first = list.lines.size();
+    const float width = line_width(list, 2.6);
+    const Rgba level{1.0F, 0.95F, 0.35F, 1.0F}, vertical{0.45F, 1.0F, 0.95F, 1.0F};
+    for (std::size_t i = 0; i < record.tracks.size(); ++i) {
+        const BallState state = record.state_at(static_cast<int>(i), t);
+        if (state.state == MotionState::kPocketed || state.state == MotionState::kStationary) continue;
+        const double R = record.size(static_cast<int>(i)).R;
+        const Vec3 top = state.position + Vec3(0.0, 0.0, R);
+        // The top of the ball moves with w x R z: a tenth of a second of it, at most ten radii.
+        const Vec3 surface(R * state.spin.y(), -R * state.spin.x(), 0.0);
+        const double length = std::min(0.1 * surface.norm(), 10.0 * R);
+        if (length > 0.2 * R) {
+            const Vec3 along = surface.normalized(), tip = top + length * along;
+            list.lines.push_back({top, tip, width, level, LineLayer::kOverBalls});
+            add_arrow_head(list, tip, along, std::min(0.6 * R, 0.5 * length), width, level);
+        }
+        // A full arc stands for 60 rad/s about the vertical.
+        const double arc = std::clamp(state.spin.z() / 60.0, -1.0, 1.0) * 1.7 * kPi;
+        if (std::abs(arc) > 0.05) {
+            const Vec3 level_center(state.position.x(), state.position.y(), R);
+            add_circle(list, level_center, 1.4 * R, 0.0, arc, width, vertical, LineLayer::kOverBalls);
+            const Vec3 tip = level_center + 1.4 * R * Vec3(std::cos(arc), std::sin(arc), 0.0);
+            const double sign = arc > 0.0 ? 1.0 : -1.0;
+            add_arrow_head(list, tip, sign * Vec3(-std::sin(arc), std::cos(arc), 0.0), 0.4 * R, width,
+                           vertical);
+        }
+    }
+    add_outline(list, first, line_width(list, 2.2));
+}
+
+void add_ghost(DrawList& list, const Record& record, double t) {
+    const auto next = std::find_if(record.events.begin(), record.events.end(), [t](const Event& event) {
+        return event.time > t &&
+               (event.type == EventType::kBallBall || event.type == EventType::kBallCluster);
+    });
+    if (next == record.events.end()) return;
+    const auto speed = [&](int ball) {
+        return record.state_at(ball, std::nextafter(next->time, -1.0)).velocity.norm();
+    };
+    const int striker = next->b >= 0 && speed(next->b) > speed(next->a) ? next->b : next->a;
+    const double R = record.size(striker).R;
+    const Vec3 there = record.state_at(striker, next->time).position,
+               here = record.state_at(striker, t).position;
+    const Rgba color{1.0F, 1.0F, 1.0F, 0.85F};
+    const float width = line_width(list, 1.6);
+    add_circle(list, there, R, 0.0, 2.0 * kPi, width, color, LineLayer::kOverBalls);
+    if ((there - here).norm() > 2.0 * R) {
+        const Vec3 along = (there - here).normalized();
+        list.lines.push_back({here + R * along, there - R * along, width, color, LineLayer::kUnderBalls});
+    }
+}
+
+}  // namespace
+
+void add_overlay(DrawList& list, const Record& record, const Overlay& overlay, double t,
+                 std::optional<FrameCost> cost) {
+    if (overlay.trails) {
+        for (const BallTrack& track : record.tracks) add_trail(list, track, t, line_width(list, 2.0));
+    }
+    if (overlay.events) add_events(list, record, t);
+    if (overlay.ghost) add_ghost(list, record, t);
+    if (overlay.spin) add_spin(list, record, t);
+    if (overlay.clock) add_clock(list, t);
+    if (overlay.margin && cost) add_margin_bar(list, *cost);
+}
+
+}  // namespace carom::render

@@ -1,0 +1,78 @@
+#include "stage/table_marks.h"
+
+#include <cmath>
+
+namespace carom::render {
+
+namespace {
+
+constexpr double kAboveCloth = 0.0005;  // [m]
+
+void line(MeshBuilder& builder, const Vec2& a, const Vec2& b, double width, double opacity) {
+    const Vec2 along = (b - a).normalized(), side = 0.5 * width * Vec2(-along.y(), along.x());
+    const auto at = [](const Vec2& p) { return Vec3(p.x(), p.y(), kAboveCloth); };
+    builder.quad(at(a - side), at(b - side), at(b + side), at(a + side), Material::kChalk, opacity);
+}
+
+void spot(MeshBuilder& builder, const Vec2& center, double radius) {
+    builder.disc(center, 0.0, radius, kAboveCloth, Material::kChalk, 0.75);
+}
+
+void diamond(MeshBuilder& builder, const Vec2& center, double z, bool along_y) {
+    const double lengthwise = 0.012, across = 0.006;
+    const double dx = along_y ? across : lengthwise, dy = along_y ? lengthwise : across;
+    const auto at = [&](double x, double y) { return Vec3(center.x() + x, center.y() + y, z); };
+    builder.quad(at(-dx, 0.0), at(0.0, -dy), at(dx, 0.0), at(0.0, dy), Material::kInlay);
+}
+
+void add_diamonds(const Table& table, const TableMesh& mesh, MeshBuilder& builder, double rail) {
+    const double z = mesh.wood_top + 0.0006;
+    for (int i = 1; i < 8; ++i) {
+        if (i == 4 && !table.pockets.empty()) continue;  // the side pocket is there
+        const double y = table.length * i / 8.0;
+        diamond(builder, {-rail, y}, z, true);
+        diamond(builder, {table.width + rail, y}, z, true);
+    }
+    for (int i = 1; i < 4; ++i) {
+        const double x = table.width * i / 4.0;
+        diamond(builder, {x, -rail}, z, false);
+        diamond(builder, {x, table.length + rail}, z, false);
+    }
+}
+
+// Baulk line and D of an English table, and its six spots (World Snooker rules, section 1; baulk line 29 in
+// from the bottom cushion face, D of 11 1/2 in; black spot 12 3/4 in from the top cushion).
+void add_snooker_marks(const Table& table, MeshBuilder& builder) {
+    const double w = table.width, l = table.length, baulk = 0.737, d = 0.292;
+    line(builder, {0.0, baulk}, {w, baulk}, 0.003, 0.6);
+    constexpr int kPieces = 48;
+    Vec2 before(0.5 * w - d, baulk);
+    for (int i = 1; i <= kPieces; ++i) {
+        const double angle = 3.14159265358979323846 * i / kPieces;
+        const Vec2 next(0.5 * w - d * std::cos(angle), baulk - d * std::sin(angle));
+        line(builder, before, next, 0.003, 0.6);
+        before = next;
+    }
+    for (double x : {0.5 * w - d, 0.5 * w, 0.5 * w + d}) spot(builder, {x, baulk}, 0.005);
+    for (double y : {0.5 * l, 0.75 * l, l - 0.324}) spot(builder, {0.5 * w, y}, 0.005);
+}
+
+}  // namespace
+
+void add_table_marks(const Table& table, TableMesh& mesh, MeshBuilder& builder, double rail) {
+    if (table.preset.empty() || table.width <= 0.0 || table.length <= 0.0) return;
+    const double w = table.width, l = table.length;
+    if (table.preset == "snooker") {
+        add_snooker_marks(table, builder);
+        return;
+    }
+    add_diamonds(table, mesh, builder, rail);
+    if (table.preset == "carom") {
+        for (double y : {0.25 * l, 0.5 * l, 0.75 * l}) spot(builder, {0.5 * w, y}, 0.006);
+        return;
+    }
+    line(builder, {0.0, 0.25 * l}, {w, 0.25 * l}, 0.003, 0.30);
+    spot(builder, foot_spot(table), 0.007);
+}
+
+}  // namespace carom::render

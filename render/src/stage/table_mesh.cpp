@@ -1,0 +1,290 @@
+#include "carom/render/table_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stage/mesh_builder.h"
+#include "stage/table_marks.h"
+
+namespace carom::render {
+
+namespace {
+
+// Proportions of what the engine does not know because no ball feels it [m].
+constexpr double kCushionWidth = 0.05;    // of a cushion without facings to tell its depth
+constexpr double kRailWidth = 0.095;      // of the wooden rail outside the cushion
+constexpr double kWallHalfWidth = 0.005;  // of a cushion that balls meet on both sides
+constexpr double kShadeWidth = 0.045;     // of the dark seam along a cushion
+constexpr double kApron = 0.22;           // how far the frame reaches down
+
+struct Box {
+    Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
+    void add(const Vec2& p) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    bool empty() const { return low.x() > high.x(); }
+};
+
+Chain closed_chain(std::vector<Vec2> points, double height) {
+    Chain chain;
+    chain.heights.assign(points.size(), height);
+    chain.points = std::move(points);
+    chain.closed = true;
+    return chain;
+}
+
+// Clockwise, so that the frame lies to the left of it.
+Chain rectangle(const Vec2& low, const Vec2& high, double height) {
+    return closed_chain({low, {low.x(), high.y()}, high, {high.x(), low.y()}}, height);
+}
+
+class TableMaker {
+  public:
+    TableMaker(const Table& table, double R, const std::vector<Vec2>& visited)
+        : table_(table), R_(R), visited_(visited), builder_(mesh_) {}
+
+    TableMesh make() {
+        std::vector<Chain> chains = join_outline(table_);
+        find_bounds();
+        for (Chain& chain : chains) add_chain(chain);
+        for (const Jaw& jaw : table_.jaws) add_jaw(jaw);
+        if (!framed_) {
+            if (is_railed(chains))
+                add_frame();
+            else
+                add_endless_cloth();
+        }
+        for (const Pocket& pocket : table_.pockets) add_pocket(pocket);
+        add_table_marks(table_, mesh_, builder_, kCushionWidth + 0.5 * kRailWidth);
+        return std::move(mesh_);
+    }
+
+  private:
+    void find_bounds() {
+        for (const Cushion& cushion : table_.cushions) {
+            outline_.add(cushion.from);
+            outline_.add(cushion.to);
+            nose_ = std::max(nose_, cushion.height);
+        }
+        for (const Vec2& place : visited_) played_.add(place);
+        if (played_.empty()) played_ = outline_;
+        if (played_.empty()) played_.add(Vec2::Zero());
+        const Box& whole = outline_.empty() ? played_ : outline_;
+        mesh_.origin = 0.5 * (whole.low + whole.high);
+        mesh_.wood_top = nose_ + 0.008;
+    }
+
+    // Rails with jaws around pockets stand in a rectangular frame.
+    bool is_railed(const std::vector<Chain>& chains) const {
+        return !table_.pockets.empty() &&
+               std::any_of(chains.begin(), chains.end(), [](const Chain& chain) { return chain.has_jaw; });
+    }
+
+    // On which side of an open chain the balls are: +1 all to the left, -1 all to the right, 0 both or none.
+    int side_of_balls(const Chain& chain) const {
+        bool left = false, right = false;
+        for (const Vec2& ball : visited_) {
+            double nearest = 1e300, side = 0.0;
+            for (std::size_t i = 0; i + 1 < chain.points.size(); ++i) {
+                const Vec2 edge = chain.points[i + 1] - chain.points[i], to = ball - chain.points[i];
+                const double t = std::clamp(edge.dot(to) / edge.squaredNorm(), 0.0, 1.0);
+                const double distance = (to - t * edge).squaredNorm();
+                if (distance < nearest) {
+                    nearest = distance;
+                    side = cross(edge, to);
+                }
+            }
+            (side > 0.0 ? left : right) = true;
+        }
+        if (left == right) return 0;
+        return left ? 1 : -1;
+    }
+
+    bool holds_balls(const Chain& chain) const {
+        return visited_.empty() || std::any_of(visited_.begin(), visited_.end(), [&](const Vec2& ball) {
+                   return contains(chain.points, ball);
+               });
+    }
+
+    void add_chain(Chain& chain) {
+        if (chain.closed) {
+            const bool around_balls = holds_balls(chain) && !framed_;
+            if ((signed_area(chain.points) > 0.0) == around_balls) reverse(chain);
+            if (around_balls)
+                add_surrounding(chain);
+            else
+                add_body(chain);
+        } else if (chain.has_jaw && chain.points.size() > 2) {
+            if (signed_area(chain.points) < 0.0) reverse(chain);
+            add_body(chain);
+        } else {
+            const int side = side_of_balls(chain);
+            if (side > 0) reverse(chain);
+            add_strip(chain, side == 0 ? kWallHalfWidth : kCushionWidth, side == 0);
+            if (side == 0) {
+                reverse(chain);
+                add_strip(chain, kWallHalfWidth, true);
+            }
+        }
+    }
+
+    void shade_cloth(const Chain& chain) {
+        Chain ground = chain;
+        std::fill(ground.heights.begin(), ground.heights.end(), 0.0004);
+        builder_.sweep(
+            ground,
+            {{-kShadeWidth, 0.0, 0.0}, {-0.4 * kShadeWidth, 0.0, 0.10}, {0.0, 0.0, 0.42}, {0.012, 0.0, 0.6}},
+            Material::kShade, false);
+    }
+
+    // The side that balls meet: from under the nose, over the nose, to where the flat top begins.
+    void add_nose(const Chain& chain, double inset) {
+        Chain ground = chain;
+        std::fill(ground.heights.begin(), ground.heights.end(), 0.0);
+        const double height = chain.heights.front();
+        builder_.sweep(ground, {{inset, 0.0, 0.0}, {0.0, height - 0.003, 0.0}}, Material::kCushion, true);
+        builder_.sweep(ground,
+                       {{0.0, height - 0.003, 0.0},
+                        {0.0003, height, 0.0},
+                        {0.4 * inset, height + 0.0022, 0.0},
+                        {inset, height + 0.003, 0.0}},
+                       Material::kCushion, true);
+        shade_cloth(chain);
+    }
+
+    // A cushion whose back is known: its outline, closed by a straight line if it is open. What stands free
+    // on the cloth has a wooden top, or it would be lost on the cloth.
+    void add_body(const Chain& chain, Material top = Material::kCushion) {
+        const double inset = 0.006;
+        add_nose(chain, inset);
+        builder_.polygon(offset_left(chain.points, chain.closed, inset), chain.heights.front() + 0.003, top);
+    }
+
+    void add_strip(const Chain& chain, double width, bool wall) {
+        const double inset = std::min(0.006, 0.3 * width), rise = wall ? 0.003 : 0.006;
+        add_nose(chain, inset);
+        Chain top = chain;
+        for (double& height : top.heights) height += 0.003;
+        builder_.sweep(top, {{inset, 0.0, 0.0}, {width, rise - 0.003, 0.0}},
+                       wall ? Material::kWood : Material::kCushion, false);
+    }
+
+    // A closed outline with the balls inside: cloth, cushion and wood follow it.
+    void add_surrounding(const Chain& chain) {
+        builder_.polygon(reversed(offset_left(chain.points, true, 0.02)), 0.0, Material::kCloth);
+        add_strip(chain, kCushionWidth, false);
+        Chain back = closed_chain(offset_left(chain.points, true, kCushionWidth), 0.0);
+        add_wood(back);
+    }
+
+    static std::vector<Vec2> reversed(std::vector<Vec2> points) {
+        std::reverse(points.begin(), points.end());
+        return points;
+    }
+
+    void add_wood(const Chain& inner) {
+        const double top = mesh_.wood_top;
+        builder_.sweep(inner, {{0.0, top - 0.012, 0.0}, {0.0, top - 0.002, 0.0}}, Material::kWood, false);
+        builder_.sweep(inner,
+                       {{0.0, top - 0.002, 0.0},
+                        {0.002, top, 0.0},
+                        {kRailWidth - 0.010, top, 0.0},
+                        {kRailWidth - 0.003, top - 0.003, 0.0},
+                        {kRailWidth, top - 0.010, 0.0}},
+                       Material::kWood, false);
+        builder_.sweep(inner, {{kRailWidth, top - 0.010, 0.0}, {kRailWidth, -kApron, 0.0}}, Material::kWood,
+                       false);
+        Box box, outer;
+        for (const Vec2& p : inner.points) box.add(p);
+        for (const Vec2& p : offset_left(inner.points, true, kRailWidth)) outer.add(p);
+        mesh_.inner_low = box.low;
+        mesh_.inner_high = box.high;
+        finish_bounds(outer, 0.02);
+        add_floor();
+        framed_ = true;
+    }
+
+    void add_frame() {
+        builder_.polygon({outline_.low,
+                          {outline_.high.x(), outline_.low.y()},
+                          outline_.high,
+                          {outline_.low.x(), outline_.high.y()}},
+                         0.0, Material::kCloth);
+        add_wood(rectangle(outline_.low, outline_.high, 0.0));
+    }
+
+    void add_endless_cloth() {
+        Box shown = played_;
+        if (!outline_.empty() &&
+            (outline_.high - outline_.low).norm() < 20.0 * (played_.high - played_.low).norm()) {
+            shown.add(outline_.low);
+            shown.add(outline_.high);
+        }
+        const double room = std::max(8.0 * R_, 0.06 * (shown.high - shown.low).maxCoeff());
+        finish_bounds(shown, room);
+        mesh_.lamp.endless = true;
+        const double reach = 40.0 * std::max(1.0, (shown.high - shown.low).maxCoeff());
+        const Vec2 low = mesh_.origin - Vec2(reach, reach), high = mesh_.origin + Vec2(reach, reach);
+        builder_.polygon({low, {high.x(), low.y()}, high, {low.x(), high.y()}}, 0.0, Material::kCloth);
+        mesh_.inner_low = low;
+        mesh_.inner_high = high;
+    }
+
+    void add_floor() {
+        const double reach = 6.0 * (mesh_.bounds.high - mesh_.bounds.low).maxCoeff(), z = -0.75;
+        const Vec2 low = mesh_.origin - Vec2(reach, reach), high = mesh_.origin + Vec2(reach, reach);
+        builder_.quad({low.x(), low.y(), z}, {high.x(), low.y(), z}, {high.x(), high.y(), z},
+                      {low.x(), high.y(), z}, Material::kFloor);
+    }
+
+    void finish_bounds(const Box& box, double room) {
+        mesh_.bounds = {box.low - Vec2(room, room), box.high + Vec2(room, room), mesh_.wood_top};
+        const Vec2 half = 0.5 * (box.high - box.low);
+        mesh_.lamp.center = Vec3(mesh_.origin.x(), mesh_.origin.y(), 0.85 + 0.25 * half.maxCoeff());
+        mesh_.lamp.half = 0.42 * half;
+    }
+
+    void add_jaw(const Jaw& jaw) {
+        // Joined jaws lie inside their cushion; only a free-standing post shows.
+        const bool joined =
+            std::any_of(table_.cushions.begin(), table_.cushions.end(), [&](const Cushion& cushion) {
+                return std::abs((cushion.from - jaw.center).norm() - jaw.radius) < 2e-4 ||
+                       std::abs((cushion.to - jaw.center).norm() - jaw.radius) < 2e-4;
+            });
+        if (joined) return;
+        std::vector<Vec2> circle;
+        for (int i = 0; i < 64; ++i) {
+            const double angle = 6.28318530717958647692 * i / 64;
+            circle.push_back(jaw.center + jaw.radius * Vec2(std::cos(angle), std::sin(angle)));
+        }
+        add_body(closed_chain(std::move(circle), jaw.height), Material::kWood);
+    }
+
+    void add_pocket(const Pocket& pocket) {
+        const double bottom = -(pocket.depth + R_ + 0.03);
+        mesh_.holes.push_back({pocket.center, pocket.radius});
+        builder_.well(pocket.center, pocket.radius, mesh_.wood_top, bottom, Material::kPocket);
+        builder_.disc(pocket.center, 0.0, pocket.radius, bottom, Material::kPocket, 1.0);
+        builder_.disc(pocket.center, pocket.radius, pocket.radius + 0.011, mesh_.wood_top + 0.0015,
+                      Material::kTrim);
+        builder_.disc(pocket.center, pocket.radius, pocket.radius + 0.006, 0.0006, Material::kShade, 0.55);
+    }
+
+    const Table& table_;
+    double R_;
+    const std::vector<Vec2>& visited_;
+    TableMesh mesh_;
+    MeshBuilder builder_;
+    Box outline_, played_;
+    double nose_ = 0.0;
+    bool framed_ = false;
+};
+
+}  // namespace
+
+TableMesh make_table_mesh(const Table& table, double R, const std::vector<Vec2>& visited) {
+    return TableMaker(table, R, visited).make();
+}
+
+}  // namespace carom::render

@@ -1,0 +1,16 @@
+// What carom bench render refuses.
+#include "bench/render_stages.h"
+
+#include <gtest/gtest.h>
+
+#include "carom/render/error.h"
+
+namespace carom::tools {
+namespace {
+
+TEST(RenderStages, NeedThreeFrames) {
+    EXPECT_THROW(bench_render(Record(), 2), render::RenderError);
+}
+
+}  // namespace
+}  // namespace carom::tools

@@ -1,0 +1,249 @@
+// carom accuracy SCENE: measures.
+#include "accuracy/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "accuracy/box2d_shot.h"
+#include "base/output_file.h"
+#include "bench/clock.h"
+#include "bench/rounds.h"
+#include "carom/engine/simulate.h"
+#include "console.h"
+#include "report/plot.h"
+#include "setup.h"
+
+namespace carom::tools {
+namespace {
+
+/// The converged runs must agree this much better than the target before anything is called an error.
+constexpr double kAgreement = 0.1;
+
+/// One setting: how to run it once, and what it gave.
+struct SceneSubject {
+    SceneAccuracyRow row;
+    Plan plan;
+};
+
+std::vector<SceneSubject> subjects(const Scene& scene, const AccuracySceneArgs& args,
+                                   std::optional<double> recommended) {
+    std::vector<SceneSubject> list;
+    for (const int n : args.march) {
+        SceneSubject s{{}, with_substeps(scene, n)};
+        s.row.method = "march";
+        s.row.setting = fmt::format("N={}", n);
+        s.row.value = n;
+        list.push_back(std::move(s));
+    }
+    std::vector<double> tolerances = args.tolerances;
+    if (recommended && std::find(tolerances.begin(), tolerances.end(), *recommended) == tolerances.end())
+        tolerances.insert(std::find_if(tolerances.begin(), tolerances.end(),
+                                       [&](double tolerance) { return tolerance < *recommended; }),
+                          *recommended);
+    for (const double tolerance : tolerances) {
+        SceneSubject s{{}, with_tolerance(scene, tolerance)};
+        s.row.method = "tolerance";
+        s.row.setting = fmt::format("{:g}", tolerance);
+        s.row.value = tolerance;
+        list.push_back(std::move(s));
+    }
+    return list;
+}
+
+void set_times(SceneAccuracyRow& row, const std::vector<double>& samples) {
+    row.ns_min = minimum(samples);
+    row.ns_median = median(samples);
+    row.ns_max = *std::max_element(samples.begin(), samples.end());
+}
+
+/// Shares of kernel and cluster map in the profiled run that was disturbed least.
+void set_shares(SceneAccuracyRow& row, const Plan& plan) {
+    constexpr int kRuns = 3;
+    SimulateOptions options;
+    options.profile = true;
+    double least = INFINITY;
+    for (int run = 0; run < kRuns; ++run) {
+        const Record record = simulate(plan, options);
+        double all = record.setup_detect_ns, kernel = 0.0, cluster = 0.0;
+        for (std::size_t i = 0; i < record.costs.size(); ++i) {
+            const EventCost& cost = record.costs[i];
+            all += cost.detect_ns + cost.resolve_ns;
+            (record.events[i].type == EventType::kBallCluster ? cluster : kernel) += cost.kernel_ns;
+        }
+        if (all >= least) continue;
+        least = all;
+        row.kernel_share = kernel / all;
+        row.cluster_share = cluster / all;
+    }
+}
+
+void compare(SceneAccuracyRow& row, const Record& record, const Outcome& truth,
+             const std::vector<Vec2>& end) {
+    const Outcome outcome = outcome_of(record);
+    row.order_same = outcome.contacts == truth.contacts;
+    row.first_same = outcome.first_contact == truth.first_contact;
+    row.pocketed_same = outcome.pockets == truth.pockets;
+    row.error = final_error(final_positions(record), end);
+}
+
+void measure_box2d(SceneAccuracy& result, const Record& truth, const Outcome& outcome,
+                   const std::vector<Vec2>& end) {
+    constexpr double kRates[] = {60.0, 120.0, 240.0, 1000.0, 10000.0};
+    ProgressLine progress("accuracy, Box2D:");
+    for (const double hz : kRates) {
+        SceneAccuracyRow row;
+        row.method = "box2d";
+        row.setting = fmt::format("{:g} Hz", hz);
+        row.value = hz;
+        Box2dOutcome shot;
+        std::vector<double> samples;
+        for (int i = 0; i < 3; ++i) {
+            throw_if_interrupted();
+            const double start = thread_ns();
+            shot = run_box2d(truth, hz);
+            samples.push_back(thread_ns() - start);
+        }
+        set_times(row, samples);
+        row.error = final_error(shot.positions, end);
+        row.first_same = shot.first_contact == outcome.first_contact;
+        row.pocketed_same = shot.pockets == outcome.pockets;
+        result.rows.push_back(row);
+        progress.show_bar(static_cast<long>(result.rows.size()), static_cast<long>(result.rows.size()) + 1);
+    }
+}
+
+const SceneAccuracyRow* row_of(const SceneAccuracy& result, const char* method, double value) {
+    for (const SceneAccuracyRow& row : result.rows)
+        if (row.method == method && row.value == value) return &row;
+    return nullptr;
+}
+
+/// The march to compare with: N = 1000, as the paper has it, else the first one.
+const SceneAccuracyRow* compared_march(const SceneAccuracy& result) {
+    if (const SceneAccuracyRow* row = row_of(result, "march", 1000.0)) return row;
+    for (const SceneAccuracyRow& row : result.rows)
+        if (row.method == "march") return &row;
+    return nullptr;
+}
+
+/// The loosest tolerance that met the target, and with it every tighter one.
+std::optional<double> loosest_measured(const SceneAccuracy& result) {
+    std::vector<const SceneAccuracyRow*> rows;
+    for (const SceneAccuracyRow& row : result.rows)
+        if (row.method == "tolerance") rows.push_back(&row);
+    std::sort(rows.begin(), rows.end(), [](auto* a, auto* b) { return a->value < b->value; });
+    std::optional<double> loosest;
+    for (const SceneAccuracyRow* row : rows) {
+        if (!row->failed.empty() || row->error.largest > result.target) break;
+        loosest = row->value;
+    }
+    return loosest;
+}
+
+std::string metres(double x) {
+    return x >= 1e-3 ? fmt::format("{:.3g} m", x) : fmt::format("{:.1e} m", x);
+}
+
+std::string sentence_of(const SceneAccuracy& result) {
+    if (!result.converged)
+        return fmt::format(
+            "The two converged methods end {} apart (gain {:.1e}): nothing here can be called an error, and "
+            "no setting promises {}.",
+            metres(result.agreement), result.gain, metres(result.target));
+    if (!result.recommended)
+        return fmt::format(
+            "Double precision does not allow {}: the gain of this shot is {:.1e}, so it would need a "
+            "tolerance below {:g}; the two converged runs end {} apart.",
+            metres(result.target), result.gain, kernel::kTightestTolerance, metres(result.agreement));
+    const SceneAccuracyRow* row = row_of(result, "tolerance", *result.recommended);
+    std::string text;
+    if (row->failed.empty() && row->error.largest <= result.target) {
+        text = fmt::format("Tolerance {:g} suffices for {} (it is off by {}", *result.recommended,
+                           metres(result.target), metres(row->error.largest));
+        text += result.loosest && *result.loosest > *result.recommended
+                    ? fmt::format("; as it happens, {:g} is enough)", *result.loosest)
+                    : ")";
+    } else {
+        text = fmt::format("The gain asks for tolerance {:g}, but that is off by {}, more than {}",
+                           *result.recommended, metres(row->error.largest), metres(result.target));
+    }
+    if (const SceneAccuracyRow* march = compared_march(result)) {
+        if (march->failed.empty())
+            text += fmt::format("; {} would be off by {} and take {:.3g} times as long", march->setting,
+                                metres(march->error.largest), march->ns_min / row->ns_min);
+    }
+    return text + ".";
+}
+
+}  // namespace
+
+SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs& args) {
+    SceneAccuracy result;
+    result.target = args.target;
+    const Plan tight = with_tolerance(scene, kernel::kTightestTolerance);
+    const Record truth = simulate_plan(tight, {});
+    const Record other = simulate_plan(with_power_series(scene), {});
+    const Outcome outcome = outcome_of(truth), other_outcome = outcome_of(other);
+    const std::vector<Vec2> end = final_positions(truth);
+    result.contacts = outcome.contacts.size();
+    for (const Event& event : truth.events)
+        result.ball_hits +=
+            event.type == EventType::kBallBall || event.type == EventType::kBallCluster ? 1U : 0U;
+    result.agreement = final_error(final_positions(other), end).largest;
+    result.outcome_agrees =
+        outcome.contacts == other_outcome.contacts && outcome.pockets == other_outcome.pockets;
+    result.converged = result.outcome_agrees && result.agreement <= kAgreement * args.target;
+    result.gain = gain_of(tight, truth);
+    if (result.converged) result.recommended = deserved_tolerance(result.gain, args.target);
+
+    std::vector<SceneSubject> list = subjects(scene, args, result.recommended);
+    for (SceneSubject& s : list) {
+        throw_if_interrupted();
+        try {
+            compare(s.row, simulate(s.plan), outcome, end);
+            set_shares(s.row, s.plan);
+        } catch (const SimulationError& error) {
+            s.row.failed = error.what();
+            s.row.failed.resize(std::min(s.row.failed.size(), s.row.failed.find('\n')));
+        }
+    }
+    const auto samples = interleaved("accuracy, times:", list.size(), args.repeat, [&list](std::size_t i) {
+        if (!list[i].row.failed.empty()) return 0.0;
+        const double start = thread_ns();
+        const Record record = simulate(list[i].plan);
+        return thread_ns() - start;
+    });
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        set_times(list[i].row, samples[i]);
+        result.rows.push_back(list[i].row);
+    }
+    if (result.converged) result.loosest = loosest_measured(result);
+    if (args.box2d) measure_box2d(result, truth, outcome, end);
+    result.sentence = sentence_of(result);
+    return result;
+}
+
+int run_accuracy_scene(const AccuracySceneArgs& args) {
+    check_plot_path(args.plot);
+    if (!(args.target > 0.0 && std::isfinite(args.target)))
+        throw UsageError(fmt::format("--target {}: expected a number of metres greater than 0", args.target));
+    const Plan plan = plan_scene(args.scene);
+    if (plan.scene.physics.ball_ball != BallBallModel::kMathavan)
+        throw UsageError(
+            fmt::format("{}: ball_ball = \"{}\" is one formula, without an accuracy to choose; set ball_ball "
+                        "= \"mathavan\"",
+                        args.scene, name(plan.scene.physics.ball_ball)));
+    const SceneAccuracy result = measure_scene_accuracy(plan.scene, args);
+    if (!args.csv.empty()) {
+        OutputFile file(args.csv);
+        file.write(scene_accuracy_csv(result));
+        file.commit();
+    }
+    if (!args.plot.empty()) plot_scene_accuracy(result, args.scene, args.plot);
+    print(args.json ? scene_accuracy_json(result) : scene_accuracy_text(result, args.scene));
+    return kOk;
+}
+
+}  // namespace carom::tools

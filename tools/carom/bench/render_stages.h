@@ -1,0 +1,28 @@
+// What frames cost: the rows of `carom bench render`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "carom/engine/record.h"
+#include "carom/render/backend.h"
+
+namespace carom::tools {
+
+struct RenderBenchRow {
+    std::string name;  ///< "720p", "1080p"
+    /// Medians over the frames after the first, one frame at a time: CPU time of the whole process, so that
+    /// the driver's threads count too, except write_ms, which is wall time.
+    double draw_ms = 0.0, readback_ms = 0.0, encode_ms = 0.0, write_ms = 0.0;
+    double slow_ms =
+        0.0;  ///< draw + read back of the frame that 19 of 20 are cheaper than: most balls moving
+    double setup_ms = 0.0;  ///< wall time before the first frame: shaders, and the table once
+    double fps = 0.0;       ///< frames a second from the first to the last, in files, with a thread per core
+};
+
+/// Draws `frames` frames spread over the shot, at both sizes; files go to a temporary folder. @throws
+/// RenderError
+std::vector<RenderBenchRow> bench_render(const Record& record, int frames = 120,
+                                         render::Backend backend = render::Backend::kOsmesa);
+
+}  // namespace carom::tools

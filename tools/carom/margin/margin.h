@@ -1,0 +1,105 @@
+// carom margin: what every frame costs against 1/fps, stage by stage.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/record.h"
+#include "carom/render/sequence.h"
+#include "commands.h"
+#include "margin/frame_costs.h"
+
+namespace carom::tools {
+
+/// What is measured of a frame. simulate is the sum of the four behind it; a frame costs simulate and the
+/// five after kCluster.
+enum MarginStage : std::size_t {
+    kSimulate,
+    kDetect,
+    kResolve,
+    kKernel,
+    kCluster,
+    kDraw,
+    kReadback,
+    kEncode,
+    kWrite,
+    kMarginStages
+};
+const char* name(MarginStage stage);
+bool is_part_of_simulate(std::size_t stage);
+
+/// One run: costs of every frame in ms, one list per stage; without rendering those from kDraw on are empty.
+struct MarginRun {
+    Record record;
+    std::vector<FrameCost> frames;
+    std::vector<double> stage[kMarginStages];
+    // What the clock on the wall said of the same work, done one after the other [ms].
+    double simulate_wall_ms = 0.0;
+    std::vector<double> frame_walls;  ///< of drawing to writing, for every frame but the first
+    double total(std::size_t frame) const;
+};
+MarginRun one_run(const Plan& plan, const MarginArgs& args, double fps, const std::string& title);
+
+/// How far the parts explain the wall time: sums over the frames but the first, whose start nobody sees.
+struct Accounting {
+    double wall_ms = 0.0, parts_ms = 0.0;
+    double share() const { return wall_ms > 0.0 ? parts_ms / wall_ms : 1.0; }
+};
+Accounting account(const MarginRun& run);
+
+struct Spread {
+    double p50 = 0.0, p95 = 0.0, p99 = 0.0, max = 0.0;
+};
+Spread spread(std::vector<double> values);  ///< not empty
+
+/// Smallest and largest of the runs.
+struct Range {
+    double low = 0.0, high = 0.0;
+};
+
+/// What measuring itself costs, from runs with and without it, side by side.
+struct TimingCost {
+    double clock_ns = 0.0;                     ///< one look at the clock
+    double plain_ms = 0.0, profiled_ms = 0.0;  ///< the whole simulation, minima
+    double share() const { return profiled_ms / plain_ms - 1.0; }
+};
+TimingCost cost_of_timing(const Plan& plan);
+
+/// All runs together: every frame with its median over them.
+struct Margin {
+    double fps = 60.0, budget_ms = 0.0;
+    render::FrameSize size{};
+    bool rendered = true;
+    std::vector<double> stage[kMarginStages];
+    std::vector<double> total;
+    long missed = 0;
+    long missed_shown = 0;  ///< with simulate, draw and readback alone: no picture kept
+    std::size_t worst = 0;
+    Range p50_runs, p99_runs, missed_runs;  ///< over the runs
+    double frame_spread = 0.0;              ///< median over the frames of (max - min) / median over the runs
+    int runs = 0;
+    Accounting accounting;  ///< of all runs
+    TimingCost timing;
+
+    bool has(std::size_t s) const { return rendered || s <= kCluster; }
+    /// What is left of the budget [%]; negative where the frame was missed.
+    double slack(std::size_t frame) const { return 100.0 * (1.0 - total[frame] / budget_ms); }
+};
+Margin combine(const std::vector<MarginRun>& runs, double fps, bool rendered);
+
+std::string margin_json(const Margin& margin, const MarginRun& last);
+std::string margin_text(const Margin& margin, const MarginRun& last, const std::string& scene);
+void write_margin_csv(const Margin& margin, const MarginRun& last, const std::string& path);
+void plot_margin(const Margin& margin, const MarginRun& last, const std::string& scene,
+                 const std::string& path);
+
+/// The frames of one run as Chrome trace events: frame k begins at k / fps, or when the one before is done,
+/// as in a loop that simulates, draws and waits for its time.
+std::string margin_trace(const MarginRun& run, double fps);
+
+/// --sweep: every accuracy at every frame rate. Returns the exit status.
+int run_margin_sweep(const Plan& plan, const MarginArgs& args);
+
+}  // namespace carom::tools

@@ -1,0 +1,235 @@
+// carom margin: table, JSON, CSV, plot, trace.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/output_file.h"
+#include "bench/clock.h"
+#include "margin/margin.h"
+#include "report/plot.h"
+
+namespace carom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json spread_json(const std::vector<double>& values) {
+    const Spread v = spread(values);
+    return {{"p50", v.p50}, {"p95", v.p95}, {"p99", v.p99}, {"max", v.max}};
+}
+
+Json event_json(const Record& record, std::size_t i) {
+    const Event& event = record.events[i];
+    const EventCost& cost = record.costs.at(i);
+    return {{"time", event.time},
+            {"type", name(event.type)},
+            {"a", record.tracks.at(static_cast<std::size_t>(event.a)).id},
+            {"b", record.partner_id(event)},
+            {"detect_ns", cost.detect_ns},
+            {"resolve_ns", cost.resolve_ns},
+            {"kernel_ns", cost.kernel_ns}};
+}
+
+double time_of(const Margin& margin, std::size_t frame) {
+    return render::frame_time(0.0, static_cast<long>(frame), margin.fps);
+}
+
+std::vector<double> slacks(const Margin& margin) {
+    std::vector<double> list;
+    for (std::size_t k = 0; k < margin.total.size(); ++k) list.push_back(margin.slack(k));
+    std::sort(list.begin(), list.end());
+    return list;
+}
+
+}  // namespace
+
+std::string margin_json(const Margin& margin, const MarginRun& last) {
+    Json stages = Json::object();
+    for (std::size_t s = 0; s < kMarginStages; ++s) {
+        // Not measured is not 0.
+        stages[name(static_cast<MarginStage>(s))] =
+            margin.has(s) ? spread_json(margin.stage[s]) : Json(nullptr);
+    }
+    Json events = Json::array();
+    for (const std::size_t i : last.frames[margin.worst].events) events.push_back(event_json(last.record, i));
+    const std::vector<double> slack = slacks(margin);
+    Json all = {{"fps", margin.fps},
+                {"budget_ms", margin.budget_ms},
+                {"frames", margin.total.size()},
+                {"missed", margin.missed}};
+    if (margin.rendered) {
+        all["size"] = {margin.size.width, margin.size.height};
+        all["missed_without_files"] = margin.missed_shown;
+    }
+    all["stages"] = stages;
+    all["total"] = spread_json(margin.total);
+    all["slack_percent"] = {{"least", slack.front()}, {"median", median(slack)}};
+    all["worst"] = {{"frame", margin.worst},
+                    {"time", time_of(margin, margin.worst)},
+                    {"ms", margin.total[margin.worst]},
+                    {"events", events}};
+    all["runs"] = {{"count", margin.runs},
+                   {"p50", {margin.p50_runs.low, margin.p50_runs.high}},
+                   {"p99", {margin.p99_runs.low, margin.p99_runs.high}},
+                   {"missed", {margin.missed_runs.low, margin.missed_runs.high}},
+                   {"frame_spread", margin.frame_spread}};
+    all["serial"] = {{"wall_ms", margin.accounting.wall_ms},
+                     {"parts_ms", margin.accounting.parts_ms},
+                     {"share", margin.accounting.share()}};
+    all["timing"] = {{"clock_ns", margin.timing.clock_ns},
+                     {"simulate_ms", margin.timing.plain_ms},
+                     {"simulate_timed_ms", margin.timing.profiled_ms},
+                     {"share", margin.timing.share()}};
+    return all.dump() + "\n";
+}
+
+std::string margin_text(const Margin& margin, const MarginRun& last, const std::string& scene) {
+    fmt::memory_buffer out;
+    const auto line = std::back_inserter(out);
+    fmt::format_to(line, "{}: {} frames of {:.3f} ms ({} fps{}), {} missed\n\n", scene, margin.total.size(),
+                   margin.budget_ms, margin.fps,
+                   margin.rendered ? fmt::format(", {}x{}", margin.size.width, margin.size.height)
+                                   : std::string(", simulation only"),
+                   margin.missed);
+    fmt::format_to(line, "  {:<12}{:>10}{:>10}{:>10}{:>10}   ms per frame\n", "", "p50", "p95", "p99", "max");
+    const auto row = [&line](const std::string& title, const std::vector<double>& values) {
+        const Spread v = spread(values);
+        fmt::format_to(line, "  {:<12}{:>10.4f}{:>10.4f}{:>10.4f}{:>10.4f}\n", title, v.p50, v.p95, v.p99,
+                       v.max);
+    };
+    for (std::size_t s = 0; s < kMarginStages; ++s) {
+        const std::string title = name(static_cast<MarginStage>(s));
+        if (margin.has(s)) row(is_part_of_simulate(s) ? "  " + title : title, margin.stage[s]);
+    }
+    row("all", margin.total);
+    const double p99 = spread(margin.total).p99;
+    const std::vector<double> slack = slacks(margin);
+    fmt::format_to(line,
+                   "\nAt p99 a frame takes {:.1f} % of its time: margin {:.3f} ms. Slack: median {:.1f} %, "
+                   "least {:.1f} %.\n",
+                   100.0 * p99 / margin.budget_ms, margin.budget_ms - p99, median(slack), slack.front());
+    if (margin.rendered)
+        fmt::format_to(line, "Without encoding and writing, {} frames would be missed.\n",
+                       margin.missed_shown);
+    if (margin.runs > 1)
+        fmt::format_to(
+            line,
+            "Medians of {} runs; from run to run p50 {:.3f} to {:.3f} ms, p99 {:.3f} to {:.3f} ms, "
+            "missed {:.0f} to {:.0f}; a frame varies by {:.0f} % (median).\n",
+            margin.runs, margin.p50_runs.low, margin.p50_runs.high, margin.p99_runs.low, margin.p99_runs.high,
+            margin.missed_runs.low, margin.missed_runs.high, 100.0 * margin.frame_spread);
+    fmt::format_to(line, "The parts add up to {:.1f} % of the {:.1f} ms on the wall, one after the other.\n",
+                   100.0 * margin.accounting.share(), margin.accounting.wall_ms);
+    fmt::format_to(
+        line,
+        "Timing itself: simulating takes {:.3f} ms with it, {:.3f} ms without ({:+.1f} %; a look at "
+        "the clock is {:.0f} ns). Off, it is not in the loop.\n",
+        margin.timing.profiled_ms, margin.timing.plain_ms, 100.0 * margin.timing.share(),
+        margin.timing.clock_ns);
+    const std::vector<std::size_t>& events = last.frames[margin.worst].events;
+    fmt::format_to(line, "worst frame: {} at {:.4f} s, {:.3f} ms, {} events\n", margin.worst,
+                   time_of(margin, margin.worst), margin.total[margin.worst], events.size());
+    for (const std::size_t i : events) {
+        const Event& event = last.record.events[i];
+        fmt::format_to(line, "  {:.6f} s  {:<21} {} {}\n", event.time, name(event.type),
+                       last.record.tracks.at(static_cast<std::size_t>(event.a)).id,
+                       last.record.partner_id(event));
+    }
+    return fmt::to_string(out);
+}
+
+void write_margin_csv(const Margin& margin, const MarginRun& last, const std::string& path) {
+    OutputFile file(path);
+    std::string head = "frame,time,events";
+    for (std::size_t s = 0; s < kMarginStages; ++s)
+        if (margin.has(s)) head += fmt::format(",{}_ms", name(static_cast<MarginStage>(s)));
+    file.write(head + ",total_ms,slack_percent,missed\n");
+    for (std::size_t k = 0; k < margin.total.size(); ++k) {
+        std::string row = fmt::format("{},{},{}", k, time_of(margin, k), last.frames[k].events.size());
+        for (std::size_t s = 0; s < kMarginStages; ++s)
+            if (margin.has(s)) row += fmt::format(",{}", margin.stage[s][k]);
+        file.write(fmt::format("{},{},{},{}\n", row, margin.total[k], margin.slack(k),
+                               margin.total[k] > margin.budget_ms ? 1 : 0));
+    }
+    file.commit();
+}
+
+void plot_margin(const Margin& margin, const MarginRun& last, const std::string& scene,
+                 const std::string& path) {
+    Plot plot;
+    plot.title = fmt::format("What each frame costs: {} at {} fps", scene, margin.fps);
+    plot.notes = {fmt::format("{}{} of {} frames missed; strokes below: contacts",
+                              margin.rendered ? fmt::format("{}x{}; ", margin.size.width, margin.size.height)
+                                              : std::string("simulation only; "),
+                              margin.missed, margin.total.size())};
+    plot.x = {"time of the shot, s", false, 0.0, {}};
+    plot.y = {"ms", true, {}, {}};
+    const auto add = [&](const char* title, const std::vector<double>& values, int colour, bool line = true) {
+        Series series{title, {}, line, !line, false, colour};
+        for (std::size_t k = 0; k < values.size(); ++k)
+            series.points.emplace_back(time_of(margin, k), values[k]);
+        plot.series.push_back(series);
+    };
+    if (margin.rendered) {
+        add("whole frame", margin.total, 6);
+        add("encode", margin.stage[kEncode], 7);
+        add("draw", margin.stage[kDraw], 0);
+    }
+    add("simulate (where not 0)", margin.stage[kSimulate], 1, false);
+    plot.levels = {{fmt::format("1/{} s", margin.fps), margin.budget_ms}};
+    constexpr std::array kKinds = {EventType::kBallBall, EventType::kBallCluster, EventType::kBallCushion,
+                                   EventType::kBallPocket};
+    for (const EventType kind : kKinds) {
+        Ticks ticks{name(kind), {}};
+        for (const Event& event : last.record.events)
+            if (event.type == kind) ticks.at.push_back(event.time);
+        if (!ticks.at.empty()) plot.ticks.push_back(ticks);
+    }
+    write_plot(plot, path);
+}
+
+std::string margin_trace(const MarginRun& run, double fps) {
+    constexpr double kUs = 1000.0;  // a trace is in microseconds
+    Json events = Json::array();
+    const auto span = [&events](const std::string& title, const char* category, double at, double ms,
+                                const Json& args) {
+        events.push_back({{"name", title},
+                          {"cat", category},
+                          {"ph", "X"},
+                          {"ts", at},
+                          {"dur", ms * kUs},
+                          {"pid", 1},
+                          {"tid", 1},
+                          {"args", args}});
+    };
+    double free = 0.0;
+    for (std::size_t k = 0; k < run.frames.size(); ++k) {
+        const double start = std::max(free, render::frame_time(0.0, static_cast<long>(k), fps) * 1e6);
+        double at = start;
+        span(fmt::format("frame {}", k), "frame", start, run.total(k), {{"budget_ms", 1000.0 / fps}});
+        span("simulate", "simulate", at, run.stage[kSimulate][k], {{"events", run.frames[k].events.size()}});
+        double inside = at;
+        if (k == 0) inside += run.record.setup_detect_ns * 1e-3;
+        for (const std::size_t i : run.frames[k].events) {
+            const EventCost& cost = run.record.costs.at(i);
+            const double ms = (cost.detect_ns + cost.resolve_ns) * 1e-6;
+            span(name(run.record.events[i].type), "event", inside, ms, event_json(run.record, i));
+            inside += ms * kUs;
+        }
+        at += run.stage[kSimulate][k] * kUs;
+        for (std::size_t s = kDraw; s < kMarginStages; ++s) {
+            if (k >= run.stage[s].size()) continue;
+            span(name(static_cast<MarginStage>(s)), "render", at, run.stage[s][k], Json::object());
+            at += run.stage[s][k] * kUs;
+        }
+        free = at;
+    }
+    return Json{{"traceEvents", events}, {"displayTimeUnit", "ms"}}.dump() + "\n";
+}
+
+}  // namespace carom::tools

@@ -1,0 +1,216 @@
+// carom margin --sweep: at which accuracy and frame rate does a scene stop being real time?
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "accuracy/scene.h"
+#include "base/output_file.h"
+#include "bench/clock.h"
+#include "carom/engine/simulate.h"
+#include "console.h"
+#include "margin/margin.h"
+#include "report/plot.h"
+#include "setup.h"
+
+namespace carom::tools {
+namespace {
+
+constexpr double kRates[] = {30.0, 60.0, 120.0, 240.0, 480.0, 1000.0};
+/// Frames are drawn once, at this rate; other rates take the cost of the frame nearest in time, which shows
+/// nearly the same picture.
+constexpr double kDrawnRate = 60.0;
+
+struct Setting {
+    std::string method, text;
+    Plan plan;
+};
+
+struct Cell {
+    double fps = 0.0;
+    long frames = 0, missed = 0;
+    double worst_ms = 0.0, p99_ms = 0.0, worst_simulate_ms = 0.0;
+};
+
+struct SettingRow {
+    std::string method, text;
+    std::vector<Cell> cells;
+    std::optional<double> frontier;  ///< highest rate up to which no frame was missed
+};
+
+std::vector<Setting> settings_of(const Plan& plan) {
+    std::vector<Setting> list;
+    if (plan.scene.physics.ball_ball != BallBallModel::kMathavan) {
+        list.push_back({name(plan.scene.physics.ball_ball), "", plan});
+        return list;
+    }
+    for (const int n : {100, 1000, 10000, 100000})
+        list.push_back({"march", fmt::format("N={}", n), with_substeps(plan.scene, n)});
+    for (const double t : {1e-3, 1e-6, 1e-9, 1e-12})
+        list.push_back({"tolerance", fmt::format("{:g}", t), with_tolerance(plan.scene, t)});
+    return list;
+}
+
+/// Median over the runs of what every frame's simulation costs [ms].
+std::vector<double> simulate_costs(const std::vector<Record>& runs, double fps) {
+    const long frames = checked_frame_count(0.0, runs.front().duration, fps);
+    std::vector<std::vector<double>> samples(static_cast<std::size_t>(std::max(frames, 1L)));
+    for (const Record& record : runs) {
+        const std::vector<FrameCost> costs = costs_by_frame(record, 0.0, fps, frames);
+        for (std::size_t k = 0; k < costs.size(); ++k) samples[k].push_back(costs[k].simulate_ms());
+    }
+    std::vector<double> costs;
+    costs.reserve(samples.size());
+    for (const std::vector<double>& s : samples) costs.push_back(median(s));
+    return costs;
+}
+
+/// Costs of drawing to writing at kDrawnRate, medians over the runs; empty without rendering.
+std::vector<double> drawn_costs(const Plan& plan, const MarginArgs& args) {
+    if (args.no_render) return {};
+    std::vector<MarginRun> runs;
+    runs.reserve(static_cast<std::size_t>(args.repeat));
+    for (int run = 0; run < args.repeat; ++run)
+        runs.push_back(
+            one_run(plan, args, kDrawnRate, fmt::format("drawing {} of {}:", run + 1, args.repeat)));
+    const Margin margin = combine(runs, kDrawnRate, true);
+    std::vector<double> costs;
+    costs.reserve(margin.total.size());
+    for (std::size_t k = 0; k < margin.total.size(); ++k)
+        costs.push_back(margin.total[k] - margin.stage[kSimulate][k]);
+    return costs;
+}
+
+Cell cell_of(const std::vector<Record>& runs, const std::vector<double>& drawn, double fps) {
+    Cell cell;
+    cell.fps = fps;
+    std::vector<double> total = simulate_costs(runs, fps);
+    cell.frames = static_cast<long>(total.size());
+    cell.worst_simulate_ms = *std::max_element(total.begin(), total.end());
+    for (std::size_t k = 0; k < total.size() && !drawn.empty(); ++k) {
+        const double time = render::frame_time(0.0, static_cast<long>(k), fps);
+        const auto nearest = static_cast<std::size_t>(std::lround(time * kDrawnRate));
+        total[k] += drawn[std::min(nearest, drawn.size() - 1)];
+    }
+    cell.missed = std::count_if(total.begin(), total.end(), [fps](double ms) { return ms > 1000.0 / fps; });
+    const Spread s = spread(total);
+    cell.p99_ms = s.p99;
+    cell.worst_ms = s.max;
+    return cell;
+}
+
+std::vector<SettingRow> sweep(const Plan& plan, const MarginArgs& args) {
+    const std::vector<double> drawn = drawn_costs(plan, args);
+    std::vector<SettingRow> rows;
+    const std::vector<Setting> settings = settings_of(plan);
+    ProgressLine progress("margin --sweep:");
+    for (const Setting& setting : settings) {
+        std::vector<Record> runs;
+        for (int run = 0; run < args.repeat; ++run) {
+            throw_if_interrupted();
+            SimulateOptions options;
+            options.profile = true;
+            runs.push_back(simulate(setting.plan, options));
+        }
+        SettingRow row{setting.method, setting.text, {}, {}};
+        bool so_far = true;
+        for (const double fps : kRates) {
+            row.cells.push_back(cell_of(runs, drawn, fps));
+            so_far = so_far && row.cells.back().missed == 0;
+            if (so_far) row.frontier = fps;
+        }
+        rows.push_back(row);
+        progress.show_bar(static_cast<long>(rows.size()), static_cast<long>(settings.size()));
+    }
+    return rows;
+}
+
+std::string sweep_json(const std::vector<SettingRow>& rows) {
+    using Json = nlohmann::ordered_json;
+    Json list = Json::array(), frontier = Json::array();
+    for (const SettingRow& row : rows) {
+        for (const Cell& cell : row.cells)
+            list.push_back({{"method", row.method},
+                            {"setting", row.text},
+                            {"fps", cell.fps},
+                            {"budget_ms", 1000.0 / cell.fps},
+                            {"frames", cell.frames},
+                            {"missed", cell.missed},
+                            {"p99_ms", cell.p99_ms},
+                            {"worst_ms", cell.worst_ms},
+                            {"worst_simulate_ms", cell.worst_simulate_ms}});
+        frontier.push_back({{"method", row.method},
+                            {"setting", row.text},
+                            {"fps", row.frontier ? Json(*row.frontier) : Json(nullptr)}});
+    }
+    return Json{{"rows", list}, {"frontier", frontier}}.dump() + "\n";
+}
+
+std::string sweep_csv(const std::vector<SettingRow>& rows) {
+    std::string text = "method,setting,fps,frames,missed,p99_ms,worst_ms,worst_simulate_ms\n";
+    for (const SettingRow& row : rows)
+        for (const Cell& c : row.cells)
+            text += fmt::format("{},{},{},{},{},{},{},{}\n", row.method, row.text, c.fps, c.frames, c.missed,
+                                c.p99_ms, c.worst_ms, c.worst_simulate_ms);
+    return text;
+}
+
+std::string sweep_text(const std::vector<SettingRow>& rows, const MarginArgs& args) {
+    fmt::memory_buffer out;
+    const auto line = std::back_inserter(out);
+    fmt::format_to(line, "{}: frames missed (worst frame, % of its time); {}\n\n{:<22}", args.scene,
+                   args.no_render ? "simulation only" : "simulated, drawn, encoded and written on one thread",
+                   "");
+    for (const double fps : kRates) fmt::format_to(line, "{:>15}", fmt::format("{} fps", fps));
+    for (const SettingRow& row : rows) {
+        fmt::format_to(line, "\n{:<22}", row.method + " " + row.text);
+        for (const Cell& c : row.cells)
+            fmt::format_to(line, "{:>15}", fmt::format("{} ({:.0f} %)", c.missed, c.worst_ms * c.fps / 10.0));
+    }
+    fmt::format_to(line, "\n\n");
+    for (const SettingRow& row : rows)
+        fmt::format_to(line, "{} {}: {}\n", row.method, row.text,
+                       row.frontier ? fmt::format("real time up to {} fps", *row.frontier)
+                                    : fmt::format("not real time at {} fps", kRates[0]));
+    return fmt::to_string(out);
+}
+
+void plot_sweep(const std::vector<SettingRow>& rows, const MarginArgs& args) {
+    Plot plot;
+    plot.title = "Where the scene stops being real time: " + args.scene;
+    plot.notes = {args.no_render ? "worst frame of the shot, simulation only"
+                                 : "worst frame of the shot, drawn, encoded and written on one thread"};
+    plot.x = {"frames per second", true, {}, {}};
+    plot.y = {"ms of the worst frame", true, {}, {}};
+    Series budget{"1/fps", {}, true, false, true, 6};
+    for (const double fps : kRates) budget.points.emplace_back(fps, 1000.0 / fps);
+    plot.series.push_back(budget);
+    int number = 0;
+    for (const SettingRow& row : rows) {
+        Series series{row.method + " " + row.text, {}, true, true, row.method == "march", number++ % 6};
+        for (const Cell& c : row.cells) series.points.emplace_back(c.fps, c.worst_ms);
+        plot.series.push_back(series);
+    }
+    write_plot(plot, args.plot);
+}
+
+}  // namespace
+
+int run_margin_sweep(const Plan& plan, const MarginArgs& args) {
+    const std::vector<SettingRow> rows = sweep(plan, args);
+    if (!args.csv.empty()) {
+        OutputFile file(args.csv);
+        file.write(sweep_csv(rows));
+        file.commit();
+    }
+    if (!args.plot.empty()) plot_sweep(rows, args);
+    print(args.json ? sweep_json(rows) : sweep_text(rows, args));
+    return kOk;
+}
+
+}  // namespace carom::tools

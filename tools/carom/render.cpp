@@ -1,0 +1,189 @@
+// carom render: numbered PNG frames of a scene or of a record.
+#include <fmt/core.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "carom/render/sequence.h"
+#include "commands.h"
+#include "console.h"
+#include "margin/frame_costs.h"
+#include "setup.h"
+
+namespace carom::tools {
+namespace {
+
+bool is_record_file(const std::string& path) {
+    constexpr std::string_view kEnding = ".json";
+    return path.size() >= kEnding.size() &&
+           path.compare(path.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
+}
+
+void check_args(const RenderArgs& args) {
+    const auto second = [](const char* option, std::optional<double> value) {
+        if (value && !(*value >= 0.0 && std::isfinite(*value))) {
+            throw UsageError(fmt::format("{}: expected a number of seconds of at least 0", option));
+        }
+    };
+    second("--from", args.from);
+    second("--to", args.to);
+    second("--at", args.at);
+    if (args.to && *args.to < args.from) throw UsageError("--to is before --from: there would be no frame");
+    if (args.at && (args.from != 0.0 || args.to || args.frame)) {
+        throw UsageError("--at is one instant: it cannot be combined with --from, --to or --frame");
+    }
+    if (args.frame && *args.frame < 0) throw UsageError("--frame: frames are numbered from 0");
+    if (!args.sheet.empty()) {
+        parse_sheet(args.sheet);
+        return;
+    }
+    try {
+        render::frame_path(args.pattern, 0);
+    } catch (const render::RenderError& error) {
+        throw UsageError(error.what());
+    }
+}
+
+// "x,y,z" in m.
+Vec3 parse_point(const char* option, const std::string& text) {
+    double x[3];
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (int k = 0; k < 3; ++k) {
+        const auto [rest, error] = std::from_chars(at, end, x[k]);
+        const bool separated = k < 2 ? rest != end && *rest == ',' : rest == end;
+        if (error != std::errc() || !std::isfinite(x[k]) || !separated)
+            throw UsageError(fmt::format("{}: expected three numbers in m, such as 0.6,-0.5,0.8", option));
+        at = rest + (k < 2 ? 1 : 0);
+    }
+    return {x[0], x[1], x[2]};
+}
+
+render::Overlay overlay_of(const RenderArgs& args) {
+    try {
+        render::Overlay overlay = render::parse_overlay(args.overlay);
+        overlay.trails = overlay.trails || args.trails;
+        return overlay;
+    } catch (const render::RenderError& error) {
+        throw UsageError(fmt::format("--overlay: {}", error.what()));
+    }
+}
+
+void set_view(const RenderArgs& args, const RenderSettings& settings, render::SequenceOptions& options) {
+    if (!args.eye.empty() && args.target.empty()) throw UsageError("--eye needs --target X,Y,Z");
+    if (!args.eye.empty() && !args.camera.empty()) throw UsageError("--camera and --eye exclude each other");
+    options.camera = args.camera.empty() ? settings.camera : args.camera;
+    options.view.ball = args.ball;
+    if (!args.eye.empty()) {
+        options.view.eye = parse_point("--eye", args.eye);
+        options.view.target = parse_point("--target", args.target);
+        if (*options.view.eye == *options.view.target) throw UsageError("--target is where the eye is");
+    } else if (args.camera.empty()) {
+        options.view.eye = settings.eye;
+        options.view.target = settings.target;
+    }
+    options.overlay = overlay_of(args);
+}
+
+render::SequenceOptions sequence_options(const RenderArgs& args, const Record& record) {
+    const RenderSettings& settings = record.render;
+    render::SequenceOptions options;
+    options.pattern = args.pattern;
+    options.fps = chosen_fps(args.fps, settings);
+    options.from = args.at.value_or(args.from);
+    options.to = args.at ? args.at : args.to;
+    options.frame = args.frame;
+    options.size =
+        args.size.empty() ? render::FrameSize{settings.width, settings.height} : parse_size(args.size);
+    set_view(args, settings, options);
+    options.png_level = args.png_level;
+    options.jobs = args.jobs;
+    options.resume = args.resume;
+    if (args.raw) {
+        options.raw = [](const std::uint8_t* rgb, std::size_t bytes) {
+            print(std::string_view(reinterpret_cast<const char*>(rgb), bytes));
+        };
+    }
+    options.backend = render::backend_from_name(args.gl);
+    const long frames = checked_frame_count(options.from, options.to.value_or(record.duration), options.fps);
+    if (frames < 1) {
+        throw UsageError(
+            fmt::format("--from {}: the shot is over after {} s", options.from, record.duration));
+    }
+    if (args.frame && *args.frame >= frames) {
+        throw UsageError(fmt::format("--frame {}: the last frame is {}", *args.frame, frames - 1));
+    }
+    return options;
+}
+
+}  // namespace
+
+// The margin bar's share of the simulation: what the events cost that fall between a frame and the next one.
+// A record that was not profiled has no costs: then the bar shows drawing, reading back and encoding alone.
+void set_simulation_costs(const Record& record, render::SequenceOptions& options) {
+    if (record.costs.empty()) return;
+    // Frames before the first and after the last take the events there, which are none of those that are
+    // shown.
+    const double before = std::ceil(options.from * options.fps);
+    const auto first = static_cast<long>(before);
+    const long frames = render::frame_count(options.from, options.to.value_or(record.duration), options.fps);
+    auto costs = costs_by_frame(record, options.from - before / options.fps, options.fps, first + frames + 1);
+    options.simulate_ms = [costs = std::move(costs), first](long k) {
+        return costs[static_cast<std::size_t>(first + k)].simulate_ms();
+    };
+}
+
+int write_sheet(const RenderArgs& args, const Record& record, const render::SequenceOptions& options) {
+    const render::FrameSize grid = parse_sheet(args.sheet);
+    const std::string path = args.pattern.find('%') == std::string::npos ? args.pattern : "sheet.png";
+    render::render_sheet(record, options, grid.width, grid.height, path);
+    print(fmt::format("{} pictures: {}\n", grid.width * grid.height, path));
+    return kOk;
+}
+
+int run_render(const RenderArgs& args) {
+    check_args(args);
+    if (args.raw && (args.resume || !args.sheet.empty()))
+        throw UsageError("--raw goes with neither --resume nor --sheet");
+    if (!args.size.empty()) parse_size(args.size);
+    SimulateOptions simulation;
+    simulation.profile = overlay_of(args).margin;
+    const Record record = is_record_file(args.input) ? read_record(args.input)
+                                                     : simulate_plan(plan_scene(args.input), simulation);
+    render::SequenceOptions options = sequence_options(args, record);
+    if (options.overlay.margin) set_simulation_costs(record, options);
+    if (!args.sheet.empty()) return write_sheet(args, record, options);
+    ProgressLine line("rendering:");
+    options.progress = [&line](long done, long total) {
+        throw_if_interrupted();
+        line.show_bar(done, total);
+    };
+    const std::vector<render::FrameTiming> timings = render::render_sequence(record, options);
+    throw_if_interrupted();
+    if (args.raw) {
+        flush_output();
+        message(
+            fmt::format("{} frames of RGB; to make a film of them, pipe them into: ffmpeg -f rawvideo "
+                        "-pix_fmt rgb24 -s {}x{} -framerate {} "
+                        "-i - -pix_fmt yuv420p shot.mp4",
+                        timings.size(), options.size.width, options.size.height, options.fps));
+        return kOk;
+    }
+    if (timings.size() == 1) {
+        print(fmt::format("1 frame: {}\n", render::frame_path(options.pattern, timings.front().frame)));
+        return kOk;
+    }
+    print(fmt::format("{} frames, {}x{} at {} fps: {}\n", timings.size(), options.size.width,
+                      options.size.height, options.fps, options.pattern));
+    print(fmt::format("to make a film of them: ffmpeg -framerate {} -i {} -pix_fmt yuv420p shot.mp4\n",
+                      options.fps, options.pattern));
+    return kOk;
+}
+
+}  // namespace carom::tools

@@ -1,0 +1,19 @@
+// Events and samples of a record as CSV. Numbers read back to the same bits. Names need no quotes: the scene
+// reader refuses a ball's id that holds a comma, a quote or a control character.
+#pragma once
+
+#include <string>
+
+#include "base/output_file.h"
+#include "carom/engine/record.h"
+
+namespace carom::tools {
+
+/// `time,type,a,b`, and for a profiled record `detect_ns,resolve_ns,kernel_ns,steps,method` behind it.
+void write_events_csv(const Record& record, OutputFile& file);
+
+/// `time,ball,state,x,y,z,vx,vy,vz,wx,wy,wz`: every ball at k dt, k = 0, 1, ..., up to the duration.
+/// @throws UsageError if that is too many rows
+void write_samples_csv(const Record& record, double dt, OutputFile& file);
+
+}  // namespace carom::tools

@@ -1,0 +1,243 @@
+// carom sweep: many shots of one scene, a row a shot.
+//
+// A row depends on the scene, the rules, the seed and its number alone; threads only decide when it is
+// computed. Rows are written in their order, so that what a kill leaves behind is a beginning of the whole.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "commands.h"
+#include "console.h"
+#include "setup.h"
+#include "sweep/partial_file.h"
+#include "sweep/row.h"
+
+namespace carom::tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t kMostShots = 1000000000;
+constexpr std::uint64_t kMostShards = 1000000;
+/// Rows that may wait for an earlier one that takes long; bounds the memory.
+constexpr std::uint64_t kMostWaiting = 4096;
+constexpr std::chrono::milliseconds kFlushEvery(200);
+
+/// Shots `first` to `last - 1`.
+struct ShotRange {
+    std::uint64_t first, last;
+    bool header;  ///< belongs to the first shard
+};
+
+ShotRange shard_range(const std::string& text, std::uint64_t count) {
+    if (text.empty()) return {0, count, true};
+    std::uint64_t i = 0, n = 0;
+    const char* const end = text.data() + text.size();
+    const auto [slash, bad_i] = std::from_chars(text.data(), end, i);
+    if (bad_i == std::errc() && slash != end && *slash == '/') {
+        const auto [rest, bad_n] = std::from_chars(slash + 1, end, n);
+        if (bad_n == std::errc() && rest == end && i >= 1 && i <= n && n <= kMostShards)
+            return {count * (i - 1) / n, count * i / n, i == 1};
+    }
+    throw UsageError(fmt::format("--shard {}: expected I/N with 1 <= I <= N, as in 2/4", text));
+}
+
+/// Hands out shot numbers to threads, and their rows, in order, to the one that writes.
+class Queue {
+  public:
+    Queue(std::uint64_t first, std::uint64_t last) : next_(first), last_(last), wanted_(first) {}
+
+    /// The next shot to run; nothing when all are taken or the sweep stops.
+    std::optional<std::uint64_t> claim() {
+        std::unique_lock lock(mutex_);
+        room_.wait(lock, [&] { return stopped_ || next_ == last_ || next_ < wanted_ + kMostWaiting; });
+        if (stopped_ || next_ == last_) return std::nullopt;
+        return next_++;
+    }
+
+    void put(std::uint64_t shot, SweepRow row) {
+        const std::lock_guard lock(mutex_);
+        rows_.emplace(shot, std::move(row));
+        if (shot == wanted_) ready_.notify_one();
+    }
+
+    /// Rows that are ready and next in order; waits a tenth of a second for one.
+    std::vector<SweepRow> take() {
+        std::unique_lock lock(mutex_);
+        ready_.wait_for(lock, std::chrono::milliseconds(100),
+                        [&] { return stopped_ || rows_.count(wanted_) != 0; });
+        if (error_) std::rethrow_exception(error_);
+        std::vector<SweepRow> rows;
+        for (auto it = rows_.begin(); it != rows_.end() && it->first == wanted_;
+             it = rows_.erase(it), ++wanted_)
+            rows.push_back(std::move(it->second));
+        if (!rows.empty()) room_.notify_all();
+        return rows;
+    }
+
+    void stop(std::exception_ptr error) {
+        const std::lock_guard lock(mutex_);
+        if (!stopped_) error_ = std::move(error);
+        stopped_ = true;
+        room_.notify_all();
+        ready_.notify_one();
+    }
+
+  private:
+    std::mutex mutex_;
+    std::condition_variable room_, ready_;
+    std::map<std::uint64_t, SweepRow> rows_;
+    std::uint64_t next_, last_, wanted_;
+    bool stopped_ = false;
+    std::exception_ptr error_;
+};
+
+/// Threads that run shots; the destructor waits for the shots that have begun.
+class Workers {
+  public:
+    Workers(Queue& queue, const Variation& variation, kernel::Isa isa, unsigned jobs) : queue_(queue) {
+        try {
+            for (unsigned i = 0; i < jobs; ++i)
+                threads_.emplace_back([&queue, &variation, isa] { work(queue, variation, isa); });
+        } catch (...) {  // the system gives no more threads
+            finish();
+            throw;
+        }
+    }
+    ~Workers() { finish(); }
+    Workers(const Workers&) = delete;
+    Workers& operator=(const Workers&) = delete;
+
+  private:
+    static void work(Queue& queue, const Variation& variation, kernel::Isa isa) noexcept {
+        try {
+            while (const auto shot = queue.claim()) queue.put(*shot, sweep_row(variation, *shot, isa));
+        } catch (...) {
+            queue.stop(std::current_exception());
+        }
+    }
+    void finish() {
+        queue_.stop(nullptr);
+        for (std::thread& thread : threads_) thread.join();
+    }
+
+    Queue& queue_;
+    std::vector<std::thread> threads_;
+};
+
+/// Where to go on in a file that was left behind. The last line is made again, so that the rows of another
+/// build are not continued.
+std::uint64_t take_up(const PartialFile& file, const Variation& variation, const ShotRange& range,
+                      kernel::Isa isa) {
+    if (file.lines() == 0) return range.first;
+    const std::uint64_t rows = static_cast<std::uint64_t>(file.lines()) - (range.header ? 1 : 0);
+    std::string expected;
+    if (rows <= range.last - range.first)
+        expected =
+            rows == 0 ? sweep_header(variation) : sweep_row(variation, range.first + rows - 1, isa).text;
+    if (expected != file.last_line() + '\n')
+        throw std::runtime_error(fmt::format(
+            "{}: its last row is not what this program computes; remove it to begin anew", file.name()));
+    message(fmt::format("going on with {}: {} of {} shots are there", file.name(), rows,
+                        range.last - range.first));
+    return range.first + rows;
+}
+
+using Outcomes = std::array<std::uint64_t, kShotOutcomes>;
+
+/// Runs the shots from `from` on and writes their rows.
+Outcomes write_rows(PartialFile& file, const Variation& variation, const ShotRange& range, std::uint64_t from,
+                    kernel::Isa isa, unsigned jobs) {
+    Outcomes outcomes{};
+    Queue queue(from, range.last);
+    ProgressLine line("sweep");
+    Clock::time_point flushed = Clock::now();
+    const Workers workers(queue, variation, isa, jobs);
+    for (std::uint64_t done = from; done < range.last;) {
+        throw_if_interrupted();
+        for (const SweepRow& row : queue.take()) {
+            file.append(row.text);
+            ++outcomes[static_cast<std::size_t>(row.outcome)];
+            ++done;
+        }
+        if (Clock::now() - flushed >= kFlushEvery) {
+            file.flush();
+            flushed = Clock::now();
+        }
+        line.show_bar(static_cast<long>(done - range.first), static_cast<long>(range.last - range.first));
+    }
+    return outcomes;
+}
+
+std::string summary(const Outcomes& outcomes, const SweepArgs& args, unsigned jobs, double seconds) {
+    std::uint64_t shots = 0;
+    for (const std::uint64_t n : outcomes) shots += n;
+    std::string text =
+        fmt::format("{}: {} shots in {:.2f} s on {} threads, {:.0f} a second\n", args.output, shots, seconds,
+                    jobs, static_cast<double>(shots) / std::max(seconds, 1e-9));
+    for (int i = 0; i < kShotOutcomes; ++i) {
+        const std::uint64_t n = outcomes[static_cast<std::size_t>(i)];
+        if (n > 0) text += fmt::format("  {:<8}{:>10}\n", name(static_cast<ShotOutcome>(i)), n);
+    }
+    return text;
+}
+
+Variation read_variation(const SweepArgs& args) {
+    try {
+        return Variation(args.scene, args.vary, args.seed);
+    } catch (const VariationError& error) {
+        throw UsageError(fmt::format("--vary: {}", error.what()));
+    }
+}
+
+}  // namespace
+
+int run_sweep(const SweepArgs& args) {
+    if (args.count < 1 || args.count > kMostShots)
+        throw UsageError(fmt::format("--count: expected 1 to {} shots", kMostShots));
+    const ShotRange range = shard_range(args.shard, args.count);
+    const kernel::Isa isa = chosen_isa();
+    const Variation variation = read_variation(args);
+    for (const std::string& warning : make_plan(variation.base(), isa).warnings)
+        message("warning: " + warning);
+    // Another range of shots is another file.
+    const std::uint64_t id =
+        variation.fingerprint() ^ (range.first * 0x9e3779b97f4a7c15u) ^ (range.last * 0xbf58476d1ce4e5b9u);
+    PartialFile file(args.output, id);
+    const std::uint64_t from = take_up(file, variation, range, isa);
+    if (range.header && file.lines() == 0) file.append(sweep_header(variation));
+    const unsigned jobs =
+        args.jobs > 0 ? static_cast<unsigned>(args.jobs) : std::max(1u, std::thread::hardware_concurrency());
+    const Clock::time_point start = Clock::now();
+    Outcomes outcomes{};
+    try {
+        outcomes = write_rows(file, variation, range, from, isa, jobs);
+    } catch (const Interrupted&) {
+        file.flush();
+        if (file.can_be_taken_up())
+            message(fmt::format("stopped; the same command goes on with {}", file.name()));
+        throw;
+    }
+    file.commit();
+    print(summary(outcomes, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
+    const std::uint64_t failed = outcomes[static_cast<std::size_t>(ShotOutcome::kRunFailed)];
+    if (failed == 0) return kOk;
+    message(fmt::format("{} shots failed while running; their rows say why", failed));
+    return kFailed;
+}
+
+}  // namespace carom::tools

@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+"""Instructions per event of a shot, by kind of event and by part of the loop, counted by callgrind.
+
+Callgrind writes out its counters at the start of every round of the event loop, so that each round stands alone; counts
+are the same on every machine that runs the same build. Valgrind knows AVX2 and not AVX-512: CAROM_ISA is v3 or scalar.
+Needs valgrind; builds the target carom_shot_probe where --build names a build folder (default build/release).
+
+    tools/measure/callgrind_shot.py                              the eight-ball break, pair by pair
+    tools/measure/callgrind_shot.py two_ball_shot --seed 3 --functions 20
+    tools/measure/callgrind_shot.py gas --balls 100 --events 500
+"""
+import argparse
+import collections
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+# First match counts.
+PARTS = [
+    ("cluster", r"carom::ClusterMap::|collect_cluster|resolve_cluster"),
+    ("kernel", r"carom::kernel::"),
+    ("queue", r"EventQueue|Shot::(next|before|closing|place|requeue|changed)"),
+    ("detect", r"Shot::(pair|search_pairs|look_again|redetect|renew|detect_|find_parts|offer|bound|path|swept|held_to|"
+               r"rescan)|BoxSearch|b2|time_to_|time_along|stays_|first_descent|bracketed_root|closing_speed|refine|"
+               r"along_line|brought_near|first_touch|Descent|unit_roots"),
+    ("memory", r"^(_int_malloc|_int_free|malloc|free|operator new|operator delete|malloc_consolidate|unlink_chunk|"
+               r"_int_realloc|sysmalloc|memcpy|memset|__mem)|_M_realloc"),
+    ("resolve", r""),
+]
+
+
+def part_of(function):
+    return next(name for name, pattern in PARTS if re.search(pattern, function))
+
+
+def self_costs(path):
+    """Own instructions of every function in one callgrind file."""
+    costs, names, function, called = collections.Counter(), {}, None, False
+    for line in path.read_text().splitlines():
+        if line.startswith("fn="):
+            match = re.match(r"fn=(\(\d+\))?\s*(.*)", line)
+            key, name = match.group(1), match.group(2)
+            if name:
+                names[key] = name
+            function = names.get(key, name)
+        elif line.startswith(("cfn=", "cfni=")):
+            match = re.match(r"cfni?=(\(\d+\))?\s*(.*)", line)
+            if match.group(2):
+                names[match.group(1)] = match.group(2)
+        elif line.startswith("calls="):
+            called = True
+        elif function and re.match(r"[+\-*\d]", line):
+            if called:
+                called = False  # inclusive cost of the call
+            else:
+                fields = line.split()
+                costs[function] += int(fields[1]) if len(fields) > 1 else 0
+    return costs
+
+
+def measure(probe, args, folder):
+    command = ["valgrind", "--tool=callgrind", "--toggle-collect=carom::simulate(*", "--dump-before=*carom::Shot::apply<*",
+               "--compress-strings=no", f"--callgrind-out-file={folder}/out", str(probe)]
+    command += ["gas", str(args.balls), str(args.events)] if args.shot == "gas" else [args.shot, str(args.seed)]
+    env = dict(os.environ)
+    env.setdefault("CAROM_ISA", "v3")
+    run = subprocess.run(command, capture_output=True, text=True, env=env)
+    if run.returncode != 0:
+        sys.exit(f"callgrind_shot.py: {' '.join(command)} failed:\n{run.stderr[-2000:]}")
+    files = sorted(folder.glob("out*"), key=lambda f: int(f.suffix[1:] or 0) if f.suffix else 1 << 30)
+    return run.stdout.split("\n")[:-1], [self_costs(f) for f in files]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("shot", nargs="?", default="eight_ball_break",
+                        help="a name of carom bench shot, or gas (default: eight_ball_break)")
+    parser.add_argument("--seed", type=int, default=0, help="of the shot (default: 0, the one of scenes/)")
+    parser.add_argument("--balls", type=int, default=16, help="of the gas (default: 16)")
+    parser.add_argument("--events", type=int, default=300, help="of the gas (default: 300)")
+    parser.add_argument("--functions", type=int, default=0, metavar="N", help="print the N dearest functions too")
+    parser.add_argument("--build", default="build/release", help="build folder (default: build/release)")
+    parser.add_argument("--json", metavar="FILE", help="write the counts")
+    args = parser.parse_args()
+    if shutil.which("valgrind") is None:
+        sys.exit("callgrind_shot.py: valgrind is not installed (apt-get install valgrind)")
+    build = pathlib.Path(args.build)
+    if not (build / "CMakeCache.txt").exists():
+        sys.exit(f"callgrind_shot.py: {build} is no build folder; run cmake --preset release first")
+    subprocess.run(["cmake", "--build", str(build), "--target", "carom_shot_probe"], check=True, stdout=subprocess.DEVNULL)
+    with tempfile.TemporaryDirectory() as folder:
+        kinds, dumps = measure(build / "tools" / "measure" / "carom_shot_probe", args, pathlib.Path(folder))
+    # One dump before the first round (set-up, first detection), then one a round; the last one holds the end of the run.
+    if len(dumps) < len(kinds) + 1:
+        sys.exit(f"callgrind_shot.py: {len(kinds)} rounds but {len(dumps)} dumps; is the loop still called Shot::apply?")
+    dumps = [d for d in dumps if sum(d.values())]
+    rows = collections.defaultdict(lambda: [0, collections.Counter()])
+    total = collections.Counter()
+    for kind, dump in zip(["(set-up)"] + kinds, dumps):
+        rows[kind][0] += 1
+        for function, cost in dump.items():
+            rows[kind][1][part_of(function)] += cost
+            total[function] += cost
+    names = [name for name, _ in PARTS]
+    print(f"{args.shot}: {len(kinds)} events, {sum(total.values())} instructions; mean instructions of an event\n")
+    print(f"{'':<22}{'count':>6}{'all':>9}" + "".join(f"{n:>9}" for n in names))
+    for kind, (count, parts) in sorted(rows.items(), key=lambda r: -sum(r[1][1].values())):
+        print(f"{kind:<22}{count:>6}{sum(parts.values()) / count:>9.0f}"
+              + "".join(f"{parts[n] / count:>9.0f}" for n in names))
+    if args.functions:
+        print(f"\n{'instructions':>12}  share  part      function")
+        for function, cost in total.most_common(args.functions):
+            print(f"{cost:>12}{100 * cost / sum(total.values()):>6.1f}%  {part_of(function):<9} {function[:110]}")
+    if args.json:
+        pathlib.Path(args.json).write_text(json.dumps({
+            "shot": args.shot, "seed": args.seed, "total": sum(total.values()),
+            "kinds": {k: {"count": c, "parts": dict(p)} for k, (c, p) in rows.items()},
+            "functions": dict(total.most_common(100))}, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,158 @@
+// Operations a step: the ladder's own source, run through a number that counts. A program of its own, because
+// in it every `double` of the kernel is such a number; it links nothing of the library.
+#include <immintrin.h>
+
+#include <cstdio>
+#include <initializer_list>
+#include <type_traits>
+
+namespace counting {
+
+struct Counts {
+    long add = 0, mul = 0, fma = 0, div = 0, root = 0, rsqrt = 0, compare = 0;
+} counts;
+
+struct Counted {
+    double value;
+    constexpr Counted() : value(0.0) {}
+    template <class T>
+    requires(std::is_arithmetic_v<T>) constexpr Counted(T x) : value(static_cast<double>(x)) {}
+    template <class T>
+    requires(std::is_arithmetic_v<T>) constexpr explicit operator T() const { return static_cast<T>(value); }
+};
+
+constexpr void count(long Counts::*what) {
+    if (!__builtin_is_constant_evaluated()) ++(counts.*what);
+}
+constexpr Counted operator+(Counted a, Counted b) {
+    return count(&Counts::add), Counted(a.value + b.value);
+}
+constexpr Counted operator-(Counted a, Counted b) {
+    return count(&Counts::add), Counted(a.value - b.value);
+}
+constexpr Counted operator*(Counted a, Counted b) {
+    return count(&Counts::mul), Counted(a.value * b.value);
+}
+constexpr Counted operator/(Counted a, Counted b) {
+    return count(&Counts::div), Counted(a.value / b.value);
+}
+constexpr Counted operator-(Counted a) {
+    return Counted(-a.value);
+}  // a sign bit, no arithmetic
+constexpr Counted& operator+=(Counted& a, Counted b) {
+    return a = a + b;
+}
+constexpr Counted& operator-=(Counted& a, Counted b) {
+    return a = a - b;
+}
+constexpr Counted& operator*=(Counted& a, Counted b) {
+    return a = a * b;
+}
+constexpr Counted& operator/=(Counted& a, Counted b) {
+    return a = a / b;
+}
+constexpr bool operator<(Counted a, Counted b) {
+    return count(&Counts::compare), a.value < b.value;
+}
+constexpr bool operator>(Counted a, Counted b) {
+    return count(&Counts::compare), a.value > b.value;
+}
+constexpr bool operator<=(Counted a, Counted b) {
+    return count(&Counts::compare), a.value <= b.value;
+}
+constexpr bool operator>=(Counted a, Counted b) {
+    return count(&Counts::compare), a.value >= b.value;
+}
+constexpr bool operator==(Counted a, Counted b) {
+    return count(&Counts::compare), a.value == b.value;
+}
+constexpr bool operator!=(Counted a, Counted b) {
+    return count(&Counts::compare), a.value != b.value;
+}
+
+Counted counted_root(Counted a) {
+    return count(&Counts::root), Counted(__builtin_sqrt(a.value));
+}
+Counted counted_fma(Counted a, Counted b, Counted c) {
+    return count(&Counts::fma), Counted(__builtin_fma(a.value, b.value, c.value));
+}
+__m128 counted_rsqrt(__m128 a) {
+    return count(&Counts::rsqrt), _mm_rsqrt_ss(a);
+}
+
+}  // namespace counting
+using namespace counting;
+
+#define double Counted
+// NOLINTBEGIN(clang-diagnostic-reserved-macro-identifier): these calls are what is counted
+#define __builtin_sqrt counted_root
+#define __builtin_fma counted_fma
+// NOLINTEND(clang-diagnostic-reserved-macro-identifier)
+#define _mm_rsqrt_ss counted_rsqrt
+#define CAROM_MARCH_NAME count_baseline
+#include "bench/five_states.h"
+#include "ladder/branch_hints.h"
+#include "ladder/branch_order.h"
+#include "ladder/combined.h"
+#include "ladder/explicit_fma.h"
+#include "ladder/fewer_roots.h"
+#include "ladder/precomputed.h"
+#include "ladder/reduced.h"
+#include "ladder/rsqrt_newton.h"
+#include "ladder/rsqrt_raw.h"
+#include "ladder/two_stage.h"
+#include "ladder/unconditional_roots.h"
+#include "march/impl.h"
+#undef double
+
+namespace {
+
+using namespace carom::kernel;
+using March = void (*)(const Ball&, const Ball&, const ImpactParams&, int, ImpactResult&);
+
+void report(const char* name, March march) {
+    // The difference of two N, so that only the loop counts.
+    double per_step[7] = {};
+    long steps = 0;
+    for (int n : {1000, 2000}) {
+        for (const auto& state : carom::tools::kFiveStates) {
+            counts = {};
+            ImpactResult out;
+            march(state.ball1, state.ball2, state.params, n, out);
+            const double sign = n == 2000 ? 1.0 : -1.0;
+            const long values[7] = {counts.add,  counts.mul,   counts.fma,    counts.div,
+                                    counts.root, counts.rsqrt, counts.compare};
+            for (int i = 0; i < 7; ++i) per_step[i] += sign * static_cast<double>(values[i]);
+            steps += (n == 2000 ? 1 : -1) * out.steps;
+        }
+    }
+    std::printf("%s{\"name\": \"%s\"", march == count_baseline ? "" : ",\n ", name);
+    const char* names[7] = {"add", "mul", "fma", "div", "sqrt", "rsqrt", "compare"};
+    for (int i = 0; i < 7; ++i)
+        std::printf(", \"%s\": %.2f", names[i], per_step[i] / static_cast<double>(steps));
+    std::printf("}");
+}
+
+template <class Rung>
+void rung(const Ball& a, const Ball& b, const ImpactParams& p, int n, ImpactResult& out) {
+    drive<Rung>(a, b, p, n, out);
+}
+
+}  // namespace
+
+int main() {
+    std::printf("{\"per_step\": [\n ");
+    report("baseline", count_baseline);
+    report("fewer square roots", rung<FewerRoots>);
+    report("rsqrt", rung<RsqrtRaw>);
+    report("rsqrt newton", rung<RsqrtNewton>);
+    report("branch hints", rung<BranchHints>);
+    report("branch order", rung<BranchOrder>);
+    report("unconditional roots", rung<UnconditionalRoots>);
+    report("two stages", rung<TwoStage>);
+    report("precomputed", rung<Precomputed>);
+    report("fma", rung<ExplicitFma>);
+    report("combined", rung<Combined>);
+    report("reduced state", rung<ReducedState>);
+    std::printf("]}\n");
+}

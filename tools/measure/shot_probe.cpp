@@ -1,0 +1,44 @@
+// Runs one shot, for tools/measure/callgrind_shot.py: shot_probe NAME SEED [RUNS], or shot_probe gas N EVENTS.
+// Prints the kind of event of every round of the loop in the last run, one a line.
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "bench/shot_cases.h"
+#include "carom/engine/plan.h"
+#include "carom/engine/simulate.h"
+
+int main(int argc, char** argv) {
+    using namespace carom;
+    if (argc < 3) {
+        std::fprintf(stderr, "usage: shot_probe NAME SEED [RUNS] | shot_probe gas N EVENTS; NAME is one of");
+        for (const std::string& name : tools::shot_names()) std::fprintf(stderr, " '%s'", name.c_str());
+        std::fprintf(stderr, "\n");
+        return 2;
+    }
+    const std::string name = argv[1];
+    const long number = std::strtol(argv[2], nullptr, 10),
+               third = argc > 3 ? std::strtol(argv[3], nullptr, 10) : 1;
+    kernel::Isa isa{};
+    if (kernel::isa_from_environment(isa) != kernel::IsaChoice::kOk) return 2;
+    const Scene scene = name == "gas" ? tools::gas_scene(static_cast<int>(number), third, 1)
+                                      : tools::shot_scene(name, static_cast<std::uint64_t>(number));
+    const Plan plan = make_plan(scene, isa);
+    std::vector<std::size_t> ends;  // of every round, in events
+    ends.reserve(100000);
+    Record record;
+    for (long run = name == "gas" ? 1 : third; run > 0; --run) {
+        SimulateOptions options;
+        options.progress = [&ends](std::size_t events, double) { ends.push_back(events); };
+        ends.clear();
+        record = simulate(plan, options);
+    }
+    std::size_t begin = scene.cue ? 1 : 0;
+    for (const std::size_t end : ends) {
+        std::printf("%s\n", end > begin ? carom::name(record.events[begin].type) : "no event");
+        begin = end;
+    }
+    return 0;
+}
