@@ -19,6 +19,7 @@
 #include "commands.h"
 #include "console.h"
 #include "describe.h"
+#include "help_formatter.h"
 
 namespace carom::tools {
 namespace {
@@ -377,6 +378,7 @@ void add_commands(CLI::App& app, Action& action) {
 
 int run(int argc, char** argv) {
     CLI::App app("carom, a billiards table simulator", "carom");
+    app.formatter(std::make_shared<HelpFormatter>());
     app.set_version_flag("--version", "carom " CAROM_VERSION);
     app.require_subcommand(0, 1);  // none is an error too, but one with a better message than CLI11's
     app.footer(
