@@ -64,6 +64,7 @@ class Shot {
   private:
     void reserve_log();
     void first_candidates();
+    void end(double next, double stop);
 
     // shot_queue.cpp
     template <bool kProfile>
