@@ -5,6 +5,7 @@
 
 #include <cctype>
 #include <string>
+#include <vector>
 
 #include "carom/kernel/ladder.h"
 #include "support/batch_arrays.h"
@@ -24,6 +25,15 @@ inline std::vector<kernel::ImpactResult> run_rung(const kernel::Rung& rung, std:
     rung.batch(arrays.batch, n, arrays.result);
     for (std::size_t i = 0; i < impacts.size(); ++i) results[i] = arrays.get(i);
     return results;
+}
+
+/// The rows of the ladder that a test is about.
+template <class Wanted>
+std::vector<kernel::Rung> rungs_where(const Wanted& wanted) {
+    std::vector<kernel::Rung> rungs;
+    for (const kernel::Rung& rung : kernel::ladder())
+        if (wanted(rung)) rungs.push_back(rung);
+    return rungs;
 }
 
 /// The name of a test of one rung on one instruction set.
