@@ -1,5 +1,6 @@
 // The C interface: the same results as the C++ one, and a status with a message for whatever cannot be done.
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <cmath>
 #include <cstdint>
@@ -213,6 +214,44 @@ TEST(CApi, SaysWhatIsWrongWithAScene) {
     ASSERT_EQ(carom_scene_get_ball_param(h.scene, "radius", &radius), CAROM_OK);
     EXPECT_EQ(radius, 0.03);
     EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_OK) << carom_last_error();
+}
+
+// A host calls from a thread of its own, whose stack may be small.
+TEST(CApi, AKeyOfManyPartsLeavesTheHostAlone) {
+    std::string text = "[[ball]]\na";
+    for (int i = 0; i < 40000; ++i) text += ".a";
+    text += " = 1\n";
+    pthread_attr_t attributes;
+    pthread_t thread;
+    ASSERT_EQ(pthread_attr_init(&attributes), 0);
+    ASSERT_EQ(pthread_attr_setstacksize(&attributes, 512 << 10), 0);
+    const auto host = [](void* scene_text) -> void* {
+        carom_scene* scene = nullptr;
+        EXPECT_EQ(carom_scene_parse(static_cast<const char*>(scene_text), "x.toml", &scene), CAROM_BAD_SCENE);
+        EXPECT_EQ(std::string(carom_last_error()).rfind("x.toml:2:32: this key has more than 16 parts", 0),
+                  0u)
+            << carom_last_error();
+        EXPECT_EQ(scene, nullptr);
+        return nullptr;
+    };
+    ASSERT_EQ(pthread_create(&thread, &attributes, host, text.data()), 0);
+    pthread_join(thread, nullptr);
+    pthread_attr_destroy(&attributes);
+}
+
+TEST(CApi, MotionWithoutEndGoesOnToTheTimeOfTheCall) {
+    // No cushion is within reach of the one; no cushion is of interest to the other.
+    for (const char* text : {"[stop]\ntime = 0.2\n[physics]\ngravity = 0\n[[ball]]\nvelocity = [1, 0]\n",
+                             "[stop]\nevents = 7\n[balls]\nmu_sp = 0\n[[ball]]\nspin = [0, 0, 5]\n"}) {
+        Handles h;
+        ASSERT_EQ(carom_scene_parse(text, "x", &h.scene), CAROM_OK) << carom_last_error();
+        ASSERT_EQ(carom_simulate(h.scene, 0.1, &h.record), CAROM_OK) << carom_last_error();
+        EXPECT_EQ(carom_record_duration(h.record), 0.1) << text;
+        double start[9], end[9];
+        ASSERT_EQ(carom_record_state(h.record, 0, 0.0, start, nullptr), CAROM_OK);
+        ASSERT_EQ(carom_record_state(h.record, 0, 0.1, end, nullptr), CAROM_OK);
+        EXPECT_NEAR(end[0] - start[0], 0.1 * start[3], 1e-15) << text;
+    }
 }
 
 TEST(CApi, ARunThatCannotGoOnIsAFailureWithAMessage) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "carom/engine/tolerances.h"
@@ -295,11 +296,35 @@ TEST(Cluster, FifthRoot) {
                     1e-15)
             << x;
     }
+    EXPECT_EQ(fifth_root(0.0), 0.0);
     EXPECT_EQ(fifth_root(32.0), 2.0);
     EXPECT_EQ(fifth_root(1.0), 1.0);
     const double least = std::numeric_limits<double>::denorm_min();
     EXPECT_NEAR(fifth_root(least) / static_cast<double>(std::pow(static_cast<long double>(least), 0.2L)), 1.0,
                 1e-15);
+}
+
+// The fourth power of the speed underflows long before the length does.
+TEST(Cluster, AContactHasALengthAtEverySpeed) {
+    for (int exponent = -323; exponent <= 6; ++exponent) {
+        const double V = std::pow(10.0, exponent);
+        const long double x = static_cast<long double>(V) * V / kContactStiffness;
+        EXPECT_NEAR(contact_length(V) / static_cast<double>(std::pow(x, 0.4L)), 1.0, 2e-15) << V;
+    }
+    EXPECT_EQ(contact_length(0.0), 0.0);
+}
+
+TEST(Cluster, BallsThatHardlyMoveComeToRest) {
+    for (const char* speed : {"1e-60", "5e-77", "1e-80", "1e-100", "1e-150"}) {
+        const std::string v(speed);
+        const Scene scene =
+            parse_scene("[[ball]]\n[[ball]]\nid = \"b1\"\nposition = [0.15715, 0.5]\nvelocity = [" + v +
+                            ", " + v + "]\n[[ball]]\nid = \"b2\"\nposition = [0.2143, 0.5]\n",
+                        "s.toml");
+        const Record record = run_verified(scene);
+        EXPECT_EQ(record.stopped, StopReason::kAtRest) << speed;
+        EXPECT_EQ(count(record, EventType::kBallBall), 1) << speed;
+    }
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ TEST(Golden, TenScenes) {
         nlohmann::ordered_json all;
         for (const auto& [label, scene] : golden_scenes()) all[label] = simulate(plan_of(scene)).hash();
         std::printf("%s\n", all.dump(1).c_str());
-        return;
+        GTEST_SKIP() << "printed, and nothing compared; run again without CAROM_GOLDEN_PRINT";
     }
     const auto golden = read_json("golden_hashes.json");
     const auto scenes = golden_scenes();

@@ -1,5 +1,5 @@
 // 30 000 seeded scenes of two families to rest without a violation, and the regressions they brought
-// (support/random_scenes.h).
+// (support/random_scenes.h). With CAROM_RANDOM_SCENES in the environment, a scan of other seeds instead.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -44,46 +44,6 @@ TEST_P(RandomScenes, ComeToRest) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Part, RandomScenes, testing::Range(0, kParts));
-
-// CAROM_RANDOM_SCENES=FROM:COUNT runs these seeds and prints a line for each that fails or takes long; for
-// whoever changes sustained contacts. FROM:COUNT:other draws the other family of scenes. It asserts nothing
-// about time.
-TEST(RandomSceneScan, PrintsWhatFailsOrTakesLong) {
-    const char* wanted = std::getenv("CAROM_RANDOM_SCENES");
-    if (wanted == nullptr) GTEST_SKIP() << "set CAROM_RANDOM_SCENES=FROM:COUNT to run it";
-    unsigned long long from = 0, count = 0;
-    char family[8] = "";
-    const int read = std::sscanf(wanted, "%llu:%llu:%7s", &from, &count, family);
-    ASSERT_TRUE(read == 2 || (read == 3 && std::string(family) == "other"))
-        << "CAROM_RANDOM_SCENES=FROM:COUNT or FROM:COUNT:other";
-    const DrawOrder order = read == 3 ? DrawOrder::kFirstFirst : DrawOrder::kLastFirst;
-    using Clock = std::chrono::steady_clock;
-    const double slow_ms = 300.0, give_up_ms = 1000.0;
-    double total_ms = 0.0;
-    int failed = 0;
-    for (unsigned long long seed = from; seed < from + count; ++seed) {
-        const Scene scene = RandomScene(seed, order).make();
-        const Clock::time_point start = Clock::now();
-        const auto taken = [start] {
-            return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-        };
-        std::size_t rounds = 0;
-        SimulateOptions options;
-        options.progress = [&](std::size_t, double time) {
-            if (++rounds % 64 == 0 && taken() > give_up_ms)
-                throw std::runtime_error("given up at t = " + std::to_string(time) + " s");
-        };
-        const std::string what = what_breaks(scene, options);
-        const double ms = taken();
-        total_ms += ms;
-        failed += what.empty() ? 0 : 1;
-        if (!what.empty() || ms > slow_ms)
-            std::printf("seed %llu: %.0f ms, %zu rounds: %s\n", seed, ms, rounds, what.c_str());
-        std::fflush(stdout);
-    }
-    std::printf("%llu scenes from %llu: %d failed, %.1f ms on average\n", count, from, failed,
-                total_ms / static_cast<double>(count));
-}
 
 /// The seven-foot table's cushion and jaw where a ball stood at their join.
 Table cushion_and_jaw() {
@@ -262,5 +222,54 @@ TEST(RandomSceneRegressions, SlipsThatEnd) {
     EXPECT_EQ(what_breaks(RandomScene(33636, DrawOrder::kFirstFirst).make()), "");
 }
 
+// CAROM_RANDOM_SCENES=FROM:COUNT runs these seeds instead of the tests and prints a line for each that fails
+// or takes long; for whoever changes sustained contacts. FROM:COUNT:other draws the other family of scenes.
+// It judges no time. The exit status is 0, or 2 where the text is not of this form.
+int scan(const char* wanted) {
+    unsigned long long from = 0, count = 0;
+    char family[8] = "";
+    const int read = std::sscanf(wanted, "%llu:%llu:%7s", &from, &count, family);
+    if (count == 0 || !(read == 2 || (read == 3 && std::string(family) == "other"))) {
+        std::fprintf(stderr, "CAROM_RANDOM_SCENES=FROM:COUNT or FROM:COUNT:other, as in 0:1000\n");
+        return 2;
+    }
+    const DrawOrder order = read == 3 ? DrawOrder::kFirstFirst : DrawOrder::kLastFirst;
+    using Clock = std::chrono::steady_clock;
+    const double slow_ms = 300.0, give_up_ms = 1000.0;
+    double total_ms = 0.0;
+    int failed = 0;
+    for (unsigned long long seed = from; seed < from + count; ++seed) {
+        const Scene scene = RandomScene(seed, order).make();
+        const Clock::time_point start = Clock::now();
+        const auto taken = [start] {
+            return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        };
+        std::size_t rounds = 0;
+        SimulateOptions options;
+        options.progress = [&](std::size_t, double time) {
+            if (++rounds % 64 == 0 && taken() > give_up_ms)
+                throw std::runtime_error("given up at t = " + std::to_string(time) + " s");
+        };
+        const std::string what = what_breaks(scene, options);
+        const double ms = taken();
+        total_ms += ms;
+        failed += what.empty() ? 0 : 1;
+        if (!what.empty() || ms > slow_ms)
+            std::printf("seed %llu: %.0f ms, %zu rounds: %s\n", seed, ms, rounds, what.c_str());
+        std::fflush(stdout);
+    }
+    std::printf("%llu scenes from %llu: %d failed, %.1f ms on average\n", count, from, failed,
+                total_ms / static_cast<double>(count));
+    return 0;
+}
+
 }  // namespace
 }  // namespace carom
+
+// ctest hands over which test to run: with that it is a test, whatever the environment says.
+int main(int count, char** arguments) {
+    const char* wanted = std::getenv("CAROM_RANDOM_SCENES");
+    if (wanted != nullptr && count == 1) return carom::scan(wanted);
+    testing::InitGoogleTest(&count, arguments);
+    return RUN_ALL_TESTS();
+}

@@ -222,6 +222,21 @@ TEST(SceneDocs, EffectsNameKeysThatExist) {
     EXPECT_EQ(keywords, std::vector<std::string>(std::begin(kEffectKeywords), std::end(kEffectKeywords)));
 }
 
+// What the reader says about a choice that it does not know: "...; use a, b or c".
+std::set<std::string> choices_of_reader(const std::string& section, const std::string& key) {
+    const std::string message =
+        error_of("[" + section + "]\n" + key + " = \"no such choice\"\n[[ball]]\nposition = [0.3, 0.3]\n");
+    const std::string before = "; use ", last = " or ";
+    const std::size_t at = message.find(before), end = message.rfind(last);
+    EXPECT_TRUE(at != std::string::npos && end != std::string::npos) << message;
+    if (at == std::string::npos || end == std::string::npos) return {};
+    std::set<std::string> choices{message.substr(end + last.size())};
+    std::istringstream list(message.substr(at + before.size(), end - at - before.size()));
+    for (std::string name; std::getline(list, name, ',');)
+        choices.insert(name.substr(name.find_first_not_of(' ')));
+    return choices;
+}
+
 // The JSON Schema: the same keys as the reader, every default and every choice accepted, and all scenes
 // described by it.
 TEST(SceneSchema, HasTheKeysDefaultsAndChoicesOfTheReader) {
@@ -241,6 +256,8 @@ TEST(SceneSchema, HasTheKeysDefaultsAndChoicesOfTheReader) {
             const bool custom = name.rfind("table", 0) == 0;
             if (value.contains("default") && !custom) expect_default(name, key, value.at("default").dump());
             if (!value.contains("enum")) continue;
+            EXPECT_EQ(value.at("enum").get<std::set<std::string>>(), choices_of_reader(name, key))
+                << name << "." << key;
             for (const Json& choice : value.at("enum")) {
                 const std::string head = name == "ball" ? "" : "[" + name + "]\n";
                 const std::string line = head + key + " = " + choice.dump() + "\n";

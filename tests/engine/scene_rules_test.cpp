@@ -58,7 +58,8 @@ std::vector<std::filesystem::path> toml_files(const std::filesystem::path& folde
 const std::string kBall = "[[ball]]\nposition = [0.6, 0.5]\n";
 
 // The first line of each file is a comment with the whole message. `*` stands for what toml++ words or counts
-// differently from version to version (syntax errors only).
+// differently from version to version (syntax errors), and for lists of keys or choices, which
+// scene_docs_test compares with the schema. The list of the sections is whole in unknown_section.toml.
 TEST(BadScenes, GiveTheirExactMessage) {
     const auto files = toml_files(std::filesystem::path(CAROM_TEST_DATA) / "bad_scenes");
     ASSERT_GE(files.size(), 25u);

@@ -2,7 +2,8 @@
 // differences pass; on failure the picture and the difference (times eight) are kept in the working
 // directory.
 //
-// CAROM_UPDATE_GOLDEN=1 writes the pictures anew: look at them before committing them.
+// CAROM_UPDATE_GOLDEN=1 writes the pictures anew and skips the comparison: look at them before committing
+// them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -159,7 +160,10 @@ void save(const Image& image, const std::string& path) {
 
 void compare(const Image& image, const std::string& name) {
     const std::string path = std::string(CAROM_SOURCE_DIR) + "/tests/render/golden/" + name + ".png";
-    if (std::getenv("CAROM_UPDATE_GOLDEN") != nullptr) save(image, path);
+    if (std::getenv("CAROM_UPDATE_GOLDEN") != nullptr) {
+        save(image, path);
+        GTEST_SKIP() << "renewed " << path << ", and nothing compared; run again without CAROM_UPDATE_GOLDEN";
+    }
     const Image golden = read_png(path);
     ASSERT_EQ(golden.size, image.size);
     Image difference = image;

@@ -53,6 +53,7 @@ struct ProcessOptions {
     std::string folder;                                            ///< to run in; empty: as the test
     std::string output_to;                                         ///< file or device for its standard output
     long file_limit = -1;       ///< bytes that a file of it may have; -1: any number
+    long stack_limit = -1;      ///< bytes of stack of its threads (RLIMIT_STACK); -1: as the test
     bool close_output = false;  ///< read nothing: its standard output is a broken pipe
 };
 
@@ -153,6 +154,12 @@ class Process {
             ::setrlimit(RLIMIT_FSIZE, &limit);
             // tools/coverage: it could write only the beginning of its counts.
             ::setenv("LLVM_PROFILE_FILE", "/dev/null", 1);
+        }
+        if (options.stack_limit >= 0) {
+            rlimit limit{};
+            ::getrlimit(RLIMIT_STACK, &limit);
+            limit.rlim_cur = static_cast<rlim_t>(options.stack_limit);
+            if (::setrlimit(RLIMIT_STACK, &limit) != 0) ::_exit(125);
         }
         for (const auto& [key, value] : options.environment) ::setenv(key.c_str(), value.c_str(), 1);
         if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(126);

@@ -28,6 +28,15 @@ inline std::vector<kernel::ImpactResult> run_rung(const kernel::Rung& rung, std:
     return results;
 }
 
+/// The rows of the ladder that a test is about.
+template <class Wanted>
+std::vector<kernel::Rung> rungs_where(const Wanted& wanted) {
+    std::vector<kernel::Rung> rungs;
+    for (const kernel::Rung& rung : kernel::ladder())
+        if (wanted(rung)) rungs.push_back(rung);
+    return rungs;
+}
+
 /// The name of a test of one rung on one instruction set.
 inline std::string rung_name(const testing::TestParamInfo<kernel::Rung>& rung) {
     std::string text = std::string(rung.param.name) + "_" + name(rung.param.isa);

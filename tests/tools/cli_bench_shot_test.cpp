@@ -17,14 +17,21 @@ TEST(CliBenchShot, RowsAreWhole) {
         carom_isa("scalar", {"bench", "shot", "--json", "--seeds", "2", "--repeat", "1", "--events", "200"});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json json = Json::parse(result.out);
-    EXPECT_GT(json.at("baseline_ns").get<double>(), 0.0);
+    const double baseline = json.at("baseline_ns").get<double>();
     EXPECT_EQ(json.at("machine").at("isa"), "scalar");
     std::set<std::string> names;
     for (const Json& row : json.at("rows")) {
         names.insert(row.at("name"));
-        for (const char* number : {"cost_in_impacts", "cost_least", "cost_most", "ns_min", "ns_median",
-                                   "ns_per_event", "detect_ns", "resolve_ns", "kernel_ns", "queue_ns"})
-            EXPECT_GT(row.at(number).get<double>(), 0.0) << number;
+        const auto value = [&row](const char* key) { return row.at(key).get<double>(); };
+        // What follows from what, however long it took; the median of two seeds is their mean.
+        EXPECT_LE(value("cost_least"), value("cost_in_impacts"));
+        EXPECT_LE(value("cost_in_impacts"), value("cost_most"));
+        EXPECT_LE(value("ns_min"), value("ns_median"));
+        EXPECT_NEAR(value("cost_in_impacts") * baseline, value("ns_min"), 1e-9 * value("ns_min"));
+        EXPECT_NEAR(value("ns_per_event") * value("events"), value("ns_min"), 1e-9 * value("ns_min"));
+        // Parts of an event that every shot has.
+        for (const char* part : {"detect_ns", "resolve_ns", "kernel_ns", "queue_ns"})
+            EXPECT_GT(value(part), 0.0) << row.at("name") << " " << part;
         const bool compliant = row.at("name") == "eight_ball_break compliant";
         EXPECT_EQ(row.at("clusters").get<double>() > 0.0, compliant);
         EXPECT_EQ(row.at("cluster_ns").get<double>() > 0.0, compliant);
@@ -33,6 +40,7 @@ TEST(CliBenchShot, RowsAreWhole) {
     EXPECT_EQ(names, (std::set<std::string>{"eight_ball_break", "nine_ball_break",
                                             "eight_ball_break compliant", "two_ball_shot"}));
     std::set<int> sizes, chosen;
+    double first_ns = 0.0;  // growth is against the smallest gas
     for (const Json& row : json.at("growth")) {
         const int n = row.at("n").get<int>();
         sizes.insert(n);
@@ -40,7 +48,10 @@ TEST(CliBenchShot, RowsAreWhole) {
             EXPECT_TRUE(chosen.insert(n).second) << n;
         }
         EXPECT_TRUE(row.at("search") == "direct" || row.at("search") == "tree");
-        EXPECT_GT(row.at("ns_min").get<double>(), 0.0);
+        EXPECT_LE(row.at("ns_min").get<double>(), row.at("ns_median").get<double>());
+        first_ns = first_ns == 0.0 ? row.at("ns_min").get<double>() : first_ns;
+        EXPECT_NEAR(row.at("growth").get<double>() * first_ns, row.at("ns_min").get<double>(),
+                    1e-9 * row.at("ns_min").get<double>());
         if (n == 10000) {
             EXPECT_LT(row.at("bytes_per_ball").get<double>(), 1000.0);
         }

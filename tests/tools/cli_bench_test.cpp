@@ -2,9 +2,11 @@
 // the kernel's.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "carom/kernel/isa.h"
 #include "cli.h"
@@ -14,44 +16,94 @@ namespace {
 
 using Json = nlohmann::json;
 
+// Two forms; bench_kernel_test looks at the names of all.
 TEST(CliBench, KernelRowsAreWhole) {
     const ProcessResult result =
-        carom_isa("scalar", {"bench", "kernel", "--json", "--random", "40", "--repeat", "1"});
+        carom_isa("scalar", {"bench", "kernel", "--json", "--random", "40", "--repeat", "2", "--only",
+                             "march reduced", "--only", "tolerance 1e-6", "--only", "march baseline"});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json json = Json::parse(result.out);
-    EXPECT_GT(json.at("baseline_ns").get<double>(), 0.0);
-    EXPECT_TRUE(json.at("machine").is_object());
-    std::set<std::string> names;
+    const auto value = [](const Json& row, const char* key) { return row.at(key).get<double>(); };
+    const double baseline = value(json, "baseline_ns"), cycle = value(json.at("machine"), "cycle_ns");
+    EXPECT_EQ(json.at("machine").at("random"), 40);
+    std::vector<std::string> names;
     for (const Json& row : json.at("rows")) {
-        names.insert(row.at("name"));
+        names.push_back(row.at("name").get<std::string>() + ", " + row.at("kind").get<std::string>());
+        const bool march = names.back().rfind("march", 0) == 0;
         EXPECT_EQ(row.at("isa"), "scalar");
-        for (const char* number :
-             {"ratio", "ratio_random", "ns_min", "ns_median", "diff_five", "diff_random_max", "error_five",
-              "error_random_median", "error_random_max", "cycles_per_step"})
-            EXPECT_TRUE(row.at(number).is_number()) << number;
-        EXPECT_TRUE(row.at("portable_bits").is_boolean());
-        EXPECT_TRUE(row.at("kind") == "single" || row.at("kind") == "batch");
+        EXPECT_EQ(row.at("portable_bits"), true);
+        // What follows from what, however long it took.
+        EXPECT_LE(value(row, "ns_min"), value(row, "ns_median"));
+        EXPECT_NEAR(value(row, "ratio") * value(row, "ns_min"), baseline, 1e-9 * baseline);
+        EXPECT_NEAR(value(row, "ratio_random") * value(row, "ns_random_min"),
+                    value(json, "baseline_random_ns"), 1e-9 * value(json, "baseline_random_ns"));
+        EXPECT_NEAR(value(row, "cycles_per_step") * value(row, "steps") * cycle, value(row, "ns_min"),
+                    1e-9 * value(row, "ns_min"));
         // The march is a step of the approach speed / N from the converged solution, plus what sticks.
-        EXPECT_LT(row.at("error_five").get<double>(), 2e-3);
-        if (row.at("name") == "march baseline") {
-            EXPECT_EQ(row.at("diff_five").get<double>(), 0.0);
+        EXPECT_LT(value(row, "error_five"), march ? 2e-3 : 1e-6);
+        EXPECT_LE(value(row, "error_random_median"), value(row, "error_random_max"));
+        EXPECT_LE(value(row, "diff_random_p99"), value(row, "diff_random_max"));
+        if (march) {
             EXPECT_EQ(row.at("same_steps").get<int>(), 40);
+            EXPECT_GT(value(row, "error_five"), 1e-5);
+            EXPECT_LT(value(row, "diff_five"), 1e-12);
+        } else {
+            EXPECT_LT(value(row, "error_random_max"), 1e-6);
+        }
+        if (row.at("name") == "march baseline") {
+            EXPECT_EQ(value(row, "diff_five"), 0.0);
+            EXPECT_EQ(value(row, "diff_random_max"), 0.0);
+            EXPECT_EQ(row.at("section"), "3.1");
         }
     }
-    for (const char* name : {"march baseline", "march summed", "march reduced state", "tolerance 1e-3",
-                             "tolerance 1e-6", "tolerance 1e-10"})
-        EXPECT_TRUE(names.count(name)) << name;
-    std::set<int> grown;
-    for (const Json& row : json.at("growth")) grown.insert(row.at("n").get<int>());
-    EXPECT_EQ(grown, (std::set<int>{100, 1000, 10000}));
-    EXPECT_FALSE(json.at("shares").empty());
+    EXPECT_EQ(names, (std::vector<std::string>{"march baseline, single", "march reduced state, single",
+                                               "tolerance 1e-6, single", "tolerance 1e-6, batch"}));
+    std::map<std::string, std::multiset<int>> grown;
+    for (const Json& row : json.at("growth")) {
+        grown[row.at("name")].insert(row.at("n").get<int>());
+        EXPECT_LE(value(row, "ns_min"), value(row, "ns_median"));
+    }
+    const std::multiset<int> once{100, 1000, 10000}, twice{100, 100, 1000, 1000, 10000, 10000};
+    EXPECT_EQ(grown,
+              (std::map<std::string, std::multiset<int>>{
+                  {"march baseline", once}, {"march reduced state", once}, {"tolerance 1e-6", twice}}));
+    std::vector<std::string> shared;
+    for (const Json& row : json.at("shares")) {
+        shared.push_back(row.at("name"));
+        EXPECT_NEAR(value(row, "before_ns") + value(row, "loop_ns") + value(row, "after_ns"),
+                    value(row, "warm_ns"), 1e-9 * value(row, "warm_ns"));
+    }
+    EXPECT_EQ(shared, (std::vector<std::string>{"march baseline", "march reduced state"}));
 }
 
 TEST(CliBench, PrintsATable) {
     const ProcessResult result =
-        carom_isa("scalar", {"bench", "kernel", "--random", "10", "--repeat", "1", "--no-growth"});
+        carom_isa("scalar", {"bench", "kernel", "--random", "10", "--repeat", "1", "--no-growth", "--only",
+                             "march summed", "--only", "tolerance 1e-3"});
     EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_NE(result.out.find("march summed"), std::string::npos);
+    int summed = 0, tolerance = 0;
+    for (const std::string& line : lines_of(result.out)) {
+        summed += line.rfind("march summed  ", 0) == 0;
+        tolerance += line.rfind("tolerance 1e-3 ", 0) == 0;
+        EXPECT_EQ(line.rfind("march baseline", 0), line.npos) << line;
+    }
+    EXPECT_EQ(summed, 2) << result.out;     // its row, and its shares
+    EXPECT_EQ(tolerance, 2) << result.out;  // one by one, and as a batch
+    EXPECT_EQ(result.out.find("growth"), std::string::npos);
+}
+
+TEST(CliBench, AnUnknownFormIsRefusedWithTheNamesThereAre) {
+    for (const char* name : {"march nothing", "march reduced stat", "tolerance 1e-1", "", "fma"}) {
+        const ProcessResult result =
+            carom_isa("scalar", {"bench", "kernel", "--only", "march baseline", "--only", name});
+        EXPECT_EQ(result.status, 2) << name;
+        EXPECT_EQ(result.out, "") << name;
+        EXPECT_NE(result.err.find("--only: there is no form \"" + std::string(name) + "\""),
+                  std::string::npos)
+            << result.err;
+        EXPECT_NE(result.err.find("march reduced state, "), std::string::npos) << result.err;
+        EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+    }
 }
 
 TEST(CliBench, RefusesBadUsage) {

@@ -14,6 +14,17 @@
 
 #include "cli.h"
 
+#if defined(__SANITIZE_THREAD__)
+#define CAROM_TEST_TSAN 1
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define CAROM_TEST_TSAN 1
+#endif
+#endif
+#ifndef CAROM_TEST_TSAN
+#define CAROM_TEST_TSAN 0
+#endif
+
 namespace carom::test {
 namespace {
 
@@ -178,10 +189,48 @@ TEST_F(Faults, EveryLimitHasItsMessage) {
     std::string large(kSmallScene);
     large.resize((std::size_t{4} << 20) + 1, '#');
     has(message({"check", folder_.write("large.toml", large)}), "larger than 4 MiB");
+    std::string deep = "a";
+    for (int i = 0; i < 40000; ++i) deep += ".a";
+    const std::string dotted = folder_.write("deep.toml", kSmallScene + deep + " = 1\n");
+    for (const char* reader : {"check", "simulate", "margin", "accuracy"}) {
+        EXPECT_EQ(message({reader, dotted})
+                      .rfind("carom: " + dotted + ":21:32: this key has more than 16 parts", 0),
+                  0u)
+            << reader;
+    }
+    has(message({"sweep", scene_, "--vary", "ball.cue.id=list({" + deep + " = 1})", "--count", "1", "-o",
+                 folder_.file("t.csv")}),
+        "): values of list: this key has more than 16 parts");
     has(message({"render", scene_, "-o", pattern(), "--size", "16385x10"}), "16384");
     has(message({"render", scene_, "-o", pattern(), "--fps", "1e300"}), "fps");
     has(message({"render", scene_, "-o", pattern(), "--fps", "99999", "--to", "1e9"}), "frames");
     has(message({"render", scene_, "-o", pattern(), "--sheet", "100000x100000"}), "as in 4x3");
+}
+
+// Stacks larger than all addresses: the system gives no thread at all.
+TEST_F(Faults, ThreadsThatCannotBeMadeAreAnErrorThatSaysWhatToDo) {
+#if CAROM_TEST_TSAN
+    GTEST_SKIP() << "the thread sanitizer lays out memory itself, and does not start with such stacks";
+#endif
+    ProcessOptions options;
+    options.stack_limit = 1L << 46;
+    options.environment = {{"LP_NUM_THREADS", "0"}};  // Mesa's own
+    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+             {"render", scene_, "--size", "64x36", "--to", "0.1", "--jobs", "4", "-o", pattern()},
+             {"sweep", scene_, "--vary", "cue.speed=uniform(3,4)", "--count", "4", "--jobs", "4", "-o",
+              folder_.file("t.csv")}}) {
+        const ProcessResult result = carom(command, options);
+        EXPECT_EQ(result.status, 1) << command[0];
+        EXPECT_EQ(result.err.rfind("carom: only 0 of 4 threads could be started (", 0), 0u) << result.err;
+        EXPECT_NE(result.err.find("; use fewer with --jobs\n"), std::string::npos) << result.err;
+        EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+    }
+    EXPECT_FALSE(fs::exists(folder_.file("t.csv")));
+    EXPECT_FALSE(fs::exists(frame(0)));
+    // Fewer is what helps.
+    const ProcessResult alone =
+        carom({"render", scene_, "--size", "64x36", "--to", "0.1", "--jobs", "1", "-o", pattern()}, options);
+    EXPECT_EQ(alone.status, 0) << alone.err;
 }
 
 /// A name in a scene or a record is data: it never becomes a path.

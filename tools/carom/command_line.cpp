@@ -238,6 +238,11 @@ void add_bench(CLI::App& app, Action& action) {
         ->check(CLI::IsMember({"consistent", "as_published"}))
         ->capture_default_str();
     sub->add_flag("!--no-growth", args->growth, "Leave out N = 100 and 10000 (default: measured)");
+    sub->add_option("--only", args->only,
+                    "Time only this form, such as 'march reduced state', or all whose names begin with these "
+                    "words, such as 'tolerance'; may be repeated (default: all)")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
     sub->footer("Without CAROM_ISA all instruction sets that this processor has run in one call.");
     sub->callback([args, &action] { action = [args] { return run_bench_kernel(*args); }; });
 }

@@ -80,6 +80,8 @@ const char* reason(StopReason stopped) {
             return "stopped at its time";
         case StopReason::kEvents:
             return "stopped at its number of events";
+        case StopReason::kEndless:
+            return "nothing more happens, but balls move for ever";
     }
     return "";
 }

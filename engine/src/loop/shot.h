@@ -65,6 +65,7 @@ class Shot {
   private:
     void reserve_log();
     void first_candidates();
+    void end(double next, double stop);
 
     // queue.cpp
     template <bool kProfile>

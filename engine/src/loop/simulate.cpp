@@ -99,6 +99,21 @@ void Shot::finish() {
     record_.duration = now_;
 }
 
+// The next event comes after the stop, or never.
+void Shot::end(double next, double stop) {
+    const bool moves = std::any_of(current_.begin(), current_.end(), [](const Segment& s) {
+        return s.state != MotionState::kStationary && s.state != MotionState::kPocketed;
+    });
+    if (next == kNever && !moves) {
+        record_.stopped = StopReason::kAtRest;
+    } else if (stop == kNever) {
+        record_.stopped = StopReason::kEndless;
+    } else {
+        record_.stopped = StopReason::kTime;
+        now_ = stop;
+    }
+}
+
 // Kept a function of its own, so that tools/measure/profile_cost finds it by name.
 template <bool kProfile>
 [[gnu::noinline]] Record Shot::run(const Record* so_far) {
@@ -123,8 +138,7 @@ template <bool kProfile>
         search_ns_ = 0.0;
         const Candidate c = next<kProfile>();
         if (c.time > stop || c.time == kNever) {
-            record_.stopped = c.time == kNever ? StopReason::kAtRest : StopReason::kTime;
-            if (c.time != kNever) now_ = stop;
+            end(c.time, stop);
             break;
         }
         now_ = std::max(now_, c.time);

@@ -356,7 +356,7 @@ Record parse_record(std::string_view text, const std::string& name) {
     }
     Record record;
     record.duration = root.at("duration").non_negative();
-    record.stopped = root.at("stopped").one_of<StopReason>(3);
+    record.stopped = root.at("stopped").one_of<StopReason>(4);
     record.start_time = root.at("start_time").number();
     record.gravity = root.at("gravity").number();
     const bool profiled = root.at("profiled").boolean();

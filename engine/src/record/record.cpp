@@ -76,6 +76,8 @@ const char* name(StopReason reason) {
             return "stop time";
         case StopReason::kEvents:
             return "number of events";
+        case StopReason::kEndless:
+            return "endless motion";
     }
     return "unknown";
 }

@@ -208,8 +208,7 @@ class Checker {
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
             const Segment& s = record_.tracks[i].segments.back();
             const bool at_rest = s.state == MotionState::kStationary || s.state == MotionState::kPocketed;
-            if (!at_rest && std::isfinite(s.duration))
-                report("U9", fmt::format("ball {} has not come to rest", record_.tracks[i].id));
+            if (!at_rest) report("U9", fmt::format("ball {} has not come to rest", record_.tracks[i].id));
         }
     }
 

@@ -28,8 +28,10 @@ class Skipped {
                 ball_ = &record_.tracks[i].id;
                 R_ = record_.size(static_cast<int>(i)).R;
                 start_ = segments[k].start;
-                // A run that ends at rest leaves its last segments as they are for ever.
-                const double last = record_.stopped == StopReason::kAtRest ? kNever : record_.duration;
+                // A run after which nothing more happens leaves its last segments as they are for ever.
+                const bool for_ever =
+                    record_.stopped == StopReason::kAtRest || record_.stopped == StopReason::kEndless;
+                const double last = for_ever ? kNever : record_.duration;
                 const double end = k + 1 < segments.size() ? segments[k + 1].start : last;
                 if (segments[k].state == MotionState::kPocketed || end < start_) continue;
                 check_frictions(segments[k], end > start_);

@@ -9,6 +9,7 @@
 
 #include "carom/engine/math.h"
 #include "scene/reader.h"
+#include "scene/toml_depth.h"
 
 namespace carom::detail {
 namespace {
@@ -19,8 +20,10 @@ namespace {
 
 /// What stands between the brackets, as TOML values.
 toml::array arguments(std::string_view name, std::string_view text) {
+    const std::string line = fmt::format("v = [{}\n]", text);
+    if (const auto deep = too_deep(line)) fail(fmt::format("values of {}: {}", name, deep->what));
     try {
-        const toml::table table = toml::parse(fmt::format("v = [{}\n]", text));
+        const toml::table table = toml::parse(line);
         // Whatever closes the bracket early could bring keys of its own.
         if (const toml::array* array = table["v"].as_array(); array && table.size() == 1) return *array;
     } catch (const toml::parse_error&) {

@@ -9,11 +9,13 @@
 
 #include "carom/engine/tolerances.h"
 #include "scene/sections.h"
+#include "scene/toml_depth.h"
 
 namespace carom {
 namespace {
 
 toml::table parse_toml(std::string_view text, const std::string& name) {
+    if (const auto deep = detail::too_deep(text)) throw SceneError(name, deep->where, deep->what);
     try {
         return toml::parse(text, name);
     } catch (const toml::parse_error& error) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "carom/render/png.h"
@@ -42,10 +43,21 @@ FrameWriter::FrameWriter(const SequenceOptions& options, int threads)
     : options_(options), limit_(image_limit(options.size, threads)) {
     // A thread without an image to work on would only wait.
     threads = std::min(threads, static_cast<int>(limit_));
-    for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
+    try {
+        for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
+    } catch (const std::exception& error) {  // the system gives no more threads
+        const std::size_t started = threads_.size();
+        stop();
+        throw RenderError("only " + std::to_string(started) + " of " + std::to_string(threads) +
+                          " threads could be started (" + error.what() + "); use fewer with --jobs");
+    }
 }
 
 FrameWriter::~FrameWriter() {
+    stop();
+}
+
+void FrameWriter::stop() {
     {
         const std::lock_guard lock(mutex_);
         stopping_ = true;

@@ -19,6 +19,7 @@ namespace carom::render {
 class FrameWriter {
   public:
     /// threads = 0: submit() does the work itself. Raw frames take one thread, which keeps their order.
+    /// @throws RenderError where the system does not give as many
     FrameWriter(const SequenceOptions& options, int threads);
 
     /// Drops what has not been started and waits for the rest.
@@ -44,6 +45,7 @@ class FrameWriter {
         FrameTiming* timing = nullptr;
     };
     void work();
+    void stop();  // drops what has not been started, and ends the threads
     void write(const Image& image, FrameTiming& timing, std::vector<std::uint8_t>& bytes) const;
 
     const SequenceOptions& options_;

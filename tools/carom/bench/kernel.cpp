@@ -128,6 +128,42 @@ std::vector<TimedKernel> subjects(const std::vector<Isa>& isas) {
     return list;
 }
 
+/// Whether a name is meant: the name itself, or its first words, unless another row has just these.
+bool is_meant(const std::string& name, const std::string& wanted, bool exact) {
+    return exact ? name == wanted : name.rfind(wanted + " ", 0) == 0;
+}
+
+/// Keeps the rows that are asked for.
+void choose(std::vector<TimedKernel>& list, const std::vector<std::string>& only) {
+    if (only.empty()) return;
+    std::vector<bool> keep(list.size(), false);
+    for (const std::string& wanted : only) {
+        bool found = false;
+        for (const bool exact : {true, false}) {
+            if (found) break;
+            for (std::size_t i = 0; i < list.size(); ++i) {
+                if (!is_meant(list[i].row.name, wanted, exact)) continue;
+                keep[i] = found = true;
+            }
+        }
+        if (found) continue;
+        std::string names;
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const std::string& name = list[i].row.name;
+            const auto same = [&name](const TimedKernel& s) { return s.row.name == name; };
+            if (std::none_of(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(i), same))
+                names += (names.empty() ? "" : ", ") + name;
+        }
+        throw UsageError(
+            "--only: there is no form \"" + wanted +
+            "\" on the instruction sets of this run; name one of these, or first words of some: " + names);
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < list.size(); ++i)
+        if (keep[i]) std::swap(list[kept++], list[i]);
+    list.resize(kept);
+}
+
 constexpr int kSubsteps = 1000;
 
 /// Rounds over all subjects in a new random order each, so that no drift of the clock favours one.
@@ -290,6 +326,14 @@ std::vector<Isa> chosen_isas() {
 
 }  // namespace
 
+std::vector<KernelRow> kernel_rows(const BenchOptions& options) {
+    std::vector<TimedKernel> list = subjects(chosen_isas());
+    choose(list, options.only);
+    std::vector<KernelRow> rows;
+    for (const TimedKernel& s : list) rows.push_back(s.row);
+    return rows;
+}
+
 KernelBench measure_kernel(const BenchOptions& options) {
     if (options.random < 1) throw UsageError("--random: expected at least 1");
     const ClothSlip slip =
@@ -299,6 +343,7 @@ KernelBench measure_kernel(const BenchOptions& options) {
     const ImpactSet five(states, slip, 16);
     const ImpactSet random(reference::random_impacts(options.seed, options.random), slip, 1);
     std::vector<TimedKernel> list = subjects(chosen_isas());
+    choose(list, options.only);
 
     KernelBench bench;
     bench.cpu = processor();

@@ -16,6 +16,7 @@ struct BenchOptions {
     int repeats = 9;     ///< interleaved rounds; minimum and median are over them
     bool growth = true;  ///< N = 100, 1000, 10000
     std::string cloth_slip = "consistent";
+    std::vector<std::string> only;  ///< names, or their beginnings in whole words; empty: all
 };
 
 /// One row at N = 1000. Times are per impact [ns]; ratios are the baseline's time in the same run over this
@@ -54,6 +55,10 @@ struct KernelBench {
     std::vector<GrowthRow> growth;
     std::vector<ShareRow> shares;
 };
+
+/// What measure_kernel times: rows with a name and no figures yet. @throws UsageError for a name in `only`
+/// that none has
+std::vector<KernelRow> kernel_rows(const BenchOptions& options);
 
 KernelBench measure_kernel(const BenchOptions& options);
 std::string kernel_bench_json(const KernelBench& bench);

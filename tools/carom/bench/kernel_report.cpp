@@ -95,6 +95,7 @@ std::string kernel_bench_text(const KernelBench& bench) {
             fmt::format_to(line, "\n");
         }
     }
+    if (bench.shares.empty()) return fmt::to_string(out);
     fmt::format_to(line,
                    "\nns before, in and after the loop; warm and cold caches (a probe costs {:.0f} ns)\n",
                    bench.probe_ns);

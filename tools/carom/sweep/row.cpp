@@ -70,6 +70,8 @@ ShotOutcome outcome_of(StopReason reason) {
             return ShotOutcome::kAtRest;
         case StopReason::kTime:
             return ShotOutcome::kTime;
+        case StopReason::kEndless:
+            return ShotOutcome::kEndless;
         case StopReason::kEvents:
             break;
     }
@@ -97,7 +99,8 @@ void write_results(fmt::memory_buffer& out, const Scene& scene, const Record& re
 }  // namespace
 
 const char* name(ShotOutcome outcome) {
-    constexpr const char* kNames[kShotOutcomes] = {"at_rest", "time", "events", "invalid", "failed"};
+    constexpr const char* kNames[kShotOutcomes] = {"at_rest", "time",    "events",
+                                                   "endless", "invalid", "failed"};
     return kNames[static_cast<int>(outcome)];
 }
 

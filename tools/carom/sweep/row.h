@@ -10,8 +10,8 @@
 namespace carom::tools {
 
 /// How a shot ended.
-enum class ShotOutcome : unsigned char { kAtRest, kTime, kEvents, kInvalid, kRunFailed };
-inline constexpr int kShotOutcomes = 5;
+enum class ShotOutcome : unsigned char { kAtRest, kTime, kEvents, kEndless, kInvalid, kRunFailed };
+inline constexpr int kShotOutcomes = 6;
 const char* name(ShotOutcome outcome);
 
 struct SweepRow {

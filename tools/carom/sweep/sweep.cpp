@@ -113,9 +113,12 @@ class Workers {
         try {
             for (unsigned i = 0; i < jobs; ++i)
                 threads_.emplace_back([&queue, &variation, isa] { work(queue, variation, isa); });
-        } catch (...) {  // the system gives no more threads
+        } catch (const std::exception& error) {  // the system gives no more threads
+            const std::size_t started = threads_.size();
             finish();
-            throw;
+            throw std::runtime_error(
+                fmt::format("only {} of {} threads could be started ({}); use fewer with --jobs", started,
+                            jobs, error.what()));
         }
     }
     ~Workers() { finish(); }

@@ -75,7 +75,9 @@ struct EventCost {
     double queue_ns = 0.0;    ///< part of detect_ns: which event is next; files do not keep it
 };
 
-enum class StopReason : std::uint8_t { kAtRest, kTime, kEvents };
+/// kEndless: balls move that nothing stops, nothing more happens to them, and there was no time to stop at;
+/// the record ends at its last event.
+enum class StopReason : std::uint8_t { kAtRest, kTime, kEvents, kEndless };
 const char* name(StopReason reason);
 
 /// State of one ball at a time.

@@ -26,7 +26,8 @@ class SimulationError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Runs a plan to rest, to its stop time or to its number of events. @throws SimulationError
+/// Runs a plan to rest, to its stop time or to its number of events; StopReason has the one other end.
+/// @throws SimulationError
 Record simulate(const Plan& plan, const SimulateOptions& options = {});
 
 /// Goes on with a run of the same plan that stopped at its number of events or its stop time (which the plan

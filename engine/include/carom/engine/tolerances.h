@@ -183,6 +183,10 @@ inline constexpr int kMaxBalls = 4096;         ///< balls of a scene, written an
 inline constexpr int kMaxRackRows = 90;        ///< of a triangle: 4095 balls
 inline constexpr int kMaxTableParts = 4096;    ///< cushions, jaws and pockets of a table, each
 inline constexpr std::size_t kMaxFileSize = 4u << 20;  ///< [bytes] of a scene file
+/// [-] Of a dotted key, and of brackets within each other: a scene needs four of either. toml++ goes
+/// calls deeper for each; both limits at once take less than 64 KiB of stack.
+inline constexpr int kMaxKeyParts = 16;
+inline constexpr int kMaxNesting = 16;
 /// [bytes] Of a record file: about 700 000 segments. Reading it takes some ten times as much memory.
 inline constexpr std::size_t kMaxRecordSize = std::size_t{256} << 20;
 inline constexpr std::size_t kMaxIdLength = 64;  ///< [bytes] of a ball's id

@@ -1,0 +1,162 @@
+// How a run ends: at rest, at its time, at its number of events, and where nothing more can happen.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "support/engine_cases.h"
+
+namespace carom::test {
+namespace {
+
+constexpr double kStop = 0.75;
+
+struct Endless {
+    const char* name;
+    MotionState state;  // of ball "a" at the end
+    Scene scene;
+};
+
+/// Motion without end to which, from some time before kStop on, nothing more happens.
+std::vector<Endless> endless_scenes() {
+    std::vector<Endless> all;
+    const auto add = [&all](const char* name, MotionState state, const std::function<void(Scene&)>& build) {
+        Scene scene = empty_scene();
+        scene.stop.time = kStop;
+        build(scene);
+        all.push_back({name, state, scene});
+    };
+    add("no gravity, cushions out of reach", MotionState::kSliding, [](Scene& s) {
+        s.table = box(10.0, 10.0, 0.0365);
+        s.physics.gravity = 0.0;
+        add_ball(s, "a", 5.0, 5.0, 1.0, 0.5);
+    });
+    add("no gravity, endless cloth", MotionState::kSliding, [](Scene& s) {
+        s.physics.gravity = 0.0;
+        add_ball(s, "a", 0.5, 0.5, 1.0, 0.5, {1.0, 2.0, 3.0});
+    });
+    add("mu_s = 0", MotionState::kSliding, [](Scene& s) {
+        s.balls.mu_s = 0.0;
+        add_ball(s, "a", 0.5, 0.5, 1.0, 0.5);
+    });
+    add("mu_r = 0, after slipping", MotionState::kRolling, [](Scene& s) {
+        s.balls.mu_r = 0.0;
+        add_ball(s, "a", 0.5, 0.5, 1.0, 0.5);
+    });
+    add("mu_sp = 0, in place", MotionState::kSpinning, [](Scene& s) {
+        s.balls.mu_sp = 0.0;
+        add_ball(s, "a", 0.5, 0.5, 0.0, 0.0, {0.0, 0.0, 5.0});
+    });
+    add("mu_sp = 0, one spins and one has stopped", MotionState::kSpinning, [](Scene& s) {
+        s.balls.mu_sp = 0.0;
+        add_ball(s, "a", 0.5, 0.5, 0.0, 0.0, {0.0, 0.0, 5.0});
+        add_ball(s, "b", 0.7, 0.5, 0.01, 0.0);
+    });
+    add("two balls after their impact", MotionState::kSliding, [](Scene& s) {
+        s.physics.gravity = 0.0;
+        add_ball(s, "a", 0.5, 0.5, 1.0, 0.3);
+        add_ball(s, "b", 0.8, 0.5);
+    });
+    add("a ball behind a falling one", MotionState::kSliding, [](Scene& s) {
+        s.physics.gravity = 0.0;
+        s.table.pockets = {{"p1", {0.5, 0.8}, 0.06, 0.1}};
+        add_ball(s, "a", 0.5, 0.2, 0.3, 0.0);
+        add_ball(s, "b", 0.5, 0.5, 0.0, 1.0);
+    });
+    add("forty balls that fly apart", MotionState::kSliding, [](Scene& s) {
+        s.physics.gravity = 0.0;
+        add_ball(s, "a", 1.0, 0.0, 1.0, 0.0);
+        for (int i = 1; i < 40; ++i) {
+            const double angle = 2.0 * M_PI * i / 40.0, x = std::cos(angle), y = std::sin(angle);
+            add_ball(s, "b" + std::to_string(i), x, y, x, y);
+        }
+    });
+    return all;
+}
+
+TEST(Stop, MotionWithoutEndGoesOnToTheStopTime) {
+    for (const Endless& c : endless_scenes()) {
+        const Record record = run_verified(c.scene);
+        EXPECT_EQ(record.duration, kStop) << c.name;
+        EXPECT_EQ(record.stopped, StopReason::kTime) << c.name;
+        ASSERT_TRUE(record.events.empty() || record.events.back().time < kStop) << c.name;
+        const BallState end = record.state_at(0, kStop), before = record.state_at(0, 0.5 * kStop);
+        EXPECT_EQ(end.state, c.state) << c.name;
+        if (c.state == MotionState::kSpinning)
+            EXPECT_EQ(end.spin.z(), 5.0) << c.name;
+        else
+            EXPECT_GT((end.position - before.position).norm(), 0.1) << c.name;
+    }
+}
+
+TEST(Stop, TheTimeOfTheCallStopsItToo) {
+    for (Endless& c : endless_scenes()) {
+        c.scene.stop.time = 100.0;
+        const Plan plan = plan_of(c.scene);
+        SimulateOptions options;
+        options.until = kStop;
+        const Record record = simulate(plan, options);
+        EXPECT_EQ(record.duration, kStop) << c.name;
+        EXPECT_EQ(record.stopped, StopReason::kTime) << c.name;
+        EXPECT_EQ(verify(record, plan), std::nullopt) << c.name;
+        EXPECT_EQ(resume(plan, record).hash(), simulate(plan).hash()) << c.name;
+        EXPECT_EQ(resume(plan, record).duration, 100.0) << c.name;
+    }
+}
+
+// Events that never come: the run ends, and does not say that it is at rest.
+TEST(Stop, ANumberOfEventsThatIsNotReachedEndsTheRunAtTheLastEvent) {
+    for (Endless& c : endless_scenes()) {
+        if (!c.scene.table.cushions.empty()) continue;
+        c.scene.stop.time.reset();
+        c.scene.stop.events = 1000;
+        for (const double until : {-1.0, std::numeric_limits<double>::infinity()}) {
+            const Plan plan = plan_of(c.scene);
+            SimulateOptions options;
+            if (until > 0.0) options.until = until;
+            const Record record = simulate(plan, options);
+            EXPECT_EQ(verify(record, plan), std::nullopt) << c.name;
+            EXPECT_EQ(record.stopped, StopReason::kEndless) << c.name;
+            EXPECT_EQ(record.duration, record.events.empty() ? 0.0 : record.events.back().time) << c.name;
+        }
+    }
+}
+
+TEST(Stop, ANumberOfEventsThatIsReachedIsTheEnd) {
+    Scene scene = empty_scene();
+    scene.table = box(10.0, 10.0, 0.0365);
+    scene.physics.gravity = 0.0;
+    add_ball(scene, "a", 5.0, 5.0, 1.0, 0.5);
+    scene.stop.events = 3;
+    const Record record = run_verified(scene);
+    EXPECT_EQ(record.stopped, StopReason::kEvents);
+    EXPECT_EQ(record.events.size(), 3u);
+}
+
+TEST(Stop, RestComesBeforeTheTime) {
+    Scene scene = empty_scene();
+    scene.table.pockets = {{"p1", {0.5, 0.8}, 0.06, 0.1}};
+    scene.stop.time = 1000.0;
+    add_ball(scene, "a", 0.2, 0.5, 0.5, 0.0);
+    add_ball(scene, "b", 0.5, 0.5, 0.0, 1.0);
+    const Record record = run_verified(scene);
+    EXPECT_EQ(record.stopped, StopReason::kAtRest);
+    EXPECT_EQ(count(record, EventType::kBallPocket), 1);
+    EXPECT_EQ(record.duration, record.events.back().time);
+}
+
+TEST(Stop, MotionWithoutEndIsNoRest) {
+    const Plan plan = plan_of(endless_scenes().front().scene);
+    Record record = simulate(plan);
+    record.stopped = StopReason::kAtRest;
+    const auto violation = verify(record, plan);
+    ASSERT_TRUE(violation);
+    EXPECT_EQ(violation->law, "U9");
+}
+
+}  // namespace
+}  // namespace carom::test

@@ -1,0 +1,90 @@
+// Which forms of the kernel carom bench kernel times: all, or those that are asked for. Nothing is timed
+// here.
+#include "bench/kernel.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "ladder/ladder.h"
+
+namespace carom::tools {
+namespace {
+
+using Form = std::tuple<std::string, std::string, kernel::Isa>;  // name, kind, instruction set
+
+class BenchKernel : public testing::Test {
+  protected:
+    // The tests decide about the instruction set, not the shell they are started from.
+    void SetUp() override { ::unsetenv("CAROM_ISA"); }
+};
+
+std::multiset<Form> forms(const std::vector<std::string>& only) {
+    BenchOptions options;
+    options.only = only;
+    std::multiset<Form> all;
+    for (const KernelRow& row : kernel_rows(options)) all.insert({row.name, row.kind, row.isa});
+    return all;
+}
+
+TEST_F(BenchKernel, TimesEveryRungAndEveryTolerance) {
+    std::multiset<Form> expected;
+    for (const kernel::Rung& rung : kernel::ladder())
+        if (kernel::available(rung.isa))
+            expected.insert({std::string("march ") + rung.name, rung.march ? "single" : "batch", rung.isa});
+    for (const kernel::Isa isa : {kernel::Isa::kScalar, kernel::Isa::kV3, kernel::Isa::kV4})
+        for (const char* name : {"tolerance 1e-3", "tolerance 1e-6", "tolerance 1e-10"})
+            for (const char* kind : {"single", "batch"})
+                if (kernel::available(isa)) expected.insert({name, kind, isa});
+    EXPECT_EQ(forms({}), expected);
+    for (const char* name : {"march baseline", "march summed", "march reduced state"})
+        EXPECT_TRUE(expected.count({name, "single", kernel::Isa::kScalar})) << name;
+}
+
+TEST_F(BenchKernel, TimesWhatIsAskedFor) {
+    const auto all = forms({});
+    const auto those = [&all](auto wanted) {
+        std::multiset<Form> some;
+        for (const Form& form : all)
+            if (wanted(std::get<0>(form))) some.insert(form);
+        return some;
+    };
+    using Name = const std::string&;
+    EXPECT_EQ(forms({"march packed"}), those([](Name n) { return n == "march packed"; }));
+    EXPECT_EQ(forms({"march reduced"}), those([](Name n) { return n == "march reduced state"; }));
+    EXPECT_EQ(forms({"tolerance"}), those([](Name n) { return n[0] == 't'; }));
+    EXPECT_EQ(forms({"march"}), those([](Name n) { return n[0] == 'm'; }));
+    EXPECT_EQ(forms({"tolerance 1e-6", "tolerance 1e-6", "tolerance"}), forms({"tolerance"}));
+    EXPECT_EQ(forms({"march masks", "tolerance 1e-3"}),
+              those([](Name n) { return n == "march masks" || n == "tolerance 1e-3"; }));
+    ::setenv("CAROM_ISA", "scalar", 1);
+    EXPECT_EQ(forms({"tolerance 1e-3"}).size(), 2u);
+}
+
+TEST_F(BenchKernel, ThePrintedFormsHaveTheirNames) {
+    KernelBench bench;
+    bench.rows = kernel_rows({});
+    for (KernelRow& row : bench.rows) bench.growth.push_back({row.name, row.isa, 100, 1.0, 2.0});
+    const auto json = nlohmann::json::parse(kernel_bench_json(bench));
+    const std::string text = kernel_bench_text(bench);
+    ASSERT_EQ(json.at("rows").size(), bench.rows.size());
+    for (std::size_t i = 0; i < bench.rows.size(); ++i) {
+        const KernelRow& row = bench.rows[i];
+        const auto& printed = json.at("rows").at(i);
+        EXPECT_EQ(printed.at("name"), row.name);
+        EXPECT_EQ(printed.at("section"), row.section);
+        EXPECT_EQ(printed.at("isa"), name(row.isa));
+        EXPECT_EQ(printed.at("kind"), row.kind);
+        EXPECT_EQ(printed.at("portable_bits"), row.portable_bits);
+        EXPECT_EQ(json.at("growth").at(i).at("name"), row.name);
+        EXPECT_NE(text.find("\n" + row.name + " "), std::string::npos) << row.name;
+    }
+}
+
+}  // namespace
+}  // namespace carom::tools
