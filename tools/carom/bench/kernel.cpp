@@ -1,6 +1,7 @@
 // carom bench kernel: measures.
 #include "bench/kernel.h"
 
+#include <fmt/format.h>
 #include <immintrin.h>
 
 #include <algorithm>
@@ -155,8 +156,9 @@ void choose(std::vector<TimedKernel>& list, const std::vector<std::string>& only
                 names += (names.empty() ? "" : ", ") + name;
         }
         throw UsageError(
-            "--only: there is no form \"" + wanted +
-            "\" on the instruction sets of this run; name one of these, or first words of some: " + names);
+            fmt::format("--only: there is no form \"{}\" on the instruction sets of this run; name one "
+                        "of these, or first words of some: {}",
+                        wanted, names));
     }
     std::size_t kept = 0;
     for (std::size_t i = 0; i < list.size(); ++i)
@@ -330,6 +332,7 @@ std::vector<KernelRow> kernel_rows(const BenchOptions& options) {
     std::vector<TimedKernel> list = subjects(chosen_isas());
     choose(list, options.only);
     std::vector<KernelRow> rows;
+    rows.reserve(list.size());
     for (const TimedKernel& s : list) rows.push_back(s.row);
     return rows;
 }
