@@ -3,8 +3,10 @@
 
 #include <charconv>
 #include <cmath>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "carom/render/sequence.h"
 #include "commands.h"
@@ -19,6 +21,14 @@ bool is_record_file(const std::string& path) {
     constexpr std::string_view kEnding = ".json";
     return path.size() >= kEnding.size() &&
            path.compare(path.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
+}
+
+/// Reads a record; what it lacks goes to standard error.
+Record record_from(const std::string& path) {
+    std::vector<std::string> notes;
+    Record record = read_record(path, &notes);
+    for (const std::string& note : notes) message(fmt::format("note: {}: {}", path, note));
+    return record;
 }
 
 void check_args(const RenderArgs& args) {
@@ -150,7 +160,7 @@ int run_render(const RenderArgs& args) {
     if (!args.size.empty()) parse_size(args.size);
     SimulateOptions simulation;
     simulation.profile = overlay_of(args).margin;
-    const Record record = is_record_file(args.input) ? read_record(args.input)
+    const Record record = is_record_file(args.input) ? record_from(args.input)
                                                      : simulate_plan(plan_scene(args.input), simulation);
     render::SequenceOptions options = sequence_options(args, record);
     if (options.overlay.margin) set_simulation_costs(record, options);
