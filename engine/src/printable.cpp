@@ -58,7 +58,9 @@ std::string printable(std::string_view text) {
 }
 
 std::string in_quotes(std::string_view text) {
-    return "\"" + printable(text) + "\"";
+    std::string out = "\"";
+    out += printable(text);
+    return out += '"';
 }
 
 }  // namespace carom

@@ -183,7 +183,9 @@ Event read_event(const JsonObject& all, Record& record) {
     event.b = static_cast<int>(all.at("b").integer(count > 0 ? 0 : -1, count > 0 ? count - 1 : -1));
     if (event.type == EventType::kBallCluster) {
         std::vector<int> balls;
-        all.at("balls").each([&](const JsonValue& ball, std::size_t) {
+        const JsonValue list = all.at("balls");
+        balls.reserve(list.size());
+        list.each([&](const JsonValue& ball, std::size_t) {
             balls.push_back(index_below(ball, 0, record.tracks.size()));
         });
         event.detail = static_cast<int>(record.clusters.size());
