@@ -71,7 +71,7 @@ TEST_F(CliRender, AnOlderRecordIsDrawnWithANote) {
     const std::string old = CAROM_SOURCE_DIR "/tests/fuzz/corpus/record/short.json";
     const ProcessResult result = carom({"render", old, "-o", pattern(), "--at", "0", "--size", "64x36"});
     EXPECT_EQ(result.status, 0);
-    EXPECT_EQ(result.err.substr(0, old.size() + 14), "carom: note: " + old + ": ");
+    EXPECT_EQ(result.err.substr(0, old.size() + 15), "carom: note: " + old + ": ");
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
 }
 
