@@ -67,7 +67,7 @@ TEST(RecordFile, TheSampleHasAValueOfItsOwnInEveryField) {
     const auto& [fps, pixels, lines, camera, eye, target] = record.render;
     EXPECT_TRUE(fps != 60.0 && pixels != 1280 && lines != 720 && camera != "top" && eye && target);
     const auto& [id, segments, pocket, own] = record.tracks.at(1);
-    EXPECT_TRUE(id != "" && pocket != -1 && record.tracks.at(2).own);
+    EXPECT_TRUE(!id.empty() && pocket != -1 && record.tracks.at(2).own);
     const auto odd = std::find_if(segments.begin(), segments.end(), [](const Segment& s) {
         return s.held && !s.ends && s.state != MotionState::kStationary && std::isfinite(s.duration);
     });
@@ -80,7 +80,7 @@ TEST(RecordFile, TheSampleHasAValueOfItsOwnInEveryField) {
     EXPECT_TRUE(time != 0.0 && type != EventType::kCueStrike && ball != -1 && partner != -1 && detail != -1);
     const auto& [detect_ns, resolve_ns, kernel_ns, steps, method, queue_ns] = record.costs.at(1);
     expect_unusual({detect_ns, resolve_ns, kernel_ns, queue_ns});
-    EXPECT_TRUE(steps != 0 && method != "");
+    EXPECT_TRUE(steps != 0 && !method.empty());
     expect_unusual({record.gravity - 9.81, record.setup_detect_ns, record.duration, record.start_time});
     EXPECT_NE(record.stopped, StopReason::kAtRest);
 }
