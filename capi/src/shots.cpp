@@ -26,15 +26,26 @@ using carom::c::need;
 
 /// The number that a name stands for.
 double& ball_param(carom::BallParams& p, const char* name) {
+    // A field that is added to BallParams does not compile here until it has a name.
+    auto& [R, m, mu_s, mu_r, mu_sp, mu_b, e_b, e_c, f_c, mu_b_more, mu_b_fall] = p;
     const struct {
         const char* name;
         double& value;
-    } known[] = {{"radius", p.R},  {"mass", p.m},  {"mu_s", p.mu_s}, {"mu_r", p.mu_r}, {"mu_sp", p.mu_sp},
-                 {"mu_b", p.mu_b}, {"e_b", p.e_b}, {"e_c", p.e_c},   {"f_c", p.f_c}};
+    } known[] = {{"radius", R},
+                 {"mass", m},
+                 {"mu_s", mu_s},
+                 {"mu_r", mu_r},
+                 {"mu_sp", mu_sp},
+                 {"mu_b", mu_b},
+                 {"mu_b_more", mu_b_more},
+                 {"mu_b_fall", mu_b_fall},
+                 {"e_b", e_b},
+                 {"e_c", e_c},
+                 {"f_c", f_c}};
     for (const auto& k : known)
         if (std::strcmp(name, k.name) == 0) return k.value;
     throw BadArgument("there is no ball parameter \"" + std::string(name) +
-                      "\"; use radius, mass, mu_s, mu_r, mu_sp, mu_b, e_b, e_c or f_c");
+                      "\"; use radius, mass, mu_s, mu_r, mu_sp, mu_b, mu_b_more, mu_b_fall, e_b, e_c or f_c");
 }
 
 carom::BallStart* find_ball(carom::Scene& scene, const std::string& id) {
@@ -99,7 +110,7 @@ carom_status carom_scene_set_ball_param(carom_scene* scene, const char* name, do
     return guarded([&] {
         need({scene, name});
         ball_param(scene->scene.balls, name) = value;
-        for (carom::BallStart& ball : scene->scene.ball) ball.position.z() = scene->scene.balls.R;
+        for (carom::BallStart& ball : scene->scene.ball) ball.position.z() = scene->scene.size_of(ball).R;
     });
 }
 
@@ -119,10 +130,12 @@ carom_status carom_scene_set_ball(carom_scene* scene, const char* id, const doub
         start.position = {rvw[0], rvw[1], rvw[2]};
         start.velocity = {rvw[3], rvw[4], rvw[5]};
         start.spin = {rvw[6], rvw[7], rvw[8]};
-        if (carom::BallStart* ball = find_ball(scene->scene, start.id))
+        if (carom::BallStart* ball = find_ball(scene->scene, start.id)) {
+            start.own = ball->own;  // elsewhere, but the same ball
             *ball = start;
-        else
+        } else {
             scene->scene.ball.push_back(start);
+        }
     });
 }
 

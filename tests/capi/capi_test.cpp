@@ -254,6 +254,54 @@ TEST(CApi, MotionWithoutEndGoesOnToTheTimeOfTheCall) {
     }
 }
 
+TEST(CApi, EveryNumberOfTheBallsHasAName) {
+    Handles h;
+    const char* text =
+        "[balls]\nmu_b_fit = [0.009951, 0.108, 1.088]\n[physics]\nball_ball = \"inelastic\"\n"
+        "[[ball]]\nid = \"a\"\nradius = 0.03\nmass = 0.2\n";
+    ASSERT_EQ(carom_scene_parse(text, "x", &h.scene), CAROM_OK) << carom_last_error();
+    const auto get = [&](const char* name) {
+        double value = -1.0;
+        EXPECT_EQ(carom_scene_get_ball_param(h.scene, name, &value), CAROM_OK) << carom_last_error();
+        return value;
+    };
+    EXPECT_EQ(get("mu_b"), 0.009951);
+    EXPECT_EQ(get("mu_b_more"), 0.108);
+    EXPECT_EQ(get("mu_b_fall"), 1.088);
+    ASSERT_EQ(carom_scene_set_ball_param(h.scene, "mu_b_more", 0.2), CAROM_OK);
+    EXPECT_EQ(get("mu_b_more"), 0.2);
+    // A number of its own each: none changes another.
+    const char* names[] = {"radius",    "mass",      "mu_s", "mu_r", "mu_sp", "mu_b",
+                           "mu_b_more", "mu_b_fall", "e_b",  "e_c",  "f_c"};
+    double next = 0.01;
+    for (const char* name : names)
+        ASSERT_EQ(carom_scene_set_ball_param(h.scene, name, next += 0.01), CAROM_OK) << name;
+    next = 0.01;
+    for (const char* name : names) EXPECT_EQ(get(name), next += 0.01) << name;
+}
+
+TEST(CApi, ABallKeepsItsOwnRadiusAndMass) {
+    Handles h;
+    const char* text =
+        "[physics]\nball_ball = \"elastic\"\n[[ball]]\nid = \"a\"\nposition = [0.6, 1]\nradius = "
+        "0.04\nmass = 0.2\n"
+        "[[ball]]\nid = \"b\"\nposition = [0.6, 2]\n";
+    ASSERT_EQ(carom_scene_parse(text, "x", &h.scene), CAROM_OK) << carom_last_error();
+    ASSERT_EQ(carom_scene_set_ball_param(h.scene, "radius", 0.03), CAROM_OK);
+    ASSERT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_OK) << carom_last_error();
+    double rvw[9];
+    ASSERT_EQ(carom_record_state(h.record, 0, 0.0, rvw, nullptr), CAROM_OK);
+    EXPECT_EQ(rvw[2], 0.04);
+    carom_record_free(h.record);
+    h.record = nullptr;
+    const double elsewhere[9] = {0.5, 1.5, 0.04};
+    ASSERT_EQ(carom_scene_set_ball(h.scene, "a", elsewhere), CAROM_OK);
+    ASSERT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_OK) << carom_last_error();
+    ASSERT_EQ(carom_record_state(h.record, 0, 0.0, rvw, nullptr), CAROM_OK);
+    EXPECT_EQ(rvw[1], 1.5);
+    EXPECT_EQ(rvw[2], 0.04);
+}
+
 TEST(CApi, ARunThatCannotGoOnIsAFailureWithAMessage) {
     Handles h;
     const char* text =

@@ -125,6 +125,19 @@ TEST(Cameras, FreeViewAndBadOnes) {
     } catch (const RenderError& error) {
         EXPECT_STREQ(error.what(), "no ball '17' to follow; there are cue, 8");
     }
+    // Ids of a record come from a file.
+    Record hostile = record;
+    hostile.tracks[1].id = "\x1b[2J";
+    for (int i = 0; i < 50; ++i) hostile.tracks.push_back(hostile.tracks[1]);
+    try {
+        const Stage stage(hostile, options);
+        FAIL();
+    } catch (const RenderError& error) {
+        const std::string what = error.what();
+        EXPECT_EQ(what.find('\x1b'), std::string::npos) << what;
+        EXPECT_NE(what.find("there are cue, ?[2J, ?[2J"), std::string::npos) << what;
+        EXPECT_NE(what.find(" and 12 more"), std::string::npos) << what;
+    }
 }
 
 TEST(Overlays, NamesAreReadAndUnknownOnesRefused) {

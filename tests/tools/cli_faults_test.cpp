@@ -171,6 +171,36 @@ TEST_F(Faults, ARecordThatIsTooLargeIsRefusedUnread) {
                   ": is larger than 256 MiB; stop the shot earlier ([stop]) and write it in parts\n");
 }
 
+// The sanitizers need more addresses than these limits leave.
+#ifndef CAROM_SANITIZED
+/// 12 MB of next to nothing, which once became 400 MB that could not be taken apart without more memory.
+TEST_F(Faults, ARecordForWhichThereIsNoMemoryIsAMessage) {
+    std::string text = "{\"format\":\"carom-record\",\"version\":2,\"x\":[";
+    for (int i = 0; i < 4000000; ++i) text += "{},";
+    const std::string path = folder_.write("hostile.json", text + "1]}");
+    const auto with_limit = [&](int kilobytes) {
+        return run_process({"/bin/sh", "-c",
+                            "ulimit -v " + std::to_string(kilobytes) + "; exec \"$0\" \"$@\"", CAROM_PROGRAM,
+                            "render", path, "-o", pattern()});
+    };
+    const ProcessResult enough = with_limit(300000);
+    EXPECT_EQ(enough.status, 2);
+    EXPECT_EQ(enough.err, "carom: " + path + ": the key \"profiled\" is missing\n");
+    int out_of_memory = 0;
+    for (int kilobytes = 40000; kilobytes < 100000; kilobytes += 6000) {
+        const ProcessResult result = with_limit(kilobytes);
+        if (result.err == "carom: out of memory\n") {
+            EXPECT_EQ(result.status, 1);
+            ++out_of_memory;
+        } else {
+            EXPECT_EQ(result.status, 2) << kilobytes << ": " << result.err;
+            EXPECT_EQ(result.err, enough.err);
+        }
+    }
+    EXPECT_GT(out_of_memory, 0);
+}
+#endif
+
 /// What asks for more than the program takes on: each with the limit in its message, none with work begun.
 TEST_F(Faults, EveryLimitHasItsMessage) {
     const auto message = [](const std::vector<std::string>& command) {

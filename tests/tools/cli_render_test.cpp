@@ -1,6 +1,7 @@
 // carom render: numbered whole frames, an interrupt that leaves no half.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -69,6 +70,14 @@ TEST_F(CliRender, ARecordGivesTheSameFramesAsItsScene) {
         EXPECT_EQ(read_file(folder_.file(std::string("a") + k + ".png")),
                   read_file(folder_.file(std::string("b") + k + ".png")));
     }
+}
+
+TEST_F(CliRender, AnOlderRecordIsDrawnWithANote) {
+    const std::string old = CAROM_SOURCE_DIR "/tests/fuzz/corpus/record/short.json";
+    const ProcessResult result = carom({"render", old, "-o", pattern(), "--at", "0", "--size", "64x36"});
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.err.substr(0, old.size() + 15), "carom: note: " + old + ": ");
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
 }
 
 TEST_F(CliRender, OneFrameAndOneInstant) {

@@ -25,6 +25,14 @@ bool is_record_file(const std::string& path) {
            path.compare(path.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
 }
 
+/// Reads a record; what it lacks goes to standard error.
+Record record_from(const std::string& path) {
+    std::vector<std::string> notes;
+    Record record = read_record(path, &notes);
+    for (const std::string& note : notes) message(fmt::format("note: {}: {}", path, note));
+    return record;
+}
+
 void check_args(const RenderArgs& args) {
     const auto second = [](const char* option, std::optional<double> value) {
         if (value && !(*value >= 0.0 && std::isfinite(*value))) {
@@ -154,7 +162,7 @@ int run_render(const RenderArgs& args) {
     if (!args.size.empty()) parse_size(args.size);
     SimulateOptions simulation;
     simulation.profile = overlay_of(args).margin;
-    const Record record = is_record_file(args.input) ? read_record(args.input)
+    const Record record = is_record_file(args.input) ? record_from(args.input)
                                                      : simulate_plan(plan_scene(args.input), simulation);
     render::SequenceOptions options = sequence_options(args, record);
     if (options.overlay.margin) set_simulation_costs(record, options);

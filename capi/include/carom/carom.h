@@ -93,13 +93,15 @@ CAROM_API carom_status carom_scene_parse(const char* text, const char* name, car
 CAROM_API carom_status carom_scene_create(const char* table, const char* balls, carom_scene** scene);
 CAROM_API void carom_scene_free(carom_scene* scene); /* NULL is allowed */
 
-/* One number of the balls: "radius", "mass", "mu_s", "mu_r", "mu_sp", "mu_b", "e_b", "e_c" or "f_c". A new
- * radius puts the balls that are there on the cloth again. */
+/* One number of the balls: "radius", "mass", "mu_s", "mu_r", "mu_sp", "mu_b", "mu_b_more", "mu_b_fall",
+ * "e_b", "e_c" or "f_c"; the friction between two balls that slip at u m/s is mu_b + mu_b_more exp(-mu_b_fall
+ * u). A new radius puts the balls that are there on the cloth again; those with a radius of their own keep
+ * it. */
 CAROM_API carom_status carom_scene_set_ball_param(carom_scene* scene, const char* name, double value);
 CAROM_API carom_status carom_scene_get_ball_param(const carom_scene* scene, const char* name, double* value);
 
-/* Adds a ball, or puts the one of this id elsewhere. The height of its centre has to be its radius, its
- * vertical velocity 0. Where balls overlap, carom_simulate says so. */
+/* Adds a ball, or puts the one of this id elsewhere (a radius and mass of its own stay). The height of its
+ * centre has to be its radius, its vertical velocity 0. Where balls overlap, carom_simulate says so. */
 CAROM_API carom_status carom_scene_set_ball(carom_scene* scene, const char* id, const double rvw[9]);
 
 typedef struct carom_cue {

@@ -171,7 +171,16 @@ Vec3 spin_at(const Segment& s, double tau, double R) {
     return {s.w.x() + tau * s.dw.x(), s.w.y() + tau * s.dw.y(), w_z};
 }
 
-Record::Record() : orientations_(std::make_shared<Orientations>()) {}
+Record::Record() = default;
+
+Record::Aside::Aside() : orientations(std::make_shared<Orientations>()) {}
+
+Record::Aside::Aside(const Aside& other) : orientations(std::make_shared<Orientations>()), kept(other.kept) {}
+
+Record::Aside& Record::Aside::operator=(const Aside& other) {
+    if (this != &other) *this = Aside(other);
+    return *this;
+}
 
 BallState Record::state_at(int ball, double t) const {
     const BallTrack& track = tracks[static_cast<std::size_t>(ball)];
@@ -188,8 +197,9 @@ BallState Record::state_at(int ball, double t) const {
 }
 
 Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
-    std::call_once(orientations_->once, [this] {
-        const double largest_step = orientations_->largest_step = largest_step_of(tracks);
+    Orientations& made = *aside_.orientations;
+    std::call_once(made.once, [this, &made] {
+        const double largest_step = made.largest_step = largest_step_of(tracks);
         for (const BallTrack& track : tracks) {
             std::vector<Eigen::Quaterniond> starts;
             Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
@@ -201,15 +211,15 @@ Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
                          q)
                             .normalized();
             }
-            orientations_->at_start.push_back(std::move(starts));
+            made.at_start.push_back(std::move(starts));
         }
     });
     const BallTrack& track = tracks[static_cast<std::size_t>(ball)];
     t = std::clamp(t, 0.0, duration);
     const std::size_t i = segment_index(track.segments, t);
     const Segment& s = track.segments[i];
-    return segment_turn(s, std::min(t - s.start, s.duration), orientations_->largest_step) *
-           orientations_->at_start[static_cast<std::size_t>(ball)][i];
+    return segment_turn(s, std::min(t - s.start, s.duration), made.largest_step) *
+           made.at_start[static_cast<std::size_t>(ball)][i];
 }
 
 std::string Record::hash() const {

@@ -29,16 +29,25 @@ OrderedJson duration_or_null(double seconds) {
 OrderedJson table_json(const Table& table) {
     OrderedJson cushions = OrderedJson::array(), jaws = OrderedJson::array(), pockets = OrderedJson::array();
     for (const Cushion& c : table.cushions) {
-        cushions.push_back(
-            {{"id", c.id}, {"from", numbers(c.from)}, {"to", numbers(c.to)}, {"height", c.height}});
+        cushions.push_back({{"id", c.id},
+                            {"from", numbers(c.from)},
+                            {"to", numbers(c.to)},
+                            {"height", c.height},
+                            {"name", c.name}});
     }
     for (const Jaw& j : table.jaws) {
-        jaws.push_back(
-            {{"id", j.id}, {"center", numbers(j.center)}, {"radius", j.radius}, {"height", j.height}});
+        jaws.push_back({{"id", j.id},
+                        {"center", numbers(j.center)},
+                        {"radius", j.radius},
+                        {"height", j.height},
+                        {"name", j.name}});
     }
     for (const Pocket& p : table.pockets) {
-        pockets.push_back(
-            {{"id", p.id}, {"center", numbers(p.center)}, {"radius", p.radius}, {"depth", p.depth}});
+        pockets.push_back({{"id", p.id},
+                           {"center", numbers(p.center)},
+                           {"radius", p.radius},
+                           {"depth", p.depth},
+                           {"name", p.name}});
     }
     return {{"preset", table.preset}, {"width", table.width},
             {"length", table.length}, {"corner", numbers(table.corner)},
@@ -47,8 +56,17 @@ OrderedJson table_json(const Table& table) {
 }
 
 OrderedJson balls_json(const BallParams& p) {
-    return {{"R", p.R},       {"m", p.m},     {"mu_s", p.mu_s}, {"mu_r", p.mu_r}, {"mu_sp", p.mu_sp},
-            {"mu_b", p.mu_b}, {"e_b", p.e_b}, {"e_c", p.e_c},   {"f_c", p.f_c}};
+    return {{"R", p.R},
+            {"m", p.m},
+            {"mu_s", p.mu_s},
+            {"mu_r", p.mu_r},
+            {"mu_sp", p.mu_sp},
+            {"mu_b", p.mu_b},
+            {"mu_b_more", p.mu_b_more},
+            {"mu_b_fall", p.mu_b_fall},
+            {"e_b", p.e_b},
+            {"e_c", p.e_c},
+            {"f_c", p.f_c}};
 }
 
 OrderedJson segment_json(const Segment& s) {
@@ -77,6 +95,7 @@ OrderedJson event_json(const Record& record, const Event& event, const EventCost
         out["kernel_ns"] = cost->kernel_ns;
         out["steps"] = cost->steps;
         out["method"] = cost->method;
+        out["queue_ns"] = cost->queue_ns;
     }
     return out;
 }

@@ -52,15 +52,6 @@ std::string listed(const std::vector<const char*>& names) {
 
 }  // namespace
 
-std::string in_quotes(std::string_view text) {
-    constexpr std::size_t kLongest = 60;
-    std::string out = "\"";
-    for (const char c : text.substr(0, kLongest)) {
-        out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-    }
-    return out + (text.size() > kLongest ? "...\"" : "\"");
-}
-
 SourceLocation place(const toml::node& node) {
     return place(node.source());
 }

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "carom/engine/printable.h"
 #include "carom/engine/scene.h"
 
 namespace carom::detail {
@@ -37,8 +38,7 @@ struct Choice {
     T value;
 };
 
-/// Text from the file, fit for a message: quoted, without control characters, cut when long.
-std::string in_quotes(std::string_view text);
+using carom::in_quotes;
 
 SourceLocation place(const toml::node& node);
 

@@ -129,12 +129,12 @@ void write_render(Out out, const RenderSettings& r) {
 /// What no file can say: a ball that is not on the cloth.
 void check_heights(const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
-        if (ball.position.z() == scene.balls.R && ball.velocity.z() == 0.0) continue;
+        if (ball.position.z() == scene.size_of(ball).R && ball.velocity.z() == 0.0) continue;
         throw SceneError(
             scene.file, {},
             fmt::format("ball {} has its centre at z = {} m and rises at {} m/s; balls roll on the "
                         "cloth: z has to be the radius, {} m, and the speed 0",
-                        quote(ball.id), ball.position.z(), ball.velocity.z(), scene.balls.R));
+                        quote(ball.id), ball.position.z(), ball.velocity.z(), scene.size_of(ball).R));
     }
 }
 

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
+#include "carom/engine/printable.h"
 #include "carom/render/error.h"
 
 namespace carom::render {
@@ -42,12 +44,15 @@ Camera player_camera(const Record& record, FrameSize size) {
 }
 
 int ball_by_id(const Record& record, const std::string& id) {
+    constexpr std::size_t kListed = 40;
     std::string known;
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         if (record.tracks[i].id == id) return static_cast<int>(i);
-        known += (i == 0 ? "" : ", ") + record.tracks[i].id;
+        if (i < kListed) known += (i == 0 ? "" : ", ") + printable(record.tracks[i].id);
     }
-    throw RenderError("no ball '" + id + "' to follow; there are " + known);
+    if (record.tracks.size() > kListed)
+        known += " and " + std::to_string(record.tracks.size() - kListed) + " more";
+    throw RenderError("no ball '" + printable(id) + "' to follow; there are " + known);
 }
 
 // A ball that left the table is followed to where it left.
@@ -149,7 +154,7 @@ CameraPath::CameraPath(const Record& record, const TableMesh& table, const std::
         fixed_.fov_y_deg = size.width >= size.height ? 42.0 : 64.0;
         fixed_.up = Vec3::UnitZ();
     } else {
-        throw RenderError("unknown camera '" + name +
+        throw RenderError("unknown camera '" + printable(name) +
                           "'; use top, rail, player, follow, or give eye and target");
     }
 }

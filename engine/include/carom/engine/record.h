@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "carom/engine/scene.h"
@@ -32,6 +33,7 @@ struct Segment {
     bool held = false;  ///< in a sustained contact: `a` holds the contact forces too
     bool ends =
         true;  ///< its own transition comes at the end of the duration (a held ball may only turn its forces)
+    bool operator==(const Segment&) const = default;
 };
 
 enum class EventType : std::uint8_t {
@@ -63,6 +65,7 @@ struct Event {
     int b = -1;       ///< the other ball, or the index of the cushion, jaw or pocket; -1 if none
     int detail = -1;  ///< kBallCluster: index into Record::clusters; cushions and jaws: of the round nose in
                       ///< Plan::noses, or -1
+    bool operator==(const Event&) const = default;
 };
 
 /// What one event cost; filled only by a profiled run.
@@ -71,8 +74,11 @@ struct EventCost {
     double resolve_ns = 0.0;  ///< advancing and resolving, kernel included
     double kernel_ns = 0.0;   ///< inside the impact kernel
     long steps = 0;           ///< of the kernel
-    const char* method = "";  ///< "march", "elastic", "han_2005", ...
-    double queue_ns = 0.0;    ///< part of detect_ns: which event is next; files do not keep it
+    /// "march", "elastic", "han_2005", ...: text that lives as long as the program, or as the record that was
+    /// read from a file, and its copies.
+    std::string_view method = "";
+    double queue_ns = 0.0;  ///< part of detect_ns: which event is next
+    bool operator==(const EventCost&) const = default;
 };
 
 /// kEndless: balls move that nothing stops, nothing more happens to them, and there was no time to stop at;
@@ -85,6 +91,7 @@ struct BallState {
     MotionState state = MotionState::kStationary;
     Vec3 position, velocity, spin;
     int pocket = -1;  ///< index of the pocket that holds it, or -1
+    bool operator==(const BallState&) const = default;
 };
 
 struct BallTrack {
@@ -93,11 +100,13 @@ struct BallTrack {
         segments;  ///< ordered by start; a later one with the same start replaces the earlier
     int pocket = -1;
     std::optional<BallSize> own = std::nullopt;  ///< as BallStart::own
+    bool operator==(const BallTrack&) const = default;
 };
 
 class Record {
   public:
     Record();
+    bool operator==(const Record&) const = default;
 
     Table table;
     BallParams balls{};
@@ -127,15 +136,31 @@ class Record {
     /// rad over a shot).
     Eigen::Quaterniond orientation_at(int ball, double t) const;
 
-    /// 64-bit FNV-1a over all bits of segments and events, as 16 hex digits.
+    /// 64-bit FNV-1a over the bits of segments (but not `ends`), of events (but not `detail`) and of the
+    /// duration, as 16 hex digits.
     std::string hash() const;
 
     /// Name of what an event's b is: a ball, cushion, jaw or pocket id, or "".
     std::string partner_id(const Event& event) const;
 
+    /// Keeps what views in this record (EventCost::method) point into, for as long as it or a copy lives.
+    void keep(std::shared_ptr<const void> texts) { aside_.kept = std::move(texts); }
+
   private:
     struct Orientations;
-    std::shared_ptr<Orientations> orientations_;  // made on first use, by any thread
+    /// What is no part of what happened: any two of these are equal.
+    struct Aside {
+        Aside();
+        Aside(const Aside& other);  // a copy may be changed, so that it works out its orientations anew
+        Aside& operator=(const Aside& other);
+        Aside(Aside&&) noexcept = default;
+        Aside& operator=(Aside&&) noexcept = default;
+        ~Aside() = default;
+        bool operator==(const Aside&) const { return true; }
+        std::shared_ptr<Orientations> orientations;  // made on first use, by any thread
+        std::shared_ptr<const void> kept;
+    };
+    Aside aside_;
 };
 
 /// Position, velocity and spin of a segment `tau` seconds after its start (tau >= 0).
@@ -157,10 +182,12 @@ Vec3 spin_at(const Segment& segment, double tau, double R);
 /// @throws std::runtime_error naming the file
 void write_record(const Record& record, const std::string& path);
 
-/// Reads what write_record wrote. @throws SceneError
-Record read_record(const std::string& path);
+/// Reads what write_record wrote, now or in version 1 (docs/reference/record_format.md). What the file lacks,
+/// or has beyond what this version knows, is said in `notes`, a sentence each. @throws SceneError
+Record read_record(const std::string& path, std::vector<std::string>* notes = nullptr);
 
 /// The same from text; `name` stands for the file in messages.
-Record parse_record(std::string_view text, const std::string& name);
+Record parse_record(std::string_view text, const std::string& name,
+                    std::vector<std::string>* notes = nullptr);
 
 }  // namespace carom

@@ -16,6 +16,7 @@ namespace carom {
 struct SourceLocation {
     int line = 0;
     int column = 0;
+    bool operator==(const SourceLocation&) const = default;
 };
 
 /// Bad input. what() is "file:line:col: what is wrong and what to do".
@@ -29,6 +30,9 @@ class SceneError : public std::runtime_error {
   private:
     std::string message_;
 };
+
+// The structs below compare all that they hold, so that a test which compares a whole one cannot forget a
+// field that is added later.
 
 /// What may differ from ball to ball.
 struct BallSize {
@@ -54,6 +58,7 @@ struct BallParams {
     double mu_b_fall = 0.0;  ///< [s/m]
     BallSize size() const { return {R, m}; }
     bool ball_friction() const { return mu_b != 0.0 || mu_b_more != 0.0; }
+    bool operator==(const BallParams&) const = default;
 };
 
 /// Friction between two balls whose surfaces slip by `slip` [m/s] at the contact. Source of the form: D.
@@ -69,6 +74,7 @@ struct BallStart {
     Vec3 spin = Vec3::Zero();                    ///< [rad/s]
     SourceLocation where;                        ///< where the file puts it ([rack] for a racked ball)
     std::optional<BallSize> own = std::nullopt;  ///< radius and mass of its own; nothing: those of all balls
+    bool operator==(const BallStart&) const = default;
 };
 
 struct Cue {
@@ -80,6 +86,7 @@ struct Cue {
     double mass = 0.567;              ///< [kg]
     double end_mass = 0.00567;        ///< [kg], for squirt
     SourceLocation where;
+    bool operator==(const Cue&) const = default;
 };
 
 enum class BallBallModel : std::uint8_t { kMathavan, kInelastic, kElastic };
@@ -97,6 +104,7 @@ struct Physics {
     ClusterModel clusters = ClusterModel::kCompliant;
     double tolerance = 1e-6;      ///< of the impact (mathavan), relative to the approach speed
     std::optional<int> substeps;  ///< set: the published march with N of them, instead of the tolerance
+    bool operator==(const Physics&) const = default;
 };
 
 /// [effects]: one effect forced in or out of the plan (plan.h).
@@ -104,6 +112,7 @@ struct EffectOverride {
     std::string keyword;
     bool in_force;
     SourceLocation where;
+    bool operator==(const EffectOverride&) const = default;
 };
 
 /// The keywords of [effects], in the order of Plan::effects.
@@ -114,6 +123,7 @@ inline constexpr const char* kEffectKeywords[] = {
 struct Stop {
     std::optional<double> time;  ///< [s]
     std::optional<std::int64_t> events;
+    bool operator==(const Stop&) const = default;
 };
 
 struct RenderSettings {
@@ -121,6 +131,7 @@ struct RenderSettings {
     int width = 1280, height = 720;
     std::string camera = "top";  ///< top, rail, player or follow; not used where eye and target are set
     std::optional<Vec3> eye = std::nullopt, target = std::nullopt;  ///< [m]; both or neither
+    bool operator==(const RenderSettings&) const = default;
 };
 
 struct Scene {
@@ -137,6 +148,7 @@ struct Scene {
     BallSize size_of(const BallStart& start) const { return start.own.value_or(balls.size()); }
     /// Whether all balls have one radius and mass.
     bool alike() const;
+    bool operator==(const Scene&) const = default;
 };
 
 /// Reads and validates a scene file. @throws SceneError

@@ -17,6 +17,7 @@ struct Cushion {
     Vec2 from, to;
     double height;
     std::string name{};  ///< for people: "left rail, head half"
+    bool operator==(const Cushion&) const = default;
 };
 
 /// A rounded jaw: a full circle. A ball touches it at centre distance R + radius.
@@ -26,6 +27,7 @@ struct Jaw {
     double radius;
     double height;
     std::string name{};
+    bool operator==(const Jaw&) const = default;
 };
 
 /// A ball is pocketed when its centre crosses the circle.
@@ -35,6 +37,7 @@ struct Pocket {
     double radius;
     double depth;  ///< a pocketed ball rests at (center, -depth)
     std::string name{};
+    bool operator==(const Pocket&) const = default;
 };
 
 /// Cushions are "c1", "c2", ..., jaws "j1", ..., pockets "p1", ..., in the order in which they are listed.
@@ -47,6 +50,7 @@ struct Table {
     std::vector<Cushion> cushions;
     std::vector<Jaw> jaws;
     std::vector<Pocket> pockets;
+    bool operator==(const Table&) const = default;
 };
 
 /// Foot spot, where racks stand: (w/2, 3l/4) from the table's corner.

@@ -1,0 +1,66 @@
+#include "carom/engine/printable.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace carom {
+namespace {
+
+constexpr std::size_t kLongest = 60;
+
+/// Bytes of the UTF-8 character that `text` begins with, and its number in `code`; 0 if it is none.
+std::size_t character(std::string_view text, std::uint32_t& code) {
+    const auto byte = [&](std::size_t i) {
+        return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]));
+    };
+    const std::uint32_t first = byte(0);
+    const std::size_t size = first < 0x80   ? 1
+                             : first < 0xc2 ? 0
+                             : first < 0xe0 ? 2
+                             : first < 0xf0 ? 3
+                             : first < 0xf5 ? 4
+                                            : 0;
+    if (size == 0 || size > text.size()) return 0;
+    constexpr std::uint32_t kBitsOfFirst[] = {0, 0x7f, 0x1f, 0x0f, 0x07};
+    code = first & kBitsOfFirst[size];
+    for (std::size_t i = 1; i < size; ++i) {
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+        code = code << 6 | (byte(i) & 0x3f);
+    }
+    constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
+    const bool surrogate = code >= 0xd800 && code <= 0xdfff;
+    return code < kLeast[size] || code > 0x10ffff || surrogate ? 0 : size;
+}
+
+bool steers(std::uint32_t code) {
+    return code < 0x20 || (code >= 0x7f && code <= 0x9f) ||       // control characters
+           code == 0x061c || code == 0x200e || code == 0x200f ||  // direction marks
+           (code >= 0x2028 && code <= 0x202e) ||                  // line ends, embeddings, overrides
+           (code >= 0x2066 && code <= 0x2069) || code == 0xfeff;  // isolates, byte order mark
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+    std::string out;
+    for (std::size_t at = 0; at < text.size();) {
+        std::uint32_t code = 0;
+        const std::size_t size = character(text.substr(at), code);
+        const std::size_t length = size == 0 ? 1 : size;
+        if (at + length > kLongest) return out + "...";
+        if (size == 0 || steers(code))
+            out += '?';
+        else
+            out += text.substr(at, size);
+        at += length;
+    }
+    return out;
+}
+
+std::string in_quotes(std::string_view text) {
+    std::string out = "\"";
+    out += printable(text);
+    return out += '"';
+}
+
+}  // namespace carom

@@ -1,0 +1,194 @@
+// docs/reference/record_format.md and record.schema.json against what is written: the same keys, all scenes'
+// records valid, and nothing else valid.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "carom/engine/simulate.h"
+#include "support/json_schema.h"
+#include "support/pages.h"
+#include "support/process.h"
+
+namespace carom {
+namespace {
+
+using test::Json;
+using test::SchemaCheck;
+using test::TemporaryFolder;
+
+Json schema() {
+    return Json::parse(test::read_source("docs/reference/record.schema.json"));
+}
+
+std::string written(const Record& record) {
+    const TemporaryFolder folder;
+    write_record(record, folder.file("r.json"));
+    return test::read_file(folder.file("r.json"));
+}
+
+Record record_of(const Scene& scene, bool profile) {
+    SimulateOptions options;
+    options.profile = profile;
+    return simulate(make_plan(scene, kernel::Isa::kScalar), options);
+}
+
+std::vector<Scene> scenes() {
+    std::vector<Scene> all;
+    for (const auto& entry : std::filesystem::directory_iterator(CAROM_SOURCE_DIR "/scenes"))
+        if (entry.path().extension() == ".toml") all.push_back(read_scene(entry.path().string()));
+    EXPECT_GE(all.size(), 10u);
+    // What no scene of the folder has: friction that falls with the slip, a ball of its own size, an eye.
+    all.push_back(parse_scene(
+        "[balls]\nmu_b_fit = [0.009951, 0.108, 1.088]\n[render]\neye = [1, 1, 1]\ntarget = [0, 1, 0]\n"
+        "[stop]\nevents = 3\n[[ball]]\nid = \"a\"\nposition = [0.6, 1]\nvelocity = [0, 1]\nmass = 0.2\n"
+        "[[ball]]\nid = \"b\"\nposition = [0.6, 1.3]\n[physics]\nball_ball = \"inelastic\"\n",
+        "fit.toml"));
+    return all;
+}
+
+TEST(RecordSchema, RecordsOfAllScenesAreDescribedByItAndReadBackWhole) {
+    const Json rules = schema();
+    const SchemaCheck check(rules);
+    for (const Scene& scene : scenes()) {
+        for (const bool profile : {false, true}) {
+            const Record record = record_of(scene, profile);
+            const std::string text = written(record);
+            EXPECT_EQ(check.fault(Json::parse(text)), "") << scene.file;
+            std::vector<std::string> notes;
+            EXPECT_TRUE(parse_record(text, "r.json", &notes) == record) << scene.file;
+            EXPECT_EQ(notes, std::vector<std::string>{});
+        }
+    }
+}
+
+// Of every object and value of a record, one way each: "/tracks/3/segments/7/r" stands for all of its kind.
+void each_kind(const Json& value, const std::string& kind, const std::string& at,
+               std::map<std::string, std::string>& found) {
+    found.emplace(kind, at);
+    if (value.is_object())
+        for (const auto& [key, part] : value.items())
+            each_kind(part, kind + "/" + key, at + "/" + key, found);
+    if (value.is_array())
+        for (std::size_t i = 0; i < value.size(); ++i)
+            each_kind(value[i], kind + "/#", at + "/" + std::to_string(i), found);
+}
+
+// With every key that there is.
+Json profiled_break() {
+    Scene scene = read_scene(CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml");
+    scene.render.eye = Vec3(1.0, 1.0, 1.0);
+    scene.render.target = Vec3(0.0, 1.0, 0.0);
+    Record record = record_of(scene, true);
+    record.tracks.front().own = BallSize{0.03, 0.2};
+    return Json::parse(written(record));
+}
+
+TEST(RecordSchema, RefusesUnknownKeysMissingKeysAndOtherTypes) {
+    const Json rules = schema(), good = profiled_break();
+    const SchemaCheck check(rules);
+    ASSERT_EQ(check.fault(good), "");
+    std::map<std::string, std::string> kinds;
+    each_kind(good, "", "", kinds);
+    EXPECT_GE(kinds.size(), 90u);
+    // A key without which the record is still one.
+    const std::set<std::string> free = {"/events/#/balls", "/events/#/nose"};
+    for (const auto& [kind, at] : kinds) {
+        const Json::json_pointer place(at);
+        Json bad = good;
+        if (bad[place].is_object()) {
+            bad[place]["colour"] = 1;
+            EXPECT_NE(check.fault(bad), "") << at << "/colour";
+            bad = good;
+        }
+        bad[place] = good[place].is_boolean() ? Json(0) : Json(true);
+        EXPECT_NE(check.fault(bad), "") << at << " = " << bad[place];
+        if (at.empty() || kind.back() == '#' || free.count(kind) != 0) continue;
+        bad = good;
+        bad[place.parent_pointer()].erase(place.back());
+        EXPECT_NE(check.fault(bad), "") << at << " is missing";
+    }
+}
+
+// The heading of the page under which the keys of an object stand, and where the schema has that object.
+const std::pair<const char*, const char*> kObjects[] = {{"The record", ""},
+                                                        {"render", "/properties/render"},
+                                                        {"table", "/properties/table"},
+                                                        {"table.cushions", "/definitions/cushion"},
+                                                        {"table.jaws", "/definitions/jaw"},
+                                                        {"table.pockets", "/definitions/pocket"},
+                                                        {"balls", "/properties/balls"},
+                                                        {"tracks", "/definitions/track"},
+                                                        {"tracks.segments", "/definitions/segment"},
+                                                        {"events", "/definitions/event"}};
+
+std::string type_in_words(const Json& rule) {
+    if (rule.at("type").is_array()) return "number or null";
+    return rule.at("type") == "array" ? "list" : rule.at("type").get<std::string>();
+}
+
+TEST(RecordDocs, ThePageHasTheKeysAndTypesOfTheSchema) {
+    const Json rules = schema();
+    const std::string page = test::read_source("docs/reference/record_format.md");
+    const auto rows = test::table_rows(page);
+    for (const auto& [heading, place] : kObjects) {
+        std::map<std::string, std::string> described, known;
+        const Json object = rules.at(Json::json_pointer(place));
+        for (const auto& [key, rule] : object.at("properties").items()) {
+            known[key] = type_in_words(rule);
+            if (!rule.contains("enum")) continue;
+            for (const Json& choice : rule.at("enum"))
+                EXPECT_NE(page.find("`" + choice.get<std::string>() + "`"), std::string::npos) << choice;
+        }
+        for (const auto& row : rows.at(heading))
+            if (row.size() == 4 && !test::code(row[0]).empty()) described[test::code(row[0])[0]] = row[1];
+        EXPECT_EQ(described, known) << heading;
+    }
+}
+
+TEST(RecordSchema, EveryKeyIsWritten) {
+    std::map<std::string, std::string> kinds;
+    each_kind(profiled_break(), "", "", kinds);
+    const Json rules = schema();
+    const std::map<std::string, std::string> prefix = {{"The record", ""},
+                                                       {"render", "/render"},
+                                                       {"table", "/table"},
+                                                       {"table.cushions", "/table/cushions/#"},
+                                                       {"table.jaws", "/table/jaws/#"},
+                                                       {"table.pockets", "/table/pockets/#"},
+                                                       {"balls", "/balls"},
+                                                       {"tracks", "/tracks/#"},
+                                                       {"tracks.segments", "/tracks/#/segments/#"},
+                                                       {"events", "/events/#"}};
+    for (const auto& [heading, place] : kObjects) {
+        const Json object = rules.at(Json::json_pointer(place));
+        for (const auto& [key, rule] : object.at("properties").items())
+            EXPECT_EQ(kinds.count(prefix.at(heading) + "/" + key), 1u) << heading << "." << key;
+    }
+}
+
+TEST(RecordSchema, NamesAllStatesEventsAndReasons) {
+    const Json rules = schema();
+    Json states, events, reasons;
+    for (int i = 0; i < 5; ++i) states.push_back(name(static_cast<MotionState>(i)));
+    for (int i = 0; i < kEventTypes; ++i) events.push_back(name(static_cast<EventType>(i)));
+    for (int i = 0; i < 3; ++i) reasons.push_back(name(static_cast<StopReason>(i)));
+    EXPECT_EQ(rules.at("/definitions/segment/properties/state/enum"_json_pointer), states);
+    EXPECT_EQ(rules.at("/definitions/event/properties/type/enum"_json_pointer), events);
+    EXPECT_EQ(rules.at("/properties/stopped/enum"_json_pointer), reasons);
+}
+
+TEST(RecordDocs, TheExampleIsARecord) {
+    const std::string page = test::read_source("docs/reference/record_format.md");
+    const std::size_t begin = page.find("```json\n") + 8, end = page.find("```", begin);
+    const std::string example = page.substr(begin, end - begin);
+    EXPECT_EQ(SchemaCheck(schema()).fault(Json::parse(example)), "");
+    EXPECT_EQ(parse_record(example, "page").tracks.size(), 2u);
+}
+
+}  // namespace
+}  // namespace carom
