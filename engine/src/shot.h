@@ -60,6 +60,8 @@ class Shot {
     /// The loop. kProfile = false has no clock in it.
     template <bool kProfile>
     Record run(const Record* so_far);
+    /// How many balls the impacts of this run have looked at beside their own two; tests count them.
+    std::int64_t cluster_looks() const { return cluster_looks_; }
 
   private:
     void reserve_log();
@@ -135,6 +137,8 @@ class Shot {
     void end_cluster(const Candidate& c);
     double collect_cluster(int a, int b, double v_n);
     void collect_cluster_at(int a, int b, double v_n);
+    Box near_box(const ClusterBall& ball, double gap) const;
+    void bound_speed(const Segment& segment);
 
     // shot_held.cpp
     bool is_held(int ball) const { return now_of(ball).held; }
@@ -181,6 +185,8 @@ class Shot {
     ClusterMap cluster_map_;
     std::vector<ClusterBall> cluster_balls_;
     std::vector<ClusterContact> cluster_contacts_;
+    double fastest_ = 0.0;  // [m/s] no ball has been faster
+    std::int64_t cluster_looks_ = 0;
     std::vector<double> key_;  // per ball: when the loop has to look at it
     std::vector<Mover> mover_;
     std::vector<int> changed_;  // balls whose place in the queue is to be found anew

@@ -157,6 +157,8 @@ template <bool kProfile>
     return std::move(record_);
 }
 
+template Record Shot::run<false>(const Record*);
+
 namespace {
 
 /// CAROM_WITHOUT_PROFILE leaves the profiled loop out of the build: tools/profile_cost compares with that.
