@@ -65,7 +65,7 @@ Box Shot::near_box(const ClusterBall& ball, double gap) const {
 }
 
 void Shot::collect_cluster_at(int a, int b, double v_n) {
-    const double R = plan_.balls.R;
+    const double R = radius(a);  // alike, but perhaps not those of [balls]
     const double time = plan_.clusters == ClusterModel::kCompliant ? contact_time(v_n) : 0.0;
     const auto reach = [&](const Nearness& near) { return time * (std::max(0.0, near.closing) + v_n); };
     const auto member = [this](int ball) {
@@ -158,7 +158,7 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     } else {
         const bool frictionless = !plan_.ball_ball->reads_friction;
         const double mu_b = frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b);
-        const ClusterSettings settings{p.R,
+        const ClusterSettings settings{radius(c.a),
                                        plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
                                        mu_b,
                                        frictionless ? 1.0 : p.e_b,

@@ -162,6 +162,24 @@ TEST(ClusterSearch, TheOrderOfTheBallsDoesNotMatter) {
     }
 }
 
+// Balls that are alike may have their size from [balls] or each from itself.
+TEST(ClusterSearch, TheSizeIsThatOfTheBallsThemselves) {
+    Scene scene = empty_scene();
+    const BallSize large{0.035, 0.2};
+    scene.balls.R = large.R;
+    scene.balls.m = large.m;
+    add_ball(scene, "cue", 0.0, 0.0, 0.0, 2.0);
+    add_ball(scene, "a", -0.0351, 0.7);
+    add_ball(scene, "b", 0.0351, 0.7);
+    const Record one = simulate(plan_of(scene));
+    scene.balls = pool_balls();
+    for (BallStart& ball : scene.ball) ball.own = large;
+    const Record other = simulate(plan_of(scene));
+    ASSERT_EQ(one.clusters.size(), 1u);
+    EXPECT_EQ(other.clusters, one.clusters);
+    EXPECT_EQ(other.hash(), one.hash());
+}
+
 /// Balls that an impact looks at beside its own two, on average.
 double looks_per_impact(const Scene& scene) {
     const Plan plan = plan_of(scene);
