@@ -139,6 +139,7 @@ struct Gas {
         const double before = heap_bytes();
         SimulateOptions options;
         // The first call comes after the first event: set-up is over, and its memory is taken.
+        options.progress_rounds = 1;
         options.progress = [&](std::size_t events, double) {
             if (begin != 0.0) return;
             bytes = heap_bytes() - before;

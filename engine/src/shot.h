@@ -65,6 +65,7 @@ class Shot {
 
   private:
     void reserve_log();
+    void tell_progress();
     void first_candidates();
 
     // shot_queue.cpp
@@ -173,7 +174,9 @@ class Shot {
     Record record_;
     double now_ = 0.0;
     int balls_ = 0;
-    int quiet_ = 0;  // rounds of the loop in a row without an event
+    int quiet_ = 0;            // rounds of the loop in a row without an event
+    int rounds_untold_ = 0;    // since the last call of options_.progress
+    bool long_round_ = false;  // a round took long by itself since then
     EventCost cost_;
     std::vector<Segment> current_;  // per ball
     std::vector<Segment> log_;      // every segment begun in this run, in order; the record's at the end

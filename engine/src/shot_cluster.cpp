@@ -150,6 +150,7 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     if (cluster_balls_.size() < 3) return false;
     const bool slow = is_slow(v_n);
     if (slow && hold_in_cluster(false)) return true;
+    long_round_ = true;
     const BallParams& p = plan_.balls;
     const auto start = kProfile ? Clock::now() : Clock::time_point{};
     long steps;

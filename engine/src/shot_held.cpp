@@ -94,6 +94,7 @@ void Shot::free_ball(int ball) {
 // The group of a held ball, advanced to now and solved anew. With `transitions`, members whose interval ended
 // with their own transition make it first.
 void Shot::solve_group(int ball, bool transitions) {
+    long_round_ = true;
     HeldGroup group;
     std::vector<int> members{ball};
     for (std::size_t k = 0; k < members.size(); ++k) {

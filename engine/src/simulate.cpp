@@ -100,6 +100,13 @@ void Shot::finish() {
     record_.duration = now_;
 }
 
+void Shot::tell_progress() {
+    if (++rounds_untold_ < options_.progress_rounds && !long_round_) return;
+    rounds_untold_ = 0;
+    long_round_ = false;
+    options_.progress(record_.events.size(), now_);
+}
+
 // Kept a function of its own, so that tools/profile_cost finds it by name.
 template <bool kProfile>
 [[gnu::noinline]] Record Shot::run(const Record* so_far) {
@@ -151,7 +158,7 @@ template <bool kProfile>
             if (event) record_.costs[events_before] = cost_;
             quiet = event ? EventCost{} : cost_;
         }
-        if (options_.progress) options_.progress(record_.events.size(), now_);
+        if (options_.progress) tell_progress();
     }
     finish();
     return std::move(record_);

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
     Record record;
     for (long run = name == "gas" ? 1 : third; run > 0; --run) {
         SimulateOptions options;
+        options.progress_rounds = 1;
         options.progress = [&ends](std::size_t events, double) { ends.push_back(events); };
         ends.clear();
         record = simulate(plan, options);
