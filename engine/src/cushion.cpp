@@ -57,21 +57,25 @@ bool cushion_impulse(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3&
 
 }  // namespace detail
 
-const CushionModelInfo& cushion_model(CushionModel model) {
+std::span<const CushionModelInfo> cushion_models() {
     static constexpr CushionModelInfo kModels[] = {
-        {CushionModel::kSmooth, "smooth", detail::cushion_smooth, false, false, false, false, "reflection"},
         {CushionModel::kHan2005, "han_2005", detail::cushion_han_2005, true, true, false, true,
          "Han, J. Mech. Sci. Tech. 19 (2005)"},
         {CushionModel::kMathavan2010, "mathavan_2010", detail::cushion_mathavan_2010, true, true, true, true,
          "Mathavan, Jackson, Parkin, Proc. IMechE C 224 (2010)"},
-        {CushionModel::kImpulse, "impulse", detail::cushion_impulse, true, true, false, true,
-         "one Coulomb impulse along the inclined normal"},
         {CushionModel::kStronge, "stronge", detail::cushion_stronge, true, true, false, true,
          "Stronge, Impact Mechanics, compliant contact"},
+        {CushionModel::kImpulse, "impulse", detail::cushion_impulse, true, true, false, true,
+         "one Coulomb impulse along the inclined normal"},
+        {CushionModel::kSmooth, "smooth", detail::cushion_smooth, false, false, false, false, "reflection"},
     };
-    for (const CushionModelInfo& info : kModels)
+    return kModels;
+}
+
+const CushionModelInfo& cushion_model(CushionModel model) {
+    for (const CushionModelInfo& info : cushion_models())
         if (info.model == model) return info;
-    return kModels[0];
+    return cushion_models().back();
 }
 
 bool resolve_cushion(CushionModel model, const CushionContact& contact, const Vec2& normal, Vec3& v,
