@@ -91,9 +91,8 @@ void interleave(const std::vector<std::function<void()>>& list, int rounds, cons
         for (std::size_t k = 0; k < order.size(); ++k) {
             throw_if_interrupted();
             list[order[k]]();
-            if (progress.due())
-                progress.show_bar(round * static_cast<long>(order.size()) + static_cast<long>(k),
-                                  rounds * static_cast<long>(order.size()));
+            progress.show_bar(round * static_cast<long>(order.size()) + static_cast<long>(k) + 1,
+                              rounds * static_cast<long>(order.size()));
         }
     }
 }
@@ -207,7 +206,10 @@ ShotBench measure_shots(const BenchShotOptions& options) {
         });
         work.emplace_back([&baseline] { baseline.round(); });
     }
-    for (TimedShot& s : subjects) s.time();  // warms up
+    for (TimedShot& s : subjects) {  // warms up
+        throw_if_interrupted();
+        s.time();
+    }
     interleave(work, options.repeats, "bench shot");
 
     ShotBench bench;
