@@ -31,12 +31,17 @@ TEST(CliBenchShot, RowsAreWhole) {
     }
     EXPECT_EQ(names, (std::set<std::string>{"eight_ball_break", "nine_ball_break",
                                             "eight_ball_break compliant", "two_ball_shot"}));
-    std::set<int> sizes, chosen;
+    std::set<int> sizes, chosen, compliant;
     for (const Json& row : json.at("growth")) {
         const int n = row.at("n").get<int>();
         sizes.insert(n);
+        const bool by_default = row.at("clusters") == "compliant";
+        EXPECT_EQ(row.at("name"), by_default ? "gas compliant" : "gas");
         if (row.at("chosen").get<bool>()) {
-            EXPECT_TRUE(chosen.insert(n).second) << n;
+            EXPECT_TRUE((by_default ? compliant : chosen).insert(n).second) << n;
+        }
+        if (n == 16 && row.at("search") == "direct") {
+            EXPECT_EQ(row.at("growth").get<double>(), 1.0);
         }
         EXPECT_TRUE(row.at("search") == "direct" || row.at("search") == "tree");
         EXPECT_GT(row.at("ns_min").get<double>(), 0.0);
@@ -46,6 +51,7 @@ TEST(CliBenchShot, RowsAreWhole) {
     }
     EXPECT_EQ(sizes, (std::set<int>{16, 100, 300, 1000, 10000}));
     EXPECT_EQ(chosen, sizes);
+    EXPECT_EQ(compliant, sizes);
 }
 
 TEST(CliBenchShot, PrintsATable) {

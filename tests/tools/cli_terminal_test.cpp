@@ -114,7 +114,7 @@ TEST_F(OnATerminal, NothingIsLeftUnderTheSummary) {
 }
 
 TEST_F(OnATerminal, ANarrowOneHasOneLineToo) {
-    for (const unsigned short columns : {50, 20, 5}) {
+    for (const unsigned short columns : {50, 20, 10}) {
         Terminal terminal({CAROM_PROGRAM, "sweep", kBreak, "--vary", "rack.seed=integer(1,9)", "--count",
                            "10000000", "--jobs", "1", "-o", "/dev/null"},
                           columns);
