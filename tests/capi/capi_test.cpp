@@ -280,7 +280,8 @@ TEST(CApi, WithoutACueNothingIsStruck) {
     scene.cue = Cue{};
     EXPECT_EQ(scene_text(scene), scene_text(parse_scene("[[ball]]\n[cue]\n", "x")));
     Handles h;
-    ASSERT_EQ(carom_scene_parse("[[ball]]\n", "x", &h.scene), CAROM_OK);
+    ASSERT_EQ(carom_scene_parse("[[ball]]\n[cue]\n", "x", &h.scene), CAROM_OK);
+    ASSERT_EQ(carom_scene_set_cue(h.scene, nullptr, nullptr), CAROM_OK);
     ASSERT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_OK);
     EXPECT_EQ(carom_record_event_count(h.record), 0u);
 }

@@ -85,9 +85,10 @@ class Terminal {
         if (::write(fd_, "\003", 1) != 1) throw std::runtime_error("cannot write to the terminal");
     }
 
-    /// Reads the rest. Exit status; 128 + signal if a signal ended it.
+    /// Reads the rest. Exit status; 128 + signal if a signal ended it, SIGKILL after two minutes.
     int finish() {
-        while (read_some()) {
+        const auto enough = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+        while (std::chrono::steady_clock::now() < enough && read_some()) {
         }
         if (!ended_) ::kill(pid_, SIGKILL);
         int status = 0;
