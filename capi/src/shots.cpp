@@ -142,8 +142,7 @@ carom_status carom_scene_set_ball(carom_scene* scene, const char* id, const doub
 void carom_cue_init(carom_cue* cue) {
     if (cue == nullptr) return;
     const carom::Cue c;
-    // A file that has a [cue] strikes: 9 m/s, a little above the centre.
-    *cue = {9.0, c.aim_deg, c.elevation_deg, c.side, 0.1, c.mass, c.end_mass};
+    *cue = {c.speed, c.aim_deg, c.elevation_deg, c.side, c.height, c.mass, c.end_mass};
 }
 
 carom_status carom_scene_set_cue(carom_scene* scene, const char* id, const carom_cue* cue) {

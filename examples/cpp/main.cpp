@@ -24,7 +24,8 @@ carom::Scene cut_shot() {
     cue.ball = "cue";
     cue.speed = 3.0;  // m/s
     cue.aim_deg = 90.0;
-    cue.side = 0.1;  // ball radii, left
+    cue.side = 0.1;    // ball radii, left
+    cue.height = 0.0;  // not above the centre, as it would be by default
     scene.cue = cue;
     return scene;
 }

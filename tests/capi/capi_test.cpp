@@ -343,18 +343,36 @@ TEST(CApi, WritesTheSceneAsAFile) {
     EXPECT_EQ(carom_scene_text(nullptr, nullptr, 0), static_cast<std::size_t>(-1));
 }
 
-// The cue of a file that says nothing about it.
-TEST(CApi, TheCueBeginsAsInASceneFile) {
-    carom_cue cue;
-    carom_cue_init(&cue);
-    const Cue file = *parse_scene("[[ball]]\n[cue]\n", "x").cue;
-    EXPECT_EQ(cue.speed, file.speed);
-    EXPECT_EQ(cue.aim_deg, file.aim_deg);
-    EXPECT_EQ(cue.elevation_deg, file.elevation_deg);
-    EXPECT_EQ(cue.side, file.side);
-    EXPECT_EQ(cue.height, file.height);
-    EXPECT_EQ(cue.mass, file.mass);
-    EXPECT_EQ(cue.end_mass, file.end_mass);
+// A cue of which nothing is said: in a file, in C++ and in C.
+TEST(CApi, TheCueBeginsAsInASceneFileAndInCpp) {
+    carom_cue c;
+    carom_cue_init(&c);
+    const Cue file = *parse_scene("[[ball]]\n[cue]\n", "x").cue, cpp;
+    for (const Cue& cue : {file, cpp}) {
+        EXPECT_EQ(cue.ball, "cue");
+        EXPECT_EQ(cue.speed, 9.0);
+        EXPECT_EQ(cue.height, 0.1);
+        EXPECT_EQ(cue.speed, c.speed);
+        EXPECT_EQ(cue.aim_deg, c.aim_deg);
+        EXPECT_EQ(cue.elevation_deg, c.elevation_deg);
+        EXPECT_EQ(cue.side, c.side);
+        EXPECT_EQ(cue.height, c.height);
+        EXPECT_EQ(cue.mass, c.mass);
+        EXPECT_EQ(cue.end_mass, c.end_mass);
+    }
+}
+
+// No cue is no strike, whatever a cue would be: the ball stays.
+TEST(CApi, WithoutACueNothingIsStruck) {
+    Scene scene = parse_scene("[[ball]]\n", "x");
+    EXPECT_FALSE(scene.cue);
+    scene.cue = Cue{};
+    EXPECT_EQ(scene_text(scene), scene_text(parse_scene("[[ball]]\n[cue]\n", "x")));
+    Handles h;
+    ASSERT_EQ(carom_scene_parse("[[ball]]\n[cue]\n", "x", &h.scene), CAROM_OK);
+    ASSERT_EQ(carom_scene_set_cue(h.scene, nullptr, nullptr), CAROM_OK);
+    ASSERT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_OK);
+    EXPECT_EQ(carom_record_event_count(h.record), 0u);
 }
 
 TEST(CApi, NullIsAnAnswerNotACrash) {

@@ -20,9 +20,11 @@ namespace {
 
 using namespace test;
 
-constexpr CushionModel kCushionModels[] = {CushionModel::kSmooth, CushionModel::kHan2005,
-                                           CushionModel::kMathavan2010, CushionModel::kImpulse,
-                                           CushionModel::kStronge};
+const std::vector<CushionModel> kCushionModels = [] {
+    std::vector<CushionModel> models;
+    for (const CushionModelInfo& info : cushion_models()) models.push_back(info.model);
+    return models;
+}();
 
 struct Case {
     CushionContact contact;
@@ -183,6 +185,17 @@ TEST(Cushion, EveryModelIsHomogeneous) {
             EXPECT_EQ(v2, Vec3(2.0 * v)) << name(model) << " " << i;
             EXPECT_EQ(w2, Vec3(2.0 * w)) << name(model) << " " << i;
         }
+    }
+}
+
+// One row a model, and a scene file may ask for each.
+TEST(Cushion, TheTableHasEveryModelOnce) {
+    EXPECT_EQ(kCushionModels.size(), 5u);
+    for (const CushionModel model : kCushionModels) {
+        EXPECT_EQ(std::count(kCushionModels.begin(), kCushionModels.end(), model), 1);
+        EXPECT_EQ(cushion_model(model).model, model);
+        const std::string scene = std::string("[[ball]]\n[physics]\ncushion = \"") + name(model) + "\"\n";
+        EXPECT_EQ(parse_scene(scene, "x").physics.cushion, model);
     }
 }
 

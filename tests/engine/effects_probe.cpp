@@ -131,6 +131,7 @@ const Case kCases[] = {
          cue.ball = "a";
          cue.speed = 1.0;
          cue.side = 0.3;
+         cue.height = 0.0;
          s.cue = cue;
      }},
 };

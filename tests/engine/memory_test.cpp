@@ -76,6 +76,7 @@ struct LoopCount {
 
     explicit LoopCount(const Plan& plan) {
         SimulateOptions options;
+        options.progress_rounds = 1;
         options.progress = [this](std::size_t n, double) {
             last = allocations;
             if (first < 0) {

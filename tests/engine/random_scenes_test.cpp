@@ -246,6 +246,7 @@ int scan(const char* wanted) {
         };
         std::size_t rounds = 0;
         SimulateOptions options;
+        options.progress_rounds = 1;
         options.progress = [&](std::size_t, double time) {
             if (++rounds % 64 == 0 && taken() > give_up_ms)
                 throw std::runtime_error("given up at t = " + std::to_string(time) + " s");

@@ -139,6 +139,7 @@ TEST(Masse, ElevationAndSideCurveThePath) {
         cue.aim_deg = 0.0;
         cue.elevation_deg = elevation;
         cue.side = side;
+        cue.height = 0.0;
         cue.end_mass = 0.0;
         scene.cue = cue;
         return simulate(plan_of(scene));

@@ -47,8 +47,11 @@ KernelAccuracyRow row(const char* method, double ns, double median, double worst
 // The tables of growth, which take minutes to measure.
 TEST(BenchTables, ShowGrowth) {
     ShotBench shots;
-    shots.growth = {{16, Search::kDirect, true, 1234.0, 1300.0, 1.0, 650.0}};
+    shots.growth = {
+        {"gas", ClusterModel::kSequential, 16, Search::kDirect, true, 1234.0, 1300.0, 1.0, 650.0},
+        {"gas compliant", ClusterModel::kCompliant, 16, Search::kDirect, true, 2345.0, 2400.0, 1.0, 650.0}};
     const std::string gas = shot_bench_text(shots);
+    EXPECT_NE(gas.find("\ngas compliant             16 direct*     2345"), std::string::npos) << gas;
     EXPECT_NE(gas.find("1234"), std::string::npos) << gas;
     EXPECT_NE(gas.find("650"), std::string::npos) << gas;
     KernelBench kernels;

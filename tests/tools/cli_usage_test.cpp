@@ -109,22 +109,6 @@ TEST(CliUsage, HelpNamesEveryDefault) {
     }
 }
 
-// script (of bsdutils, which every Debian has) gives the program a terminal, timeout ends it as Ctrl-C does.
-// What lasts shows a line that moves, and takes it away.
-TEST(CliUsage, ATerminalSeesProgress) {
-    const TemporaryFolder folder;
-    const std::string scene = folder.write("s.toml", kSmallScene);
-    const ProcessResult result =
-        run_process({"script", "-qec",
-                     std::string("timeout -s INT 2 ") + CAROM_PROGRAM + " sweep " + CAROM_SOURCE_DIR +
-                         "/scenes/eight_ball_break.toml --vary 'rack.seed=integer(1,9)' --count 10000000 "
-                         "--jobs 1 -o /dev/null",
-                     "/dev/null"});
-    EXPECT_EQ(result.status, 124) << result.out;  // timeout's
-    EXPECT_TRUE(contains(result.out, "\r\033[Ksweep [")) << result.out;
-    EXPECT_TRUE(contains(result.out, " of 10000000\r\033[K")) << result.out;
-}
-
 TEST(CliUsage, AFullDiskIsAnError) {
     ProcessOptions options;
     options.output_to = "/dev/full";

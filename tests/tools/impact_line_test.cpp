@@ -117,6 +117,20 @@ TEST(ImpactLine, CushionIsTheEnginesResult) {
     EXPECT_LT(v.x(), 0.0);
 }
 
+TEST(ImpactLine, EveryModelOfTheEnginesTableIsThere) {
+    Json line = cushion_line();
+    line["model"] = "";
+    std::string known;
+    for (const CushionModelInfo& info : cushion_models()) {
+        known += (known.empty() ? "" : ", ") + std::string(info.name);
+        Json of_model = cushion_line();
+        of_model["model"] = info.name;
+        EXPECT_TRUE(answer_impact(of_model.dump(), settings()).ok) << info.name;
+    }
+    const std::string error = Json::parse(answer_impact(line.dump(), settings()).json)["error"];
+    EXPECT_EQ(error.substr(error.find(": han") + 2), known);
+}
+
 TEST(ImpactLine, BallsThatDoNotApproachLeaveAsTheyCame) {
     Json line = ball_ball_line();
     line["v1"] = {-1.0, 0.0, 0.0};

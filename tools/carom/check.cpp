@@ -38,7 +38,8 @@ std::string kernel_line(const Plan& plan) {
 std::string stop_line(const Stop& stop) {
     std::string text = "at rest";
     if (stop.time) text += fmt::format(", or after {} s", *stop.time);
-    if (stop.events) text += fmt::format(", or after {} events", *stop.events);
+    if (stop.events)
+        text += fmt::format(", or after {}", counted(static_cast<std::size_t>(*stop.events), "event"));
     return text;
 }
 

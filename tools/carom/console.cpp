@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -41,6 +42,23 @@ void catch_interrupt(int signal) {
     ::sigaction(signal, &action, nullptr);
 }
 
+/// A terminal has one such line, whoever wrote it.
+std::atomic<bool> g_line_stands = false;
+
+void wipe_line() {
+    if (g_line_stands.exchange(false)) std::fputs("\r\033[K", stderr);
+}
+
+/// That the terminal has for the line, now: people pull at its corner. What does not say is as wide as
+/// terminals were. A line that reaches the edge would be two, and only one is wiped; Ctrl-C shows as "^C"
+/// behind it.
+std::size_t columns() {
+    struct winsize size {};
+    constexpr std::size_t kUsual = 80, kFree = 3;
+    const std::size_t all = ::ioctl(2, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
+    return all - std::min(all, kFree);
+}
+
 [[noreturn]] void output_failed() {
     const int reason = errno;
     if (reason == EPIPE) throw OutputClosed();
@@ -62,16 +80,25 @@ void prepare_process() {
     catch_interrupt(SIGTERM);
 }
 
+std::string counted(std::size_t count, std::string_view what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 void print(std::string_view text) {
+    // What goes into a file or a pipe leaves the line alone: it may be the work that the line tells of.
+    static const bool on_terminal = ::isatty(1) == 1;
+    if (on_terminal) wipe_line();
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) output_failed();
 }
 
 void flush_output() {
+    wipe_line();
     if (std::fflush(stdout) != 0) output_failed();
 }
 
 void message(std::string_view text) {
     const std::string line = fmt::format("carom: {}\n", text);
+    wipe_line();
     std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
@@ -93,7 +120,7 @@ ProgressLine::ProgressLine(std::string title)
       next_(std::chrono::steady_clock::now() + kPatience) {}
 
 ProgressLine::~ProgressLine() {
-    if (drawn_) std::fputs("\r\033[K", stderr);
+    wipe_line();
 }
 
 bool ProgressLine::due() {
@@ -105,20 +132,29 @@ bool ProgressLine::due() {
 }
 
 void ProgressLine::show_text(std::string_view text) {
-    const std::string line = fmt::format("\r\033[K{} {}", title_, text);
+    std::string line = fmt::format("{} {}", title_, text);
+    line.resize(std::min(line.size(), columns()));
+    line.insert(0, "\r\033[K");
     std::fwrite(line.data(), 1, line.size(), stderr);
     std::fflush(stderr);
-    drawn_ = true;
+    g_line_stands = true;
 }
 
 void ProgressLine::show_bar(long done, long total) {
     if (!due()) return;
-    constexpr int kWidth = 40;
+    constexpr std::size_t kWidest = 40, kNarrowest = 5;
     const double part =
         total > 0 ? std::clamp(static_cast<double>(done) / static_cast<double>(total), 0.0, 1.0) : 1.0;
-    const auto filled = static_cast<std::size_t>(part * kWidth);
-    show_text(fmt::format("[{}{}] {} of {}", std::string(filled, '#'), std::string(kWidth - filled, '.'),
-                          done, total));
+    const std::string numbers = fmt::format("{} of {}", done, total);
+    // The title, a blank, the bar in its brackets, a blank, the numbers.
+    const std::size_t other = title_.size() + numbers.size() + 4, all = columns();
+    const std::size_t width = std::min(kWidest, all - std::min(all, other));
+    if (width < kNarrowest) {
+        show_text(numbers);
+        return;
+    }
+    const auto filled = static_cast<std::size_t>(part * static_cast<double>(width));
+    show_text(fmt::format("[{}{}] {}", std::string(filled, '#'), std::string(width - filled, '.'), numbers));
 }
 
 }  // namespace carom::tools

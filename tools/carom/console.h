@@ -30,7 +30,11 @@ class OutputClosed : public std::exception {};
 /// Sets up signals and the three standard streams; call once, first.
 void prepare_process();
 
-/// Results. Failures to write are errors, not lost output. @throws OutputClosed, std::runtime_error
+/// "1 frame", "2 frames".
+std::string counted(std::size_t count, std::string_view what);
+
+/// Results. A progress line that stands on the terminal is wiped first. Failures to write are errors, not
+/// lost output. @throws OutputClosed, std::runtime_error
 void print(std::string_view text);
 void flush_output();
 
@@ -42,7 +46,8 @@ bool interrupted() noexcept;
 void throw_if_interrupted();
 int interrupted_status() noexcept;
 
-/// A line on standard error that renews itself while work goes on; silent when that is no terminal.
+/// A line on standard error that renews itself while work goes on; silent when that is no terminal. It is as
+/// long as the terminal is wide, at most, and gone when anything else is written.
 class ProgressLine {
   public:
     explicit ProgressLine(std::string title);
@@ -50,16 +55,16 @@ class ProgressLine {
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    /// Whether it is time to renew the line. Cheap, so that callers build their text only then.
+    /// Whether it is time to renew the line; if so, not again for a while. Cheap, so that callers build their
+    /// text only then.
     bool due();
     void show_text(std::string_view text);
 
-    void show_bar(long done, long total);  ///< when due
+    void show_bar(long done, long total);  ///< asks due() itself
 
   private:
     std::string title_;
     bool terminal_;
-    bool drawn_ = false;
     std::chrono::steady_clock::time_point next_;
 };
 

@@ -139,10 +139,9 @@ CushionModel cushion_model(const Json& line) {
     const Json& json = need(line, "model");
     if (!json.is_string()) throw LineError("\"model\": expected a string");
     std::string known;
-    for (const CushionModel model : {CushionModel::kHan2005, CushionModel::kMathavan2010,
-                                     CushionModel::kStronge, CushionModel::kImpulse, CushionModel::kSmooth}) {
-        if (json.get_ref<const std::string&>() == name(model)) return model;
-        known += (known.empty() ? "" : ", ") + std::string(name(model));
+    for (const CushionModelInfo& info : cushion_models()) {
+        if (json.get_ref<const std::string&>() == info.name) return info.model;
+        known += (known.empty() ? "" : ", ") + std::string(info.name);
     }
     throw LineError(fmt::format("\"model\": this is no cushion model of this version; there are: {}", known));
 }

@@ -151,7 +151,8 @@ int write_sheet(const RenderArgs& args, const Record& record, const render::Sequ
     const render::FrameSize grid = parse_sheet(args.sheet);
     const std::string path = args.pattern.find('%') == std::string::npos ? args.pattern : "sheet.png";
     render::render_sheet(record, options, grid.width, grid.height, path);
-    print(fmt::format("{} pictures: {}\n", grid.width * grid.height, path));
+    print(fmt::format("{}: {}\n", counted(static_cast<std::size_t>(grid.width * grid.height), "picture"),
+                      path));
     return kOk;
 }
 
@@ -166,28 +167,32 @@ int run_render(const RenderArgs& args) {
                                                      : simulate_plan(plan_scene(args.input), simulation);
     render::SequenceOptions options = sequence_options(args, record);
     if (options.overlay.margin) set_simulation_costs(record, options);
-    if (!args.sheet.empty()) return write_sheet(args, record, options);
     ProgressLine line("rendering:");
     options.progress = [&line](long done, long total) {
         throw_if_interrupted();
         line.show_bar(done, total);
     };
+    options.table_progress = [&line](int done, int total) {
+        throw_if_interrupted();
+        if (line.due()) line.show_text(fmt::format("the table, {} of {}", done, total));
+    };
+    if (!args.sheet.empty()) return write_sheet(args, record, options);
     const std::vector<render::FrameTiming> timings = render::render_sequence(record, options);
     throw_if_interrupted();
     if (args.raw) {
         flush_output();
-        message(
-            fmt::format("{} frames of RGB; to make a film of them, pipe them into: ffmpeg -f rawvideo "
-                        "-pix_fmt rgb24 -s {}x{} -framerate {} "
-                        "-i - -pix_fmt yuv420p shot.mp4",
-                        timings.size(), options.size.width, options.size.height, options.fps));
+        message(fmt::format(
+            "{} of RGB; to make a film of them, pipe them into: ffmpeg -f rawvideo "
+            "-pix_fmt rgb24 -s {}x{} -framerate {} "
+            "-i - -pix_fmt yuv420p shot.mp4",
+            counted(timings.size(), "frame"), options.size.width, options.size.height, options.fps));
         return kOk;
     }
     if (timings.size() == 1) {
         print(fmt::format("1 frame: {}\n", render::frame_path(options.pattern, timings.front().frame)));
         return kOk;
     }
-    print(fmt::format("{} frames, {}x{} at {} fps: {}\n", timings.size(), options.size.width,
+    print(fmt::format("{}, {}x{} at {} fps: {}\n", counted(timings.size(), "frame"), options.size.width,
                       options.size.height, options.fps, options.pattern));
     print(fmt::format("to make a film of them: ffmpeg -framerate {} -i {} -pix_fmt yuv420p shot.mp4\n",
                       options.fps, options.pattern));

@@ -55,11 +55,17 @@ Plan plan_scene(const std::string& path) {
     return plan;
 }
 
+SimulateOptions interruptible() {
+    SimulateOptions options;
+    options.progress = [](std::size_t, double) { throw_if_interrupted(); };
+    return options;
+}
+
 Record simulate_plan(const Plan& plan, SimulateOptions options) {
     ProgressLine line("simulating:");
     options.progress = [&line](std::size_t events, double time) {
         throw_if_interrupted();
-        if (line.due()) line.show_text(fmt::format("{} events, {:.3f} s", events, time));
+        if (line.due()) line.show_text(fmt::format("{}, {:.3f} s", counted(events, "event"), time));
     };
     Record record = simulate(plan, options);
     throw_if_interrupted();

@@ -20,6 +20,9 @@ std::string available_isas();
 /// Reads a scene and plans it; its warnings go to standard error. @throws SceneError
 Plan plan_scene(const std::string& path);
 
+/// For a run without a line of its own: SIGINT ends it.
+SimulateOptions interruptible();
+
 /// simulate() with a progress line; SIGINT ends it. @throws SimulationError, Interrupted
 Record simulate_plan(const Plan& plan, SimulateOptions options);
 

@@ -89,8 +89,8 @@ const char* reason(StopReason stopped) {
 std::string summary(const Record& record, const std::string& scene) {
     fmt::memory_buffer out;
     const auto line = std::back_inserter(out);
-    fmt::format_to(line, "{}: {} balls, {:.4f} s, {} events; {}\n\nevents\n", scene, record.tracks.size(),
-                   record.duration, record.events.size(), reason(record.stopped));
+    fmt::format_to(line, "{}: {}, {:.4f} s, {}; {}\n\nevents\n", scene, counted(record.tracks.size(), "ball"),
+                   record.duration, counted(record.events.size(), "event"), reason(record.stopped));
     std::array<long, kEventTypes> counts{};
     for (const Event& event : record.events) ++counts[static_cast<std::size_t>(event.type)];
     for (int type = 0; type < kEventTypes; ++type) {

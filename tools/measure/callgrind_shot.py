@@ -66,7 +66,7 @@ def self_costs(path):
 def measure(probe, args, folder):
     command = ["valgrind", "--tool=callgrind", "--toggle-collect=carom::simulate(*", "--dump-before=*carom::Shot::apply<*",
                "--compress-strings=no", f"--callgrind-out-file={folder}/out", str(probe)]
-    command += ["gas", str(args.balls), str(args.events)] if args.shot == "gas" else [args.shot, str(args.seed)]
+    command += ["gas", str(args.balls), str(args.events)] if args.shot in ("gas", "gas compliant") else [args.shot, str(args.seed)]
     env = dict(os.environ)
     env.setdefault("CAROM_ISA", "v3")
     run = subprocess.run(command, capture_output=True, text=True, env=env)

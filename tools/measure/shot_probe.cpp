@@ -1,5 +1,6 @@
-// Runs one shot, for tools/measure/callgrind_shot.py: shot_probe NAME SEED [RUNS], or shot_probe gas N EVENTS.
-// Prints the kind of event of every round of the loop in the last run, one a line.
+// Runs one shot, for tools/measure/callgrind_shot.py: shot_probe NAME SEED [RUNS], or shot_probe gas N EVENTS (pair
+// by pair; "gas compliant" with the default model of clusters). Prints the kind of event of every round of
+// the loop in the last run, one a line.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -13,7 +14,9 @@
 int main(int argc, char** argv) {
     using namespace carom;
     if (argc < 3) {
-        std::fprintf(stderr, "usage: shot_probe NAME SEED [RUNS] | shot_probe gas N EVENTS; NAME is one of");
+        std::fprintf(stderr,
+                     "usage: shot_probe NAME SEED [RUNS] | shot_probe gas N EVENTS | shot_probe 'gas "
+                     "compliant' N EVENTS; NAME is one of");
         for (const std::string& name : tools::shot_names()) std::fprintf(stderr, " '%s'", name.c_str());
         std::fprintf(stderr, "\n");
         return 2;
@@ -23,14 +26,17 @@ int main(int argc, char** argv) {
                third = argc > 3 ? std::strtol(argv[3], nullptr, 10) : 1;
     kernel::Isa isa{};
     if (kernel::isa_from_environment(isa) != kernel::IsaChoice::kOk) return 2;
-    const Scene scene = name == "gas" ? tools::gas_scene(static_cast<int>(number), third, 1)
-                                      : tools::shot_scene(name, static_cast<std::uint64_t>(number));
+    const bool gas = name == "gas" || name == "gas compliant";
+    Scene scene = gas ? tools::gas_scene(static_cast<int>(number), third, 1)
+                      : tools::shot_scene(name, static_cast<std::uint64_t>(number));
+    if (name == "gas compliant") scene.physics.clusters = ClusterModel::kCompliant;
     const Plan plan = make_plan(scene, isa);
     std::vector<std::size_t> ends;  // of every round, in events
     ends.reserve(100000);
     Record record;
-    for (long run = name == "gas" ? 1 : third; run > 0; --run) {
+    for (long run = gas ? 1 : third; run > 0; --run) {
         SimulateOptions options;
+        options.progress_rounds = 1;
         options.progress = [&ends](std::size_t events, double) { ends.push_back(events); };
         ends.clear();
         record = simulate(plan, options);

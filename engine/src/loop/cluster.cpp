@@ -55,8 +55,17 @@ double Shot::collect_cluster(int a, int b, double v_n) {
     }
 }
 
+// Whoever is no more than `gap` from the ball has a box that overlaps this one: boxes hold where a ball is
+// now, and the share keeps rounding inside.
+Box Shot::near_box(const ClusterBall& ball, double gap) const {
+    const double x = ball.r.x(), y = ball.r.y();
+    const double half =
+        (radius(ball.ball) + gap) * (1.0 + kBoxShare) + kBoxShare * (std::abs(x) + std::abs(y));
+    return {x - half, y - half, x + half, y + half};
+}
+
 void Shot::collect_cluster_at(int a, int b, double v_n) {
-    const double R = plan_.balls.R;
+    const double R = radius(a);  // alike, but perhaps not those of [balls]
     const double time = plan_.clusters == ClusterModel::kCompliant ? contact_time(v_n) : 0.0;
     const auto reach = [&](const Nearness& near) { return time * (std::max(0.0, near.closing) + v_n); };
     const auto member = [this](int ball) {
@@ -67,15 +76,18 @@ void Shot::collect_cluster_at(int a, int b, double v_n) {
     cluster_balls_.push_back(member(a));
     cluster_balls_.push_back(member(b));
     for (std::size_t k = 0; k < cluster_balls_.size(); ++k) {
-        for (int q = 0; q < balls_; ++q) {
-            if (now_of(q).state == MotionState::kPocketed) continue;
+        const ClusterBall here = cluster_balls_[k];
+        const double most = time * (length(planar(here.v)) + fastest_ + v_n);
+        // In no order; who belongs to the cluster does not depend on it, and the sort below is by place.
+        ball_boxes_.overlapping(near_box(here, most), [&](int q) {
             const bool known = std::any_of(cluster_balls_.begin(), cluster_balls_.end(),
                                            [q](const ClusterBall& m) { return m.ball == q; });
-            if (known) continue;
+            if (known) return;
+            ++cluster_looks_;
             const ClusterBall candidate = member(q);
-            const Nearness near = nearness(cluster_balls_[k], candidate, R);
+            const Nearness near = nearness(here, candidate, R);
             if (near.gap <= reach(near)) cluster_balls_.push_back(candidate);
-        }
+        });
     }
     if (cluster_balls_.size() < 3) return;
     std::sort(cluster_balls_.begin(), cluster_balls_.end(), [](const ClusterBall& p, const ClusterBall& q) {
@@ -137,6 +149,7 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     if (cluster_balls_.size() < 3) return false;
     const bool slow = is_slow(v_n);
     if (slow && hold_in_cluster(Pressed::kBefore)) return true;
+    long_round_ = true;
     const BallParams& p = plan_.balls;
     const auto start = kProfile ? Clock::now() : Clock::time_point{};
     long steps;
@@ -146,7 +159,7 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
         const bool frictionless = !plan_.ball_ball->reads_friction;
         const double mu_b = frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b);
         const ClusterSettings settings{
-            .R = p.R,
+            .R = radius(c.a),
             .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
             .mu_b = mu_b,
             .e_b = frictionless ? 1.0 : p.e_b,
@@ -166,6 +179,14 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
     if (slow && hold_in_cluster(Pressed::kAfter)) return true;
     end_cluster(c);
     return true;
+}
+
+// A bound on the speed of every ball that cluster search asks for: speeds are largest at an end of a segment.
+// It only grows, for it is no more than a bound; nothing that is computed depends on it.
+[[gnu::noinline]] void Shot::bound_speed(const Segment& s) {
+    fastest_ = std::max(fastest_, length(planar(s.v)));
+    if (s.a == Vec2::Zero()) return;
+    fastest_ = std::max(fastest_, s.duration < kNever ? length(planar(velocity_at(s, s.duration))) : kNever);
 }
 
 template bool Shot::resolve_cluster<false>(const Candidate&, double);

@@ -101,6 +101,7 @@ void Shot::resolve_ball_ball(const Candidate& c) {
                        : plan_.impact.march != nullptr ? "march"
                                                        : kernel::name(result.method);
     }
+    if (result.steps >= kLongImpact) long_round_ = true;
     const auto id = [this](int ball) { return record_.tracks[static_cast<std::size_t>(ball)].id; };
     if (result.status != kernel::ImpactStatus::kOk && result.status != kernel::ImpactStatus::kNotApproaching)
         fail(fmt::format("the impact of {} and {} could not be computed: {}", id(one), id(two),

@@ -94,6 +94,7 @@ void Shot::free_ball(int ball) {
 
 // The group of a held ball, advanced to now and solved anew.
 void Shot::solve_group(int ball, Transitions transitions) {
+    long_round_ = true;
     HeldGroup group;
     std::vector<int> members{ball};
     for (std::size_t k = 0; k < members.size(); ++k) {

@@ -126,6 +126,7 @@ void Shot::renew(int ball) {
     ++mover.stamp;
     mover.own = s.start + s.duration;
     mover.pair = {};
+    if (plan_.clusters == ClusterModel::kCompliant && translates(s.state)) bound_speed(s);
     detect_features(ball);
     if (plan_.pairs && in_play(s))
         bound(ball, s.start);

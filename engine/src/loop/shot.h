@@ -61,9 +61,12 @@ class Shot {
     /// The loop. kProfile = false has no clock in it.
     template <bool kProfile>
     Record run(const Record* so_far);
+    /// How many balls the impacts of this run have looked at beside their own two; tests count them.
+    std::int64_t cluster_looks() const { return cluster_looks_; }
 
   private:
     void reserve_log();
+    void tell_progress();
     void first_candidates();
     void end(double next, double stop);
 
@@ -139,6 +142,8 @@ class Shot {
     void end_cluster(const Candidate& c);
     double collect_cluster(int a, int b, double v_n);
     void collect_cluster_at(int a, int b, double v_n);
+    Box near_box(const ClusterBall& ball, double gap) const;
+    void bound_speed(const Segment& segment);
 
     // resting.cpp
     bool is_held(int ball) const { return now_of(ball).held; }
@@ -174,7 +179,9 @@ class Shot {
     Record record_;
     double now_ = 0.0;
     int balls_ = 0;
-    int quiet_ = 0;  // rounds of the loop in a row without an event
+    int quiet_ = 0;            // rounds of the loop in a row without an event
+    int rounds_untold_ = 0;    // since the last call of options_.progress
+    bool long_round_ = false;  // a round took long by itself since then
     EventCost cost_;
     std::vector<Segment> current_;  // per ball
     std::vector<Segment> log_;      // every segment begun in this run, in order; the record's at the end
@@ -186,6 +193,8 @@ class Shot {
     ClusterMap cluster_map_;
     std::vector<ClusterBall> cluster_balls_;
     std::vector<ClusterContact> cluster_contacts_;
+    double fastest_ = 0.0;  // [m/s] no ball has been faster
+    std::int64_t cluster_looks_ = 0;
     std::vector<double> key_;  // per ball: when the loop has to look at it
     std::vector<Mover> mover_;
     std::vector<int> changed_;  // balls whose place in the queue is to be found anew

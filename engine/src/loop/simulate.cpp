@@ -114,6 +114,13 @@ void Shot::end(double next, double stop) {
     }
 }
 
+void Shot::tell_progress() {
+    if (++rounds_untold_ < options_.progress_rounds && !long_round_) return;
+    rounds_untold_ = 0;
+    long_round_ = false;
+    options_.progress(record_.events.size(), now_);
+}
+
 // Kept a function of its own, so that tools/measure/profile_cost finds it by name.
 template <bool kProfile>
 [[gnu::noinline]] Record Shot::run(const Record* so_far) {
@@ -164,11 +171,13 @@ template <bool kProfile>
             if (event) record_.costs[events_before] = cost_;
             quiet = event ? EventCost{} : cost_;
         }
-        if (options_.progress) options_.progress(record_.events.size(), now_);
+        if (options_.progress) tell_progress();
     }
     finish();
     return std::move(record_);
 }
+
+template Record Shot::run<false>(const Record*);
 
 namespace {
 

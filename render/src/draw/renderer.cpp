@@ -41,6 +41,7 @@ struct Renderer::Impl {
     std::shared_ptr<const TableMesh> table;  // of the static layer
     Camera camera;
     int table_samples = 0;
+    std::function<void(int, int)> on_table;
     std::uint64_t table_number = 0;  // of the static layer
     ClothMap cloth;
     std::vector<std::uint8_t> table_pixels;
@@ -136,7 +137,8 @@ struct Renderer::Impl {
         if (table == list.table && camera == list.camera && table_samples == list.table_samples) return;
         // A camera that moves needs its map for one frame only: not worth making.
         const bool stays = list.table_samples > kMovingSamples;
-        table_layer->draw(*list.table, view, list.table_samples, !stays);
+        table = nullptr;  // until it is whole: on_table may throw
+        table_layer->draw(*list.table, view, list.table_samples, !stays, on_table);
         table = list.table;
         camera = list.camera;
         table_samples = list.table_samples;
@@ -223,6 +225,10 @@ Renderer::~Renderer() = default;
 void Renderer::draw(const DrawList& list) {
     impl_->draw(list);
     impl_->api.Flush();
+}
+
+void Renderer::on_table(std::function<void(int, int)> pass) {
+    impl_->on_table = std::move(pass);
 }
 
 void Renderer::finish() {

@@ -203,7 +203,8 @@ void StaticLayer::keep_depths(const View& view, const Scratch& scratch, int samp
     api_.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void StaticLayer::draw(const TableMesh& table, const View& view, int samples, bool again_soon) {
+void StaticLayer::draw(const TableMesh& table, const View& view, int samples, bool again_soon,
+                       const std::function<void(int, int)>& on_pass) {
     samples = std::max(samples, 1);
     if (uploaded_ != &table) upload(table);
     resize(static_cast<int>(view.size[0]), static_cast<int>(view.size[1]));
@@ -215,6 +216,9 @@ void StaticLayer::draw(const TableMesh& table, const View& view, int samples, bo
         add_pass(scratch, pass, samples);
         if (pass == std::min(samples, static_cast<int>(Scratch::kDepths)) - 1)
             keep_depths(view, scratch, samples);
+        if (!on_pass) continue;
+        api_.Finish();
+        on_pass(pass + 1, samples);
     }
     api_.BindFramebuffer(GL_FRAMEBUFFER, color_framebuffer_);
     api_.UseProgram(resolve_program_);

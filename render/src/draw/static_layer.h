@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "draw/view.h"
@@ -18,8 +19,9 @@ class StaticLayer {
     StaticLayer& operator=(const StaticLayer&) = delete;
 
     /// Draws the table: `samples` jittered passes, averaged in linear light. again_soon: keep the memory that
-    /// only drawing needs.
-    void draw(const TableMesh& table, const View& view, int samples, bool again_soon);
+    /// only drawing needs. `on_pass`, if there is one, is called when each of them is done, and may throw.
+    void draw(const TableMesh& table, const View& view, int samples, bool again_soon,
+              const std::function<void(int done, int total)>& on_pass);
 
     GLuint color() const { return color_; }  ///< RGBA8; alpha: how much of the pixel is cloth
     GLuint occluders() const {

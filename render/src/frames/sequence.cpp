@@ -104,8 +104,10 @@ class FrameLoop {
         const long total = skipped + static_cast<long>(frames_.size());
         if (frames_.empty()) return;
         // Compiles the shaders and draws the table, which belongs to no frame.
+        renderer_.on_table(options_.table_progress);
         renderer_.draw(list_of(0));
         renderer_.finish();
+        renderer_.on_table(nullptr);  // later ones, of a camera that moves, do not wait for each pass
         if (options_.overlay.margin && !options_.frame_cost_ms) measure_first();
         for (std::size_t i = 0; i < frames_.size(); ++i) {
             draw(i);
@@ -210,6 +212,7 @@ void render_sheet(const Record& record, const SequenceOptions& options, int colu
     cell.overlay.clock = true;
     const Stage stage(record, cell);
     Renderer renderer(options.backend);
+    renderer.on_table(options.table_progress);
     Image sheet, picture;
     sheet.resize(options.size);
     const double to = options.to.value_or(record.duration);

@@ -105,7 +105,8 @@ double gain_of(const Plan& plan, const Record& record) {
         position[axis] = before + kTwinStep;
         const double step = position[axis] - before;  // as far as a double can tell
         if (step == 0.0) continue;
-        gain = std::max(gain, final_error(final_positions(simulate(twin)), end).largest / step);
+        gain =
+            std::max(gain, final_error(final_positions(simulate(twin, interruptible())), end).largest / step);
     }
     return gain;
 }

@@ -61,7 +61,7 @@ void set_times(SceneAccuracyRow& row, const std::vector<double>& samples) {
 /// Shares of kernel and cluster map in the profiled run that was disturbed least.
 void set_shares(SceneAccuracyRow& row, const Plan& plan) {
     constexpr int kRuns = 3;
-    SimulateOptions options;
+    SimulateOptions options = interruptible();
     options.profile = true;
     double least = INFINITY;
     for (int run = 0; run < kRuns; ++run) {
@@ -202,7 +202,7 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     for (SceneSubject& s : list) {
         throw_if_interrupted();
         try {
-            compare(s.row, simulate(s.plan), outcome, end);
+            compare(s.row, simulate(s.plan, interruptible()), outcome, end);
             set_shares(s.row, s.plan);
         } catch (const SimulationError& error) {
             s.row.failed = error.what();
@@ -212,7 +212,7 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     const auto samples = interleaved("accuracy, times:", list.size(), args.repeat, [&list](std::size_t i) {
         if (!list[i].row.failed.empty()) return 0.0;
         const double start = thread_ns();
-        const Record record = simulate(list[i].plan);
+        const Record record = simulate(list[i].plan, interruptible());
         return thread_ns() - start;
     });
     for (std::size_t i = 0; i < list.size(); ++i) {

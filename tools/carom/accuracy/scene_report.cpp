@@ -8,6 +8,7 @@
 #include <string>
 
 #include "accuracy/scene.h"
+#include "console.h"
 #include "report/plot.h"
 
 namespace carom::tools {
@@ -29,11 +30,11 @@ std::string scene_accuracy_text(const SceneAccuracy& result, const std::string& 
     fmt::memory_buffer out;
     const auto line = std::back_inserter(out);
     fmt::format_to(line,
-                   "{}: {} contacts. Gain {:.2e}: a ball put 1e-12 m beside its place ends up to {:.1e} m "
+                   "{}: {}. Gain {:.2e}: a ball put 1e-12 m beside its place ends up to {:.1e} m "
                    "off.\nTwo converged methods (collocation at 1e-13, power series in extended precision) "
                    "end {:.1e} m apart, outcome {}.\n\n",
-                   scene, result.contacts, result.gain, result.gain * kTwinStep, result.agreement,
-                   result.outcome_agrees ? "the same" : "not the same");
+                   scene, counted(result.contacts, "contact"), result.gain, result.gain * kTwinStep,
+                   result.agreement, result.outcome_agrees ? "the same" : "not the same");
     fmt::format_to(line, "{:<11}{:>10}{:>12}{:>12}{:>9}{:>9}{:>11}{:>11}{:>9}{:>9}{:>9}\n", "method",
                    "setting", "ms min", "ms median", "kernel", "cluster", "error m", "median m", "order",
                    "first", "pockets");

@@ -16,18 +16,20 @@ inline double thread_ns() {
     return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
 }
 
-/// Length of a cycle [ns]: a chain of dependent additions takes one cycle each.
+/// Length of a cycle [ns]: a chain of dependent additions takes one cycle each. Of a register: some
+/// processors do additions of constants, several at once, where they rename registers.
 inline double cycle_ns() {
     constexpr int kAdds = 100000;
     double best = 1e30;
     for (int repeat = 0; repeat < 20; ++repeat) {
-        long x = repeat;
+        long x = repeat, step = repeat | 1;
         const double start = thread_ns();
         for (int i = 0; i < kAdds / 10; ++i)
             asm volatile(
-                "add $1, %0\n\tadd $1, %0\n\tadd $1, %0\n\tadd $1, %0\n\tadd $1, %0\n\t"
-                "add $1, %0\n\tadd $1, %0\n\tadd $1, %0\n\tadd $1, %0\n\tadd $1, %0"
-                : "+r"(x));
+                "add %1, %0\n\tadd %1, %0\n\tadd %1, %0\n\tadd %1, %0\n\tadd %1, %0\n\t"
+                "add %1, %0\n\tadd %1, %0\n\tadd %1, %0\n\tadd %1, %0\n\tadd %1, %0"
+                : "+r"(x)
+                : "r"(step));
         best = std::min(best, (thread_ns() - start) / kAdds);
     }
     return best;

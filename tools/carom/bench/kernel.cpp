@@ -171,7 +171,10 @@ constexpr int kSubsteps = 1000;
 /// Rounds over all subjects in a new random order each, so that no drift of the clock favours one.
 void time_all(std::vector<TimedKernel>& list, const ImpactSet& five, const ImpactSet& random, int repeats) {
     std::vector<ImpactResult> results(std::max(five.impacts.size(), random.impacts.size()));
+    ProgressLine warming("bench kernel, warming up");
     for (TimedKernel& s : list) {  // warm up, and find how many calls make a block worth a probe
+        throw_if_interrupted();
+        warming.show_bar(&s - list.data(), static_cast<long>(list.size()));
         const double once = s.time(five, kSubsteps, 2, results) * static_cast<double>(s.size(five));
         s.five_calls = std::max(1, static_cast<int>(3e5 / std::max(once, 1.0)));
         // Random impacts likewise. A run so long that one will do needs no warming either.
@@ -193,9 +196,8 @@ void time_all(std::vector<TimedKernel>& list, const ImpactSet& five, const Impac
             s.five_ns.push_back(s.time(five, kSubsteps, s.five_calls, results));
             if (s.random_calls > 1) s.time(random, kSubsteps, 1, results);
             s.random_ns.push_back(s.time(random, kSubsteps, s.random_calls, results));
-            if (progress.due())
-                progress.show_bar(round * static_cast<long>(order.size()) + static_cast<long>(k),
-                                  repeats * static_cast<long>(order.size()));
+            progress.show_bar(round * static_cast<long>(order.size()) + static_cast<long>(k) + 1,
+                              repeats * static_cast<long>(order.size()));
         }
     }
 }
@@ -236,8 +238,10 @@ class Judge {
   private:
     static std::vector<reference::ImpactTruth> truth(const ImpactSet& set) {
         std::vector<reference::ImpactTruth> list;
-        for (const Impact& i : set.impacts)
+        for (const Impact& i : set.impacts) {
+            throw_if_interrupted();
             list.push_back(reference::reference_impact(i.ball1, i.ball2, i.params));
+        }
         return list;
     }
     static double error(const ImpactResult& result, const reference::ImpactTruth& truth, const Impact& in) {
@@ -251,12 +255,16 @@ class Judge {
 std::vector<GrowthRow> growth_of(const std::vector<TimedKernel>& list, const ImpactSet& five) {
     std::vector<GrowthRow> rows;
     std::vector<ImpactResult> results(five.impacts.size());
+    ProgressLine progress("bench kernel, growth");
+    long done = 0;
     for (int n : {100, 1000, 10000}) {
         std::vector<std::vector<double>> times(list.size());
         for (int round = 0; round < 5; ++round) {
-            throw_if_interrupted();
-            for (std::size_t i = 0; i < list.size(); ++i)
+            for (std::size_t i = 0; i < list.size(); ++i) {
+                throw_if_interrupted();
                 times[i].push_back(list[i].time(five, n, n == 100 ? 8 : 2, results));
+                progress.show_bar(++done, 3L * 5L * static_cast<long>(list.size()));
+            }
         }
         for (std::size_t i = 0; i < list.size(); ++i)
             rows.push_back({list[i].row.name, list[i].row.isa, n, minimum(times[i]), median(times[i])});
@@ -370,7 +378,10 @@ KernelBench measure_kernel(const BenchOptions& options) {
     list.pop_back();
 
     const Judge judge(baseline, five, random);
+    ProgressLine judging("bench kernel, errors");
     for (TimedKernel& s : list) {
+        throw_if_interrupted();
+        judging.show_bar(static_cast<long>(bench.rows.size()), static_cast<long>(list.size()));
         judge.judge(s);
         KernelRow& row = s.row;
         row.ns_min = minimum(s.five_ns);
@@ -382,9 +393,13 @@ KernelBench measure_kernel(const BenchOptions& options) {
         bench.rows.push_back(row);
     }
     if (options.growth) bench.growth = growth_of(list, five);
-    for (const TimedKernel& s : list)
+    ProgressLine sharing("bench kernel, shares");
+    for (const TimedKernel& s : list) {
+        throw_if_interrupted();
+        sharing.show_bar(&s - list.data(), static_cast<long>(list.size()));
         if (s.one && s.row.name.rfind("march", 0) == 0)
             bench.shares.push_back(shares_of(s, five, bench.probe_ns));
+    }
     return bench;
 }
 

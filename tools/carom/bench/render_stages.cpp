@@ -28,18 +28,33 @@ double wall_ms(Clock::time_point since) {
     return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
 }
 
+// Counts what is drawn, over all that is measured.
+struct Steps {
+    const std::function<void(long, long)>& progress;
+    long done = 0, total = 0;
+    void look() const {
+        if (progress) progress(done, total);
+    }
+    void next() {
+        ++done;
+        look();
+    }
+};
+
 // One frame after the other, nothing else running in the process.
 void measure_stages(const Record& record, FrameSize size, int frames, Backend backend,
-                    const std::string& file, RenderBenchRow& row) {
+                    const std::string& file, Steps& steps, RenderBenchRow& row) {
     const Clock::time_point start = Clock::now();
     StageOptions options;
     options.size = size;
     const Stage stage(record, options);
     Renderer renderer(backend);
+    renderer.on_table([&steps](int, int) { steps.look(); });
     KeptImage image;
     std::vector<std::uint8_t> bytes;
     std::vector<double> draw, read, both, encode, write;
     for (int i = 0; i <= frames; ++i) {
+        steps.next();
         const double t0 = cpu_ms();
         renderer.draw(stage.at(record.duration * i / frames));
         renderer.finish();
@@ -67,7 +82,7 @@ void measure_stages(const Record& record, FrameSize size, int frames, Backend ba
 }
 
 double frames_per_second(const Record& record, FrameSize size, int frames, Backend backend,
-                         const std::string& pattern) {
+                         const std::string& pattern, Steps& steps) {
     SequenceOptions options;
     options.pattern = pattern;
     options.size = size;
@@ -78,23 +93,27 @@ double frames_per_second(const Record& record, FrameSize size, int frames, Backe
     options.progress = [&](long count, long) {
         if (count == 1) first = Clock::now();
         done = count;
+        steps.next();
     };
+    options.table_progress = [&steps](int, int) { steps.look(); };
     render_sequence(record, options);
     return 1e3 * static_cast<double>(done - 1) / wall_ms(first);
 }
 
 }  // namespace
 
-std::vector<RenderBenchRow> bench_render(const Record& record, int frames, Backend backend) {
+std::vector<RenderBenchRow> bench_render(const Record& record, int frames, Backend backend,
+                                         const std::function<void(long, long)>& progress) {
     if (frames < 3) throw RenderError("measuring takes at least 3 frames");
     const TemporaryFolder folder;
+    Steps steps{progress, 0, 2L * (2L * frames + 2L)};  // at two sizes: in one thread, and with one a core
     std::vector<RenderBenchRow> rows;
     for (const auto& [name, size] :
          {std::pair{"720p", FrameSize{1280, 720}}, std::pair{"1080p", FrameSize{1920, 1080}}}) {
         RenderBenchRow row;
         row.name = name;
-        measure_stages(record, size, frames, backend, folder.file("one.png"), row);
-        row.fps = frames_per_second(record, size, frames, backend, folder.file("%05d.png"));
+        measure_stages(record, size, frames, backend, folder.file("one.png"), steps, row);
+        row.fps = frames_per_second(record, size, frames, backend, folder.file("%05d.png"), steps);
         rows.push_back(row);
     }
     return rows;

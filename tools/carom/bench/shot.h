@@ -32,11 +32,13 @@ struct ShotRow {
 
 /// One gas, without its set-up.
 struct GasRow {
+    std::string name;  ///< "gas" (pair by pair) or "gas compliant" (the default model of clusters)
+    ClusterModel clusters = ClusterModel::kSequential;
     int balls = 0;
     Search search = Search::kDirect;
     bool chosen = false;                   ///< by the plan
     double ns_min = 0.0, ns_median = 0.0;  ///< an event
-    double growth = 0.0;                   ///< ns_min over that of the first row
+    double growth = 0.0;                   ///< ns_min over that of the first row of its name
     double bytes_per_ball = 0.0;           ///< on the heap once the run is set up, without scene and plan
 };
 

@@ -51,6 +51,7 @@ void draw(MarginRun& run, const MarginArgs& args, double fps, const std::string&
         line.show_bar(done, total);
         walls.next_starts();
     };
+    options.table_progress = [](int, int) { throw_if_interrupted(); };
     const std::vector<render::FrameTiming> drawn = render::render_sequence(run.record, options);
     run.frame_walls = walls.walls();
     for (const render::FrameTiming& t : drawn) {
@@ -92,9 +93,8 @@ double MarginRun::total(std::size_t frame) const {
 
 MarginRun one_run(const Plan& plan, const MarginArgs& args, double fps, const std::string& title) {
     MarginRun run;
-    SimulateOptions options;
+    SimulateOptions options = interruptible();
     options.profile = true;
-    options.progress = [](std::size_t, double) { throw_if_interrupted(); };
     const double start = wall_ms();
     run.record = simulate(plan, options);
     run.simulate_wall_ms = wall_ms() - start;

@@ -10,6 +10,7 @@
 
 #include "base/output_file.h"
 #include "bench/clock.h"
+#include "console.h"
 #include "margin/margin.h"
 #include "report/plot.h"
 
@@ -91,8 +92,8 @@ std::string margin_json(const Margin& margin, const MarginRun& last) {
 std::string margin_text(const Margin& margin, const MarginRun& last, const std::string& scene) {
     fmt::memory_buffer out;
     const auto line = std::back_inserter(out);
-    fmt::format_to(line, "{}: {} frames of {:.3f} ms ({} fps{}), {} missed\n\n", scene, margin.total.size(),
-                   margin.budget_ms, margin.fps,
+    fmt::format_to(line, "{}: {} of {:.3f} ms ({} fps{}), {} missed\n\n", scene,
+                   counted(margin.total.size(), "frame"), margin.budget_ms, margin.fps,
                    margin.rendered ? fmt::format(", {}x{}", margin.size.width, margin.size.height)
                                    : std::string(", simulation only"),
                    margin.missed);
@@ -114,8 +115,8 @@ std::string margin_text(const Margin& margin, const MarginRun& last, const std::
                    "least {:.1f} %.\n",
                    100.0 * p99 / margin.budget_ms, margin.budget_ms - p99, median(slack), slack.front());
     if (margin.rendered)
-        fmt::format_to(line, "Without encoding and writing, {} frames would be missed.\n",
-                       margin.missed_shown);
+        fmt::format_to(line, "Without encoding and writing, {} would be missed.\n",
+                       counted(static_cast<std::size_t>(margin.missed_shown), "frame"));
     if (margin.runs > 1)
         fmt::format_to(
             line,
@@ -132,8 +133,9 @@ std::string margin_text(const Margin& margin, const MarginRun& last, const std::
         margin.timing.profiled_ms, margin.timing.plain_ms, 100.0 * margin.timing.share(),
         margin.timing.clock_ns);
     const std::vector<std::size_t>& events = last.frames[margin.worst].events;
-    fmt::format_to(line, "worst frame: {} at {:.4f} s, {:.3f} ms, {} events\n", margin.worst,
-                   time_of(margin, margin.worst), margin.total[margin.worst], events.size());
+    fmt::format_to(line, "worst frame: {} at {:.4f} s, {:.3f} ms, {}\n", margin.worst,
+                   time_of(margin, margin.worst), margin.total[margin.worst],
+                   counted(events.size(), "event"));
     for (const std::size_t i : events) {
         const Event& event = last.record.events[i];
         fmt::format_to(line, "  {:.6f} s  {:<21} {} {}\n", event.time, name(event.type),

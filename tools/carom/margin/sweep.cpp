@@ -112,8 +112,7 @@ std::vector<SettingRow> sweep(const Plan& plan, const MarginArgs& args) {
     for (const Setting& setting : settings) {
         std::vector<Record> runs;
         for (int run = 0; run < args.repeat; ++run) {
-            throw_if_interrupted();
-            SimulateOptions options;
+            SimulateOptions options = interruptible();
             options.profile = true;
             runs.push_back(simulate(setting.plan, options));
         }

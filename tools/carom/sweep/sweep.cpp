@@ -190,8 +190,8 @@ std::string summary(const Outcomes& outcomes, const SweepArgs& args, unsigned jo
     std::uint64_t shots = 0;
     for (const std::uint64_t n : outcomes) shots += n;
     std::string text =
-        fmt::format("{}: {} shots in {:.2f} s on {} threads, {:.0f} a second\n", args.output, shots, seconds,
-                    jobs, static_cast<double>(shots) / std::max(seconds, 1e-9));
+        fmt::format("{}: {} in {:.2f} s on {}, {:.0f} a second\n", args.output, counted(shots, "shot"),
+                    seconds, counted(jobs, "thread"), static_cast<double>(shots) / std::max(seconds, 1e-9));
     for (int i = 0; i < kShotOutcomes; ++i) {
         const std::uint64_t n = outcomes[static_cast<std::size_t>(i)];
         if (n > 0) text += fmt::format("  {:<8}{:>10}\n", name(static_cast<ShotOutcome>(i)), n);
@@ -239,7 +239,8 @@ int run_sweep(const SweepArgs& args) {
     print(summary(outcomes, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
     const std::uint64_t failed = outcomes[static_cast<std::size_t>(ShotOutcome::kRunFailed)];
     if (failed == 0) return kOk;
-    message(fmt::format("{} shots failed while running; their rows say why", failed));
+    message(fmt::format("{} failed while running; {} why", counted(failed, "shot"),
+                        failed == 1 ? "its row says" : "their rows say"));
     return kFailed;
 }
 

@@ -1,6 +1,8 @@
 // Ball-cushion impact models: one function each, behind one interface.
 #pragma once
 
+#include <span>
+
 #include "carom/engine/scene.h"
 #include "carom/engine/vec.h"
 
@@ -37,7 +39,8 @@ struct CushionModelInfo {
     const char* source = "";
 };
 
-/// The five models; equations and sources in docs/physics.md, "Cushion impact".
+/// All models, as messages list them; equations and sources in docs/physics.md, "Cushion impact".
+std::span<const CushionModelInfo> cushion_models();
 const CushionModelInfo& cushion_model(CushionModel model);
 
 /// Shorthand for cushion_model(model).resolve(...).

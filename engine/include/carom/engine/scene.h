@@ -77,12 +77,13 @@ struct BallStart {
     bool operator==(const BallStart&) const = default;
 };
 
+/// What strikes the ball. Its defaults are those of a scene file with an empty [cue], and of the C interface.
 struct Cue {
     std::string ball = "cue";
-    double speed = 0.0;     ///< of the cue [m/s]
+    double speed = 9.0;     ///< of the cue [m/s]
     double aim_deg = 90.0;  ///< 0 = +x, 90 = +y
     double elevation_deg = 0.0;
-    double side = 0.0, height = 0.0;  ///< offset in ball radii: left +, up +
+    double side = 0.0, height = 0.1;  ///< offset in ball radii: left +, up +; a little above the centre
     double mass = 0.567;              ///< [kg]
     double end_mass = 0.00567;        ///< [kg], for squirt
     SourceLocation where;
@@ -140,7 +141,7 @@ struct Scene {
     std::string ball_preset = "pool";
     BallParams balls{};
     std::vector<BallStart> ball;  ///< as written, then the racked ones
-    std::optional<Cue> cue;
+    std::optional<Cue> cue;       ///< nothing: no ball is struck
     Physics physics;
     std::vector<EffectOverride> effects;
     Stop stop;

@@ -15,8 +15,12 @@ struct SimulateOptions {
     std::optional<double> until;  ///< stop time [s], in addition to the scene's own
     double start_time =
         0.0;  ///< s, of the shot in the caller's clock: kept in Record::start_time, enters no computation
-    /// Called now and then with (events so far, simulated time); for a progress line.
+    /// Called with (events so far, simulated time) every so many rounds of the loop, and after a round that
+    /// was long by itself (a cluster, a march of many steps, balls held together): for a progress line, and
+    /// to end the run by an exception of one's own. A round is an event or nearly so; of a run with fewer it
+    /// is not called at all.
     std::function<void(std::size_t, double)> progress;
+    int progress_rounds = 64;
 };
 
 /// A run that cannot go on: too many events in one simulated microsecond, or a kernel that failed. what()

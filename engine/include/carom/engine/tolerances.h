@@ -32,6 +32,8 @@ inline constexpr int kQuietCap = 1000000;
 /// [-] Margin on how far a ball can go when the plan decides what it can reach; far above the rounding of the
 /// bound.
 inline constexpr double kReachMargin = 1e-9;
+/// [-] Steps from which on an impact is long work by itself, about 20 us: the caller is told of progress.
+inline constexpr int kLongImpact = 1000;
 
 /// [m] Depth at which a pocketed ball comes to rest below the cloth; drawing only. pooltool 0.6.0's value.
 inline constexpr double kPocketDepth = 0.08;

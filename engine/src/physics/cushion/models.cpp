@@ -1,5 +1,6 @@
 #include "carom/engine/cushion.h"
 
+#include <span>
 #include <algorithm>
 #include <cmath>
 
@@ -57,12 +58,8 @@ bool cushion_impulse(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3&
 
 }  // namespace detail
 
-const CushionModelInfo& cushion_model(CushionModel model) {
+std::span<const CushionModelInfo> cushion_models() {
     static constexpr CushionModelInfo kModels[] = {
-        {.model = CushionModel::kSmooth,
-         .name = "smooth",
-         .resolve = detail::cushion_smooth,
-         .source = "reflection"},
         {.model = CushionModel::kHan2005,
          .name = "han_2005",
          .resolve = detail::cushion_han_2005,
@@ -78,13 +75,6 @@ const CushionModelInfo& cushion_model(CushionModel model) {
          .reads_cloth = true,
          .reads_height = true,
          .source = "Mathavan, Jackson, Parkin, Proc. IMechE C 224 (2010)"},
-        {.model = CushionModel::kImpulse,
-         .name = "impulse",
-         .resolve = detail::cushion_impulse,
-         .reads_spin = true,
-         .reads_friction = true,
-         .reads_height = true,
-         .source = "one Coulomb impulse along the inclined normal"},
         {.model = CushionModel::kStronge,
          .name = "stronge",
          .resolve = detail::cushion_stronge,
@@ -92,10 +82,25 @@ const CushionModelInfo& cushion_model(CushionModel model) {
          .reads_friction = true,
          .reads_height = true,
          .source = "Stronge, Impact Mechanics, compliant contact"},
+        {.model = CushionModel::kImpulse,
+         .name = "impulse",
+         .resolve = detail::cushion_impulse,
+         .reads_spin = true,
+         .reads_friction = true,
+         .reads_height = true,
+         .source = "one Coulomb impulse along the inclined normal"},
+        {.model = CushionModel::kSmooth,
+         .name = "smooth",
+         .resolve = detail::cushion_smooth,
+         .source = "reflection"},
     };
-    for (const CushionModelInfo& info : kModels)
+    return kModels;
+}
+
+const CushionModelInfo& cushion_model(CushionModel model) {
+    for (const CushionModelInfo& info : cushion_models())
         if (info.model == model) return info;
-    return kModels[0];
+    return cushion_models().back();
 }
 
 bool resolve_cushion(CushionModel model, const CushionContact& contact, const Vec2& normal, Vec3& v,

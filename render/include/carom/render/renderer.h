@@ -1,6 +1,7 @@
 // Draw lists in, pixels out. Needs no display; one renderer belongs to the thread that made it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -22,6 +23,10 @@ class Renderer {
     /// Starts to draw the list. If neither table nor camera changed, only what did is drawn; the pixels are
     /// those of a whole picture.
     void draw(const DrawList& list);
+
+    /// Called, from now on, after every pass over a table while that is drawn, and the pass is then done; may
+    /// throw to stop. Nothing: no pass is waited for.
+    void on_table(std::function<void(int done, int total)> pass);
 
     /// Waits until the last draw() is done: for those who measure it.
     void finish();

@@ -47,6 +47,8 @@ struct SequenceOptions {
     bool resume = false;  ///< leave out frames whose finished file is there; it must be a PNG of this size
     RawSink raw;          ///< instead of PNG files; the pattern is not used
     std::function<void(long done, long total)> progress;  ///< on the calling thread; may throw to stop
+    /// The same while the table is drawn, which comes before the first frame: passes of it.
+    std::function<void(int done, int total)> table_progress;
 };
 
 /// What one frame cost. Frame k shows the time from + k / fps, computed from the integer k.

@@ -1,0 +1,217 @@
+// Which balls take part in an impact: the boxes find whom a plain look at all balls finds, in whatever order,
+// and an impact among thousands looks at no more balls than one among a hundred.
+#include <cstdint>
+#include <string>
+#include <vector>
+#include <algorithm>
+
+#include "carom/engine/tolerances.h"
+#include "physics/cluster.h"
+#include "physics/motion.h"
+#include "loop/shot.h"
+#include "support/gas.h"
+
+namespace carom {
+namespace {
+
+using namespace test;
+
+/// A crowd: n balls (n a square) with gaps of about a third of a radius, fast ones, slow ones and resting
+/// ones.
+Scene crowd(int n, long events, std::uint64_t seed, bool friction) {
+    Scene scene = friction ? empty_scene() : frictionless();
+    scene.stop.events = events;
+    int side = 1;
+    while (side * side < n) ++side;
+    const double R = scene.balls.R, cell = 2.3 * R;
+    scene.table = box(cell * side, cell * side, 0.036576);
+    SplitMix64 rng(seed);
+    for (int i = 0; i < n; ++i) {
+        const double x = cell * (i % side + rng.uniform(0.44, 0.56));
+        const double y = cell * (static_cast<double>(i / side) + rng.uniform(0.44, 0.56));
+        const SinCos way = sin_cos_deg(rng.uniform(0.0, 360.0));
+        const double kind = rng.uniform();
+        const double speed = kind < 0.3 ? 0.0 : kind < 0.95 ? rng.uniform(0.1, 1.5) : 9.0;
+        const double vx = speed * way.cos, vy = speed * way.sin;
+        add_ball(scene, std::to_string(i + 1), x, y, vx, vy, rolling_spin(vx, vy, R));
+    }
+    return scene;
+}
+
+/// A ball as it comes into an event.
+struct Comer {
+    Vec2 r, v;
+};
+
+/// The rule of the cluster model as docs/hard_cases.md has it, told by looking at every ball.
+class FullScan {
+  public:
+    FullScan(const Record& record, double R) : R_(R), now_(record.tracks.size()), tracks_(record.tracks) {}
+
+    /// Moves on to `time`; calls come in the order of the events.
+    void go_to(double time) {
+        balls_.clear();
+        for (std::size_t i = 0; i < now_.size(); ++i) {
+            const std::vector<Segment>& list = tracks_[i].segments;
+            while (now_[i] + 1 < list.size() && list[now_[i] + 1].start < time) ++now_[i];
+            const Segment& s = list[now_[i]];
+            balls_.push_back(
+                {planar(position_at(s, time - s.start)), planar(velocity_at(s, time - s.start))});
+        }
+    }
+
+    std::vector<int> members(int a, int b) const {
+        double v_n = closing(a, b);
+        for (;;) {
+            const double time = contact_time(v_n);
+            std::vector<int> list{a, b};
+            for (std::size_t k = 0; k < list.size(); ++k)
+                for (int q = 0; q < static_cast<int>(balls_.size()); ++q)
+                    if (std::find(list.begin(), list.end(), q) == list.end() &&
+                        gap(list[k], q) <= time * (std::max(0.0, closing(list[k], q)) + v_n))
+                        list.push_back(q);
+            double fastest = v_n;
+            for (std::size_t i = 0; list.size() > 2 && i < list.size(); ++i)
+                for (std::size_t j = i + 1; j < list.size(); ++j)
+                    if (gap(list[i], list[j]) <=
+                        2.0 * time * (std::max(0.0, closing(list[i], list[j])) + v_n))
+                        fastest = std::max(fastest, closing(list[i], list[j]));
+            std::sort(list.begin(), list.end());
+            if (!(fastest > kClusterFaster * v_n)) return list;
+            v_n = fastest;
+        }
+    }
+
+  private:
+    const Comer& at(int ball) const { return balls_[static_cast<std::size_t>(ball)]; }
+    double gap(int p, int q) const {
+        const double left = length(at(q).r - at(p).r) - 2.0 * R_;
+        return left <= kTouchUlp * R_ ? 0.0 : left;
+    }
+    double closing(int p, int q) const {
+        const Vec2 apart = at(q).r - at(p).r;
+        return (apart / length(apart)).dot(at(p).v - at(q).v);
+    }
+
+    double R_;
+    std::vector<std::size_t> now_;
+    const std::vector<BallTrack>& tracks_;
+    std::vector<Comer> balls_;
+};
+
+TEST(ClusterSearch, FindsWhomAFullScanFinds) {
+    for (const bool friction : {false, true}) {
+        for (const int n : {25, 400, 3969}) {
+            const Scene scene = crowd(n, 2000, 17, friction);
+            Plan plan = plan_of(scene);
+            plan.box_travel = 0.1;  // boxes that say next to nothing of where a ball is going
+            const Record record = simulate(plan);
+            FullScan scan(record, scene.balls.R);
+            std::size_t pairs = 0, clusters = 0;
+            for (std::size_t k = 0; k < record.events.size(); ++k) {
+                const Event& e = record.events[k];
+                const bool cluster = e.type == EventType::kBallCluster;
+                if (!cluster && e.type != EventType::kBallBall) continue;
+                // The record does not tell what came first at one instant.
+                if (k > 0 && record.events[k - 1].time == e.time) continue;
+                scan.go_to(e.time);
+                std::vector<int> took_part{std::min(e.a, e.b), std::max(e.a, e.b)};
+                if (cluster) took_part = record.clusters[static_cast<std::size_t>(e.detail)];
+                std::sort(took_part.begin(), took_part.end());
+                ASSERT_EQ(took_part, scan.members(e.a, e.b)) << n << " balls, event " << k;
+                ++(cluster ? clusters : pairs);
+            }
+            EXPECT_GT(pairs, 50u) << n;
+            EXPECT_GT(clusters, 20u) << n;
+        }
+    }
+}
+
+TEST(ClusterSearch, EveryWayGivesTheSameBits) {
+    for (const int n : {25, 400, 900}) {
+        const Scene scene = crowd(n, 2000, 3, true);
+        Plan plan = plan_of(scene);
+        const std::string hash = simulate(plan).hash();
+        for (const Search search : {Search::kDirect, Search::kTree}) {
+            for (const double travel : {0.5, kBoxTravel, kNever}) {
+                plan.ball_search = search;
+                plan.box_travel = travel;
+                EXPECT_EQ(simulate(plan).hash(), hash) << n << " " << travel;
+            }
+        }
+    }
+}
+
+// Ties are decided by place: the same balls in another order are the same shot.
+TEST(ClusterSearch, TheOrderOfTheBallsDoesNotMatter) {
+    Scene scene = crowd(900, 2000, 5, false);
+    const Record one = simulate(plan_of(scene));
+    std::reverse(scene.ball.begin(), scene.ball.end());
+    const Record other = simulate(plan_of(scene));
+    ASSERT_EQ(one.events.size(), other.events.size());
+    ASSERT_GT(one.clusters.size(), 50u);
+    const auto last = static_cast<int>(scene.ball.size()) - 1;
+    for (std::size_t k = 0; k < one.events.size(); ++k) ASSERT_EQ(one.events[k].time, other.events[k].time);
+    for (std::size_t c = 0; c < one.clusters.size(); ++c) {
+        std::vector<int> mirrored = other.clusters[c];
+        for (int& ball : mirrored) ball = last - ball;
+        ASSERT_EQ(one.clusters[c], mirrored);
+    }
+    for (std::size_t i = 0; i < one.tracks.size(); ++i) {
+        const Segment &s = one.tracks[i].segments.back(),
+                      &q = other.tracks[one.tracks.size() - 1 - i].segments.back();
+        ASSERT_EQ(s.r, q.r);
+        ASSERT_EQ(s.v, q.v);
+    }
+}
+
+// Balls that are alike may have their size from [balls] or each from itself.
+TEST(ClusterSearch, TheSizeIsThatOfTheBallsThemselves) {
+    Scene scene = empty_scene();
+    const BallSize large{0.035, 0.2};
+    scene.balls.R = large.R;
+    scene.balls.m = large.m;
+    add_ball(scene, "cue", 0.0, 0.0, 0.0, 2.0);
+    add_ball(scene, "a", -0.0351, 0.7);
+    add_ball(scene, "b", 0.0351, 0.7);
+    const Record one = simulate(plan_of(scene));
+    scene.balls = pool_balls();
+    for (BallStart& ball : scene.ball) ball.own = large;
+    const Record other = simulate(plan_of(scene));
+    ASSERT_EQ(one.clusters.size(), 1u);
+    EXPECT_EQ(other.clusters, one.clusters);
+    EXPECT_EQ(other.hash(), one.hash());
+}
+
+/// Balls that an impact looks at beside its own two, on average.
+double looks_per_impact(const Scene& scene) {
+    const Plan plan = plan_of(scene);
+    const SimulateOptions options;
+    Shot shot(plan, options);
+    const Record record = shot.run<false>(nullptr);
+    const auto impacts = std::count_if(record.events.begin(), record.events.end(), [](const Event& e) {
+        return e.type == EventType::kBallBall || e.type == EventType::kBallCluster;
+    });
+    EXPECT_GT(impacts, 500);
+    return static_cast<double>(shot.cluster_looks()) / static_cast<double>(impacts);
+}
+
+TEST(ClusterSearch, WorkPerImpactDoesNotGrowWithTheBalls) {
+    std::vector<double> dense, thin;
+    for (const int n : {100, 400, 1600, 4096}) {
+        dense.push_back(looks_per_impact(crowd(n, 2000, 11, false)));
+        Scene scene = gas(n, 2000, 11);
+        scene.physics.clusters = ClusterModel::kCompliant;
+        thin.push_back(looks_per_impact(scene));
+        report("looks an impact, dense", dense.back());
+        report("looks an impact, thin", thin.back());
+        // A ball that fits in has six neighbours, and a pair eight; boxes are wider than balls.
+        EXPECT_LT(dense.back(), 60.0) << n;
+        EXPECT_LT(thin.back(), 4.0) << n;
+    }
+    EXPECT_LT(dense.back(), 1.5 * dense.front());
+    EXPECT_LT(thin.back(), 1.5 * thin.front());
+}
+
+}  // namespace
+}  // namespace carom

@@ -1,0 +1,134 @@
+// Long work as somebody sees it who sits at a terminal: a line that moves, nothing left of it under what is
+// printed at the end, and Ctrl-C that ends it.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "cli.h"
+#include "support/terminal.h"
+
+namespace carom::test {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+std::string all_of(const std::vector<std::string>& lines) {
+    std::string text;
+    for (const std::string& line : lines) text += line + "\n";
+    return text;
+}
+
+/// A break, for whose frames and shots nobody waits.
+const std::string kBreak = std::string(CAROM_SOURCE_DIR) + "/scenes/eight_ball_break.toml";
+
+class OnATerminal : public ::testing::Test {
+  protected:
+    /// The work is far too much: once its line is there, Ctrl-C ends it, and takes the line along.
+    void moves_and_stops(const std::vector<std::string>& arguments, const std::string& line) {
+        std::vector<std::string> command{CAROM_PROGRAM};
+        command.insert(command.end(), arguments.begin(), arguments.end());
+        Terminal terminal(command);
+        EXPECT_TRUE(terminal.see("\r\033[K" + line)) << terminal.seen();
+        terminal.press_ctrl_c();
+        EXPECT_EQ(terminal.finish(), 130) << terminal.seen();
+        EXPECT_FALSE(contains(all_of(terminal.screen()), line)) << all_of(terminal.screen());
+    }
+
+    TemporaryFolder folder_;
+    std::string scene_ = folder_.write("s.toml", kSmallScene);
+};
+
+TEST_F(OnATerminal, RenderMoves) {
+    const std::string frames = folder_.file("f/%05d.png");
+    moves_and_stops({"render", scene_, "--fps", "90000", "--size", "320x180", "-o", frames}, "rendering: [");
+}
+
+// Nothing can be seen of one large picture but its table.
+TEST_F(OnATerminal, OneLargePictureMoves) {
+    moves_and_stops({"render", scene_, "--at", "0", "--size", "3200x1800", "-o", folder_.file("%d.png")},
+                    "rendering: the table, ");
+}
+
+TEST_F(OnATerminal, ASheetMoves) {
+    moves_and_stops(
+        {"render", kBreak, "--sheet", "100x50", "--size", "12800x7200", "-o", folder_.file("s.png")},
+        "rendering: [");
+}
+
+TEST_F(OnATerminal, MarginMoves) {
+    moves_and_stops({"margin", scene_, "--repeat", "1000", "--size", "320x180"}, "run 1 of 1000: [");
+}
+
+TEST_F(OnATerminal, MarginSweepMoves) {
+    moves_and_stops({"margin", kBreak, "--sweep", "--no-render", "--repeat", "1000"}, "margin --sweep: [");
+}
+
+TEST_F(OnATerminal, AccuracyMoves) {
+    moves_and_stops({"accuracy", kBreak, "--repeat", "1000"}, "accuracy, times: [");
+    moves_and_stops({"accuracy", "kernel", "--count", "1000000"}, "accuracy kernel, converged solutions: [");
+}
+
+TEST_F(OnATerminal, BenchKernelMoves) {
+    moves_and_stops({"bench", "kernel", "--random", "1", "--repeat", "1000", "--no-growth"},
+                    "bench kernel [");
+}
+
+TEST_F(OnATerminal, BenchShotMoves) {
+    moves_and_stops({"bench", "shot", "--seeds", "1", "--repeat", "1000", "--no-growth"}, "bench shot [");
+}
+
+TEST_F(OnATerminal, BenchRenderMoves) {
+    moves_and_stops({"bench", "render", scene_, "--frames", "100000"}, "bench render [");
+}
+
+TEST_F(OnATerminal, SweepMoves) {
+    moves_and_stops({"sweep", kBreak, "--vary", "rack.seed=integer(1,9)", "--count", "10000000", "--jobs",
+                     "1", "-o", "/dev/null"},
+                    "sweep [");
+}
+
+TEST_F(OnATerminal, SimulateMoves) {
+    std::string endless(kSmallScene);
+    endless +=
+        "[balls]\nmu_s = 0\nmu_r = 0\nmu_sp = 0\nmu_b = 0\ne_b = 1\ne_c = 1\nf_c = 0\n[physics]\nball_ball = "
+        "\"elastic\"\ncushion = \"smooth\"\n[stop]\ntime = 1e8\n";
+    const std::string bare = endless.substr(endless.find("[[ball]]"));
+    const std::string box =
+        "[[table.cushion]]\nfrom = [0, 0]\nto = [0, 2.54]\n[[table.cushion]]\nfrom = [0, 2.54]\nto = [1.27, "
+        "2.54]\n"
+        "[[table.cushion]]\nfrom = [1.27, 2.54]\nto = [1.27, 0]\n[[table.cushion]]\nfrom = [1.27, 0]\nto = "
+        "[0, 0]\n";
+    moves_and_stops({"simulate", folder_.write("endless.toml", box + bare)}, "simulating: ");
+}
+
+// The summary has a line of its own, and so has every line after it.
+TEST_F(OnATerminal, NothingIsLeftUnderTheSummary) {
+    Terminal terminal(
+        {CAROM_PROGRAM, "render", scene_, "--size", "1280x720", "--to", "1", "-o", folder_.file("%d.png")});
+    ASSERT_EQ(terminal.finish(), 0) << terminal.seen();
+    EXPECT_TRUE(contains(terminal.seen(), "\r\033[Krendering: ")) << "too fast to be seen";
+    const std::vector<std::string> screen = terminal.screen();
+    ASSERT_GE(screen.size(), 2u);
+    EXPECT_EQ(screen[0], "61 frames, 1280x720 at 60 fps: " + folder_.file("%d.png")) << terminal.seen();
+    EXPECT_EQ(screen[1].substr(0, 19), "to make a film of t") << terminal.seen();
+}
+
+TEST_F(OnATerminal, ANarrowOneHasOneLineToo) {
+    for (const unsigned short columns : {50, 20, 10}) {
+        Terminal terminal({CAROM_PROGRAM, "sweep", kBreak, "--vary", "rack.seed=integer(1,9)", "--count",
+                           "10000000", "--jobs", "1", "-o", "/dev/null"},
+                          columns);
+        EXPECT_TRUE(terminal.see("\r\033[Kswee"));
+        EXPECT_TRUE(columns < 20 || terminal.see("of 10")) << terminal.seen();
+        terminal.press_ctrl_c();
+        EXPECT_EQ(terminal.finish(), 130);
+        for (const std::string& line : terminal.screen())
+            EXPECT_FALSE(contains(line, "swee")) << columns << ": " << all_of(terminal.screen());
+    }
+}
+
+}  // namespace
+}  // namespace carom::test
