@@ -40,8 +40,7 @@ int main() {
         const carom::Record record = carom::simulate(plan);
         for (const carom::Event& event : record.events)
             std::printf("%9.6f s  %-14s %s %s\n", event.time, carom::name(event.type),
-                        record.tracks[static_cast<std::size_t>(event.a)].id.c_str(),
-                        record.partner_id(event).c_str());
+                        record.tracks[event.a].id.c_str(), record.partner_id(event).c_str());
         for (std::size_t i = 0; i < record.tracks.size(); ++i) {
             const carom::BallState end = record.state_at(static_cast<int>(i), record.duration);
             std::printf("%s ends at (%.4f, %.4f) m, %s\n", record.tracks[i].id.c_str(), end.position.x(),

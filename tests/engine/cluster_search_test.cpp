@@ -1,14 +1,14 @@
 // Which balls take part in an impact: the boxes find whom a plain look at all balls finds, in whatever order,
 // and an impact among thousands looks at no more balls than one among a hundred.
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
-#include <algorithm>
 
 #include "carom/engine/tolerances.h"
+#include "loop/shot.h"
 #include "physics/cluster.h"
 #include "physics/motion.h"
-#include "loop/shot.h"
 #include "support/gas.h"
 
 namespace carom {
@@ -83,7 +83,7 @@ class FullScan {
     }
 
   private:
-    const Comer& at(int ball) const { return balls_[static_cast<std::size_t>(ball)]; }
+    const Comer& at(int ball) const { return balls_[ball]; }
     double gap(int p, int q) const {
         const double left = length(at(q).r - at(p).r) - 2.0 * R_;
         return left <= kTouchUlp * R_ ? 0.0 : left;
@@ -116,7 +116,7 @@ TEST(ClusterSearch, FindsWhomAFullScanFinds) {
                 if (k > 0 && record.events[k - 1].time == e.time) continue;
                 scan.go_to(e.time);
                 std::vector<int> took_part{std::min(e.a, e.b), std::max(e.a, e.b)};
-                if (cluster) took_part = record.clusters[static_cast<std::size_t>(e.detail)];
+                if (cluster) took_part = record.clusters[e.detail];
                 std::sort(took_part.begin(), took_part.end());
                 ASSERT_EQ(took_part, scan.members(e.a, e.b)) << n << " balls, event " << k;
                 ++(cluster ? clusters : pairs);

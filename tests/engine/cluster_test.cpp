@@ -205,12 +205,9 @@ TEST(Cluster, Cradles) {  // H3
             const Result result = run(line(n), settings(0.0, 0.0, e[k]), 1.0);
             double sum = 0.0;
             for (int b = 0; b < n; ++b) {
-                EXPECT_NEAR(result.balls[static_cast<std::size_t>(b)].v.y(),
-                            expected[static_cast<std::size_t>(n - 2)][static_cast<std::size_t>(k)]
-                                    [static_cast<std::size_t>(b)],
-                            1e-6)
+                EXPECT_NEAR(result.balls[b].v.y(), expected[n - 2][k][b], 1e-6)
                     << "n = " << n << " e = " << e[k] << " ball " << b;
-                sum += result.balls[static_cast<std::size_t>(b)].v.y();
+                sum += result.balls[b].v.y();
             }
             EXPECT_NEAR(sum, 1.0, 1e-13);
         }
@@ -227,8 +224,7 @@ TEST(Cluster, GapInALine) {
     for (int k = 0; k < 4; ++k) {
         const Result result = run(line(3, gaps[k] * d_max), settings(0.0, 0.0, 0.95), 1.0);
         for (int b = 0; b < 3; ++b)
-            EXPECT_NEAR(result.balls[static_cast<std::size_t>(b)].v.y(), expected[k][b], 2e-5)
-                << "gap " << gaps[k] << " ball " << b;
+            EXPECT_NEAR(result.balls[b].v.y(), expected[k][b], 2e-5) << "gap " << gaps[k] << " ball " << b;
     }
 }
 

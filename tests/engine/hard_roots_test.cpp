@@ -268,8 +268,7 @@ TEST(HardRoots, Ties) {
         scene.table.pockets = pockets;
         const Record record = run_verified(scene);
         ASSERT_EQ(count(record, EventType::kBallPocket), 1);
-        EXPECT_EQ(record.table.pockets[static_cast<std::size_t>(first(record, EventType::kBallPocket)->b)].id,
-                  "left")
+        EXPECT_EQ(record.table.pockets[first(record, EventType::kBallPocket)->b].id, "left")
             << "by place, not by number";
         // Pocket before cushion.
         Scene tie = frictionless();

@@ -107,8 +107,7 @@ TEST(SceneDepth, SmallStacksAreEnough) {
         errors.push_back(error_of(nested(kMaxKeyParts + 1, 1)));
     });
     ASSERT_EQ(errors.size(), 9u);
-    for (int i = 0; i < 6; ++i)
-        EXPECT_NE(errors[static_cast<std::size_t>(i)].find("parts"), std::string::npos);
+    for (int i = 0; i < 6; ++i) EXPECT_NE(errors[i].find("parts"), std::string::npos);
     EXPECT_NE(errors[6].find("unknown section or key \"a\""), std::string::npos) << errors[6];
     EXPECT_NE(errors[7].find("brackets"), std::string::npos) << errors[7];
     EXPECT_NE(errors[8].find("parts"), std::string::npos) << errors[8];

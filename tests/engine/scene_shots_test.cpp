@@ -51,7 +51,7 @@ TEST(SceneShots, StopFollowDraw) {
     EXPECT_NEAR(advance_after_contact(draw), -0.57, 0.01);
     for (const Record& r : {stop, follow, draw}) {
         ASSERT_GE(r.tracks[1].pocket, 0);
-        EXPECT_EQ(r.table.pockets[static_cast<std::size_t>(r.tracks[1].pocket)].id, "p3");
+        EXPECT_EQ(r.table.pockets[r.tracks[1].pocket].id, "p3");
         EXPECT_EQ(r.tracks[0].pocket, -1);
     }
 }
@@ -75,7 +75,7 @@ TEST(SceneShots, ThreeCushionScores) {
     for (const carom::Event& e : r.events) {
         if (e.type == EventType::kBallCushion && e.a == 0) met.push_back(r.partner_id(e));
         if (e.type == EventType::kBallBall && (e.a == 0 || e.b == 0))
-            met.push_back(r.tracks[static_cast<std::size_t>(e.a == 0 ? e.b : e.a)].id);
+            met.push_back(r.tracks[e.a == 0 ? e.b : e.a].id);
     }
     EXPECT_EQ(met, (std::vector<std::string>{"yellow", "c4", "c3", "c1", "c2", "red"}));
 }
@@ -84,7 +84,7 @@ TEST(SceneShots, NineBallBreakHitsTheOneFirst) {
     const Record r = run("nine_ball_break");
     for (const carom::Event& e : r.events) {
         if (e.type != EventType::kBallBall && e.type != EventType::kBallCluster) continue;
-        EXPECT_EQ(r.tracks[static_cast<std::size_t>(e.a + e.b)].id, "1");
+        EXPECT_EQ(r.tracks[e.a + e.b].id, "1");
         EXPECT_EQ(std::min(e.a, e.b), 0);
         break;
     }
@@ -106,8 +106,7 @@ std::vector<std::string> met_by(const Record& r, int ball) {
         const bool table = e.type == EventType::kBallCushion || e.type == EventType::kBallJaw;
         const bool pair = e.type == EventType::kBallBall || e.type == EventType::kBallCluster;
         if (table && e.a == ball) met.push_back(r.partner_id(e));
-        if (pair && (e.a == ball || e.b == ball))
-            met.push_back(r.tracks[static_cast<std::size_t>(e.a == ball ? e.b : e.a)].id);
+        if (pair && (e.a == ball || e.b == ball)) met.push_back(r.tracks[e.a == ball ? e.b : e.a].id);
     }
     return met;
 }

@@ -52,7 +52,7 @@ TEST(BoxSearch, FindsEveryOverlap) {
         for (int round = 0; round < 2000; ++round) {
             const int i = static_cast<int>(rng.next() % static_cast<std::uint64_t>(count));
             if (rng.uniform() < 0.1) {
-                in[static_cast<std::size_t>(i)] = false;
+                in[i] = false;
                 direct.remove(i);
                 tree.remove(i);
             } else {
@@ -68,12 +68,11 @@ TEST(BoxSearch, FindsEveryOverlap) {
             std::sort(b.begin(), b.end());
             ASSERT_EQ(a, b);
             for (int k = 0; k < count; ++k) {
-                if (!in[static_cast<std::size_t>(k)] || !overlap(asked, boxes[static_cast<std::size_t>(k)]))
-                    continue;
+                if (!in[k] || !overlap(asked, boxes[k])) continue;
                 ++needed;
                 ASSERT_TRUE(std::binary_search(a.begin(), a.end(), k)) << count << " " << round;
             }
-            for (const int k : a) ASSERT_TRUE(in[static_cast<std::size_t>(k)]);
+            for (const int k : a) ASSERT_TRUE(in[k]);
             found += a.size();
         }
         EXPECT_GE(found, needed);
@@ -86,13 +85,9 @@ TEST(EventQueue, TheWinnerIsTheLeast) {
         EventQueue queue;
         queue.set_up(count);
         std::vector<double> time(static_cast<std::size_t>(count));
-        const auto earlier = [&time](int i, int j) {
-            return time[static_cast<std::size_t>(i)] < time[static_cast<std::size_t>(j)];
-        };
+        const auto earlier = [&time](int i, int j) { return time[i] < time[j]; };
         SplitMix64 rng(7);
-        const auto change = [&](int i) {
-            time[static_cast<std::size_t>(i)] = rng.uniform() < 0.2 ? kInfinity : rng.uniform();
-        };
+        const auto change = [&](int i) { time[i] = rng.uniform() < 0.2 ? kInfinity : rng.uniform(); };
         for (int i = 0; i < count; ++i) change(i);
         for (int i = 0; i < count; ++i) queue.update(i, earlier);
         for (int round = 0; round < 1000; ++round) {
@@ -103,8 +98,7 @@ TEST(EventQueue, TheWinnerIsTheLeast) {
                 change(changed.back());
             }
             for (const int i : changed) queue.update(i, earlier);
-            ASSERT_EQ(time[static_cast<std::size_t>(queue.first())],
-                      *std::min_element(time.begin(), time.end()));
+            ASSERT_EQ(time[queue.first()], *std::min_element(time.begin(), time.end()));
         }
     }
     EventQueue empty;

@@ -34,7 +34,7 @@ Table table_from(const nlohmann::json& t) {
 }
 
 std::string describe(const Record& record, const Event& e) {
-    const auto id = [&](int ball) { return record.tracks[static_cast<std::size_t>(ball)].id; };
+    const auto id = [&](int ball) { return record.tracks[ball].id; };
     return std::string(name(e.type)) + " " + id(e.a) + " " + record.partner_id(e);
 }
 

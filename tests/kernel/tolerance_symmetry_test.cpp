@@ -26,7 +26,7 @@ TEST(ToleranceEnergy, NeverRises) {
         const int count = tolerance < 1e-8 ? 100000 : 300000;
         std::vector<Impact> impacts;
         for (int n = 0; n < count; ++n) impacts.push_back(any_impact(rng));
-        for (int n = 0; n < count; n += 4) impacts[static_cast<std::size_t>(n)].params.e_b = 1.0;
+        for (int n = 0; n < count; n += 4) impacts[n].params.e_b = 1.0;
         Lanes lanes(impacts);
         tolerance_batch_function(best_isa())(lanes.batch(), tolerance, lanes.results());
         int rises = 0;

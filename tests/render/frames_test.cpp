@@ -162,7 +162,7 @@ TEST(Sequence, WritesNumberedFramesAndTimesThem) {
     ASSERT_EQ(timings.size(), 4U);
     EXPECT_EQ(last, 4);
     for (long k = 0; k < 4; ++k) {
-        const FrameTiming& timing = timings[static_cast<std::size_t>(k)];
+        const FrameTiming& timing = timings[k];
         EXPECT_EQ(timing.frame, k);
         EXPECT_EQ(timing.time, static_cast<double>(k) / 60.0);
         EXPECT_GT(timing.draw_ms, 0.0);

@@ -237,12 +237,12 @@ TEST(TableMesh, ThePresetsHaveEverything) {
         std::array<int, 9> used{};
         for (const MeshVertex& vertex : mesh.solid) {
             ASSERT_TRUE(std::isfinite(vertex.x + vertex.y + vertex.z + vertex.nx + vertex.ny + vertex.nz));
-            ++used[static_cast<std::size_t>(vertex.material)];
+            ++used[vertex.material];
         }
-        EXPECT_GT(used[static_cast<std::size_t>(Material::kCloth)], 0);
-        EXPECT_GT(used[static_cast<std::size_t>(Material::kCushion)], 0);
-        EXPECT_GT(used[static_cast<std::size_t>(Material::kWood)], 0);
-        EXPECT_EQ(used[static_cast<std::size_t>(Material::kPocket)] > 0, !table.pockets.empty());
+        EXPECT_GT(used[Material::kCloth], 0);
+        EXPECT_GT(used[Material::kCushion], 0);
+        EXPECT_GT(used[Material::kWood], 0);
+        EXPECT_EQ(used[Material::kPocket] > 0, !table.pockets.empty());
         EXPECT_FALSE(mesh.blended.empty());
     }
 }

@@ -43,7 +43,7 @@ class RandomScene {
     int whole(int n) { return std::min(n - 1, static_cast<int>(uniform(0.0, static_cast<double>(n)))); }
     template <class T>
     T one_of(const std::vector<T>& list) {
-        return list[static_cast<std::size_t>(whole(static_cast<int>(list.size())))];
+        return list[whole(static_cast<int>(list.size()))];
     }
 
     void choose_table() {
@@ -149,8 +149,7 @@ class RandomScene {
         const Vec2 anywhere = point(Vec2(R, R), Vec2(w - R, l - R));
         const int kind = whole(5);
         if (kind <= 1 && !scene_.ball.empty()) {  // touches another ball, or nearly
-            const Vec3& p =
-                scene_.ball[static_cast<std::size_t>(whole(static_cast<int>(scene_.ball.size())))].position;
+            const Vec3& p = scene_.ball[whole(static_cast<int>(scene_.ball.size()))].position;
             const double gap = one_of<double>({0.0, 0.0, 1e-15, 1e-9, 1e-5});
             const Vec2 towards = direction();
             place(Vec2(p.x(), p.y()) + (2.0 * R + gap) * towards);

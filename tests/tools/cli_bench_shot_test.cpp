@@ -1,8 +1,8 @@
 // carom bench shot: what it prints. Times are measured, and no test asserts one; events and bytes are counts.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 

@@ -153,12 +153,12 @@ TEST_F(Faults, AKilledRenderIsFinishedByResumeWithTheSameFrames) {
     // is not.
     for (int k = 0; k <= 100; ++k)
         if (fs::exists(frame(k))) {
-            EXPECT_EQ(read_file(frame(k)), whole[static_cast<std::size_t>(k)]) << k;
+            EXPECT_EQ(read_file(frame(k)), whole[k]) << k;
         }
     std::vector<std::string> again = command;
     again.push_back("--resume");
     ASSERT_EQ(carom(again).status, 0);
-    for (int k = 0; k <= 100; ++k) EXPECT_EQ(read_file(frame(k)), whole[static_cast<std::size_t>(k)]) << k;
+    for (int k = 0; k <= 100; ++k) EXPECT_EQ(read_file(frame(k)), whole[k]) << k;
 }
 
 TEST_F(Faults, ARecordThatIsTooLargeIsRefusedUnread) {

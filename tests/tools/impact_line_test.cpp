@@ -111,8 +111,8 @@ TEST(ImpactLine, CushionIsTheEnginesResult) {
     const Json out = Json::parse(answer.json);
     ASSERT_EQ(out.size(), 2u);
     for (int i = 0; i < 3; ++i) {
-        EXPECT_EQ(out["v"][static_cast<std::size_t>(i)].get<double>(), v[i]);
-        EXPECT_EQ(out["w"][static_cast<std::size_t>(i)].get<double>(), w[i]);
+        EXPECT_EQ(out["v"][i].get<double>(), v[i]);
+        EXPECT_EQ(out["w"][i].get<double>(), w[i]);
     }
     EXPECT_LT(v.x(), 0.0);
 }

@@ -232,8 +232,7 @@ std::vector<std::string> cmake_violations(const fs::path& file, int layer) {
         line = line.substr(0, line.find('#'));
         for (int upper = layer + 1; upper < static_cast<int>(kLayers.size()); ++upper) {
             for (const std::string separator : {"::", "_"}) {
-                const std::string target =
-                    "carom" + separator + std::string(kLayers[static_cast<std::size_t>(upper)]);
+                const std::string target = "carom" + separator + std::string(kLayers[upper]);
                 if (line.find(target) == line.npos) continue;
                 found.push_back(file.string() + ":" + std::to_string(number) + ": links " + target);
             }

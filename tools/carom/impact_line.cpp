@@ -56,7 +56,7 @@ void read_vector(const Json& line, const char* key, double (&out)[kSize]) {
     if (!json.is_array() || json.size() != kSize) {
         throw LineError(fmt::format("\"{}\": expected a list of {} numbers", key, kSize));
     }
-    for (int i = 0; i < kSize; ++i) out[i] = number(json[static_cast<std::size_t>(i)], key);
+    for (int i = 0; i < kSize; ++i) out[i] = number(json[i], key);
 }
 
 /// A parameter within [least, most], its ends left out where `open`.

@@ -143,7 +143,7 @@ void set_simulation_costs(const Record& record, render::SequenceOptions& options
     const long frames = render::frame_count(options.from, options.to.value_or(record.duration), options.fps);
     auto costs = costs_by_frame(record, options.from - before / options.fps, options.fps, first + frames + 1);
     options.simulate_ms = [costs = std::move(costs), first](long k) {
-        return costs[static_cast<std::size_t>(first + k)].simulate_ms();
+        return costs[first + k].simulate_ms();
     };
 }
 

@@ -27,7 +27,7 @@ struct CostSum {
 std::array<CostSum, kEventTypes> costs_by_kind(const Record& record) {
     std::array<CostSum, kEventTypes> sums{};
     for (std::size_t i = 0; i < record.costs.size(); ++i) {
-        CostSum& sum = sums[static_cast<std::size_t>(record.events.at(i).type)];
+        CostSum& sum = sums[record.events.at(i).type];
         ++sum.count;
         sum.detect += record.costs[i].detect_ns;
         sum.resolve += record.costs[i].resolve_ns;
@@ -59,7 +59,7 @@ std::string result_json(const Record& record) {
         Json kinds = Json::array();
         const std::array<CostSum, kEventTypes> sums = costs_by_kind(record);
         for (int type = 0; type < kEventTypes; ++type) {
-            const CostSum& sum = sums[static_cast<std::size_t>(type)];
+            const CostSum& sum = sums[type];
             if (sum.count == 0) continue;
             kinds.push_back({{"type", name(static_cast<EventType>(type))},
                              {"count", sum.count},
@@ -92,9 +92,9 @@ std::string summary(const Record& record, const std::string& scene) {
     fmt::format_to(line, "{}: {}, {:.4f} s, {}; {}\n\nevents\n", scene, counted(record.tracks.size(), "ball"),
                    record.duration, counted(record.events.size(), "event"), reason(record.stopped));
     std::array<long, kEventTypes> counts{};
-    for (const Event& event : record.events) ++counts[static_cast<std::size_t>(event.type)];
+    for (const Event& event : record.events) ++counts[event.type];
     for (int type = 0; type < kEventTypes; ++type) {
-        const long count = counts[static_cast<std::size_t>(type)];
+        const long count = counts[type];
         if (count > 0) fmt::format_to(line, "  {:<22}{:>6}\n", name(static_cast<EventType>(type)), count);
     }
     fmt::format_to(line, "\npocketed\n");
@@ -125,7 +125,7 @@ std::string profile_report(const Record& record) {
     fmt::format_to(line, "  {:<22}{:>6}{:>12}{:>12}{:>12}\n", "", "count", "detect", "resolve", "kernel");
     double total = record.setup_detect_ns;
     for (int type = 0; type < kEventTypes; ++type) {
-        const CostSum& sum = sums[static_cast<std::size_t>(type)];
+        const CostSum& sum = sums[type];
         if (sum.count == 0) continue;
         const auto n = static_cast<double>(sum.count);
         total += sum.detect + sum.resolve;

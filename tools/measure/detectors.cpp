@@ -50,7 +50,7 @@ double first_real(const Roots& roots, int count, double T) {
 double by_eigenvalues(const Pair& pair) {
     const std::array<double, 5> c = quartic(pair);
     int degree = 4;
-    while (degree > 0 && c[static_cast<std::size_t>(degree)] == 0.0) --degree;
+    while (degree > 0 && c[degree] == 0.0) --degree;
     if (degree == 0) return kNever;
     Eigen::PolynomialSolver<double, Eigen::Dynamic> solver(
         Eigen::Map<const Eigen::VectorXd>(c.data(), degree + 1));

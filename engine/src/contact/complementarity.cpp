@@ -5,8 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "carom/engine/tolerances.h"
-
 namespace carom {
 
 namespace {

@@ -7,6 +7,10 @@
 
 namespace carom {
 
+/// [-] Part of itself by which each contact of a held group yields, to share the load of contacts that are
+/// more than the group needs.
+inline constexpr double kContactSoftness = 1e-12;
+
 /// z >= 0, w = A z + q >= 0, z . w = 0; where `free`, z has either sign and w = 0 instead.
 struct Complementarity {
     /// All zero, none free.

@@ -4,13 +4,16 @@
 #include <cmath>
 #include <limits>
 
-#include "carom/engine/tolerances.h"
 #include "contact/roots.h"
 #include "physics/motion.h"
 
 namespace carom {
 
 namespace {
+
+// [ulp of the coordinates and the length] Foot points nearer than this to a cushion's end are at it: four
+// roundings of position, end and projection.
+constexpr double kEndUlp = 4.0;
 
 constexpr double kNoise = kClosingUlp * std::numeric_limits<double>::epsilon();
 

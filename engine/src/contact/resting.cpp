@@ -11,6 +11,18 @@
 
 namespace carom {
 
+namespace {
+
+// [-] Stands for a smaller restitution in the rule of holds(), where no bounce is left at all.
+constexpr double kLeastRestitution = 0.1;
+// [s] A speed that rolling friction would stop within this time counts as none at all.
+constexpr double kHoldNoise = 1e-12;
+// [s] The same where there is no rolling friction, against that of sliding: a speed that in an hour makes no
+// more than 1e-12 m.
+constexpr double kHoldNoRoll = 1e-16;
+
+}  // namespace
+
 HeldSolver::HeldSolver(HeldGroup& group, const HeldSurroundings& around, const MotionParams& motion,
                        double now)
     : group_(group), around_(around), motion_(motion), now_(now) {}
@@ -48,7 +60,7 @@ void HeldSolver::run() {
 }
 
 Vec2 HeldSolver::velocity(int index) const {
-    return planar(group_.balls[static_cast<std::size_t>(index)].v);
+    return planar(group_.balls[index].v);
 }
 
 double HeldSolver::gap_rate(const Link& link) const {
@@ -109,14 +121,13 @@ void HeldSolver::make_links() {
 }
 
 double HeldSolver::overlap(const HeldContact& c, const Link& link) const {
-    const Vec2 here = planar(group_.balls[static_cast<std::size_t>(link.i)].r);
-    if (link.j >= 0)
-        return 2.0 * motion_.R - length(planar(group_.balls[static_cast<std::size_t>(link.j)].r) - here);
+    const Vec2 here = planar(group_.balls[link.i].r);
+    if (link.j >= 0) return 2.0 * motion_.R - length(planar(group_.balls[link.j].r) - here);
     if (c.cushion >= 0) {
-        const CushionLine& line = around_.geometry.cushions[static_cast<std::size_t>(c.cushion)];
+        const CushionLine& line = around_.geometry.cushions[c.cushion];
         return motion_.R - std::abs(cross(line.direction, here - line.from));
     }
-    const Nose& nose = around_.geometry.noses[static_cast<std::size_t>(c.nose)];
+    const Nose& nose = around_.geometry.noses[c.nose];
     return motion_.R + nose.radius - length(nose.center - here);
 }
 

@@ -3,11 +3,18 @@
 #include <cmath>
 #include <vector>
 
-#include "carom/engine/tolerances.h"
 #include "contact/complementarity.h"
 #include "contact/resting_solver.h"
 
 namespace carom {
+
+namespace {
+
+// [-] A held contact that opens at some rate is closed only if no ball changes by more than this many times
+// the rate.
+constexpr double kStickyShare = 10.0;
+
+}  // namespace
 
 // The velocities nearest to the present ones, in the metric of the masses, that close no contact
 // (clusters.md, equation 7): plastic. A pressed contact that opens so slowly that it would be closed again at
@@ -102,9 +109,8 @@ bool HeldSolver::project(const std::vector<char>& sticky) {
         std::vector<Vec2> change(bodies_.size(), Vec2::Zero());
         for (std::size_t r = 0; r < active.size(); ++r) {
             const Link& link = links_[active[r]];
-            change[static_cast<std::size_t>(link.i)] -= problem.z[r] * body(link.i).mobility() * link.n;
-            if (link.j >= 0)
-                change[static_cast<std::size_t>(link.j)] += problem.z[r] * body(link.j).mobility() * link.n;
+            change[link.i] -= problem.z[r] * body(link.i).mobility() * link.n;
+            if (link.j >= 0) change[link.j] += problem.z[r] * body(link.j).mobility() * link.n;
         }
         if (pass == 0) {
             const bool any = std::any_of(sticky.begin(), sticky.end(), [](char s) { return s != 0; });
@@ -119,7 +125,7 @@ bool HeldSolver::project(const std::vector<char>& sticky) {
 
 void HeldSolver::kick(int index, const Vec2& dv) {
     if (dv.x() == 0.0 && dv.y() == 0.0) return;
-    HeldBall& ball = group_.balls[static_cast<std::size_t>(index)];
+    HeldBall& ball = group_.balls[index];
     ball.v.x() += dv.x();
     ball.v.y() += dv.y();
     if (body(index).mode == Mode::kRolling) {

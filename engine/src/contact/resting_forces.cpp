@@ -3,11 +3,33 @@
 #include <cmath>
 #include <vector>
 
-#include "carom/engine/tolerances.h"
 #include "contact/complementarity.h"
 #include "contact/resting_solver.h"
 
 namespace carom {
+
+namespace {
+
+// [-] Rounding of the forces, relative.
+constexpr double kHoldRounding = 1e-9;
+// [of what drives a group] Forces beyond this have no answer: what asks for them is left out. A wedge of
+// slope s multiplies the drive by 1/s, and slopes down to 1e-8 are solved; contacts that contradict each
+// other, by 1/kContactSoftness. The second: a wedge that has no room for margins.
+constexpr double kLargestHold = 1e9;
+constexpr double kLargestLeadOut = 1e4;
+// [-] Mobility of balls at rest while it is decided which of them stay, against 1 of a ball that slips.
+constexpr double kRestGives = 1e-4;
+// [-] Times that a ball may change between rest, rolling and sliding in one solution.
+constexpr int kModeChanges = 8;
+// [-] Changes after which a slow ball is no longer tried at rest.
+constexpr int kStopTries = 4;
+// [of the coefficient] To which the friction that ends a slip is solved.
+constexpr double kStickAccuracy = 1e-3;
+// [of kHoldShortest] A held ball that its own rolling friction would stop within this time takes the
+// direction of its friction from where its forces lead it; an explicit step would be unstable.
+constexpr double kHoldSlow = 4.0;
+
+}  // namespace
 
 void HeldSolver::make_directions() {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -27,8 +49,7 @@ void HeldSolver::make_directions() {
     }
     for (Link& link : links_) {
         if (link.j < 0) continue;
-        const HeldBall &bi = group_.balls[static_cast<std::size_t>(link.i)],
-                       &bj = group_.balls[static_cast<std::size_t>(link.j)];
+        const HeldBall &bi = group_.balls[link.i], &bj = group_.balls[link.j];
         const Vec2 t(link.n.y(), -link.n.x());
         const double s_x = dot(planar(bi.v) - planar(bj.v), t) - motion_.R * (bi.w.z() + bj.w.z());
         const double s_z = motion_.R * (dot(planar(bi.w), t) + dot(planar(bj.w), t));

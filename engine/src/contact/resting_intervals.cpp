@@ -4,13 +4,34 @@
 #include <limits>
 #include <vector>
 
-#include "carom/engine/tolerances.h"
 #include "contact/resting_solver.h"
 #include "contact/roots.h"
 
 namespace carom {
 
 namespace {
+
+// [s] Longest interval over which a resting contact keeps the directions of its forces where they turn.
+constexpr double kHoldLongest = 5e-2;
+// [m] Error that one such interval may make in a ball's place: 1e-6 m in the hundred or so of a long push.
+constexpr double kHoldError = 2e-8;
+// [rad] and [m] How far a normal may turn within one, and what gap its turning may leave.
+constexpr double kHoldTurn = 0.03;
+constexpr double kHoldGap = 1e-8;
+// [m/s] The rounding of great forces (a narrow wedge) may move a gap by so much in the long run: its
+// intervals are as much shorter, but not shorter than kHoldLeadOut (beyond 1e5 m/s^2 it may be more). Forces
+// below some 2000 m/s^2 are not affected.
+constexpr double kHoldDrift = 1e-13;
+// [of the sliding acceleration] A gap that opens by less does not open: the rounding of the forces.
+constexpr double kHoldOpening = 1e-10;
+// [ulp of the time] No interval is shorter: the clock has to go on.
+constexpr double kHoldTicks = 8.0;
+// [-] A slip or velocity that turns ends where it is nearest to nothing, if it comes as near as this share
+// of itself; else it only turns.
+constexpr double kHoldEnds = 0.5;
+// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the
+// straight line.
+constexpr double kHoldStraight = 1e-9;
 
 // Longest time up to kHoldLongest at which `error` is at most `allowed`, in steps of a fifth.
 template <class Error>
@@ -31,8 +52,7 @@ double HeldSolver::across(std::size_t c, Vec2& velocity_across) const {
     const Vec2 other_a = link.j >= 0 ? body(link.j).a : Vec2::Zero();
     velocity_across = Vec2(dot(other - velocity(link.i), t), dot(other_a - body(link.i).a, t));
     if (contact.cushion >= 0) return 0.0;
-    return contact.j >= 0 ? 2.0 * motion_.R
-                          : motion_.R + around_.geometry.noses[static_cast<std::size_t>(contact.nose)].radius;
+    return contact.j >= 0 ? 2.0 * motion_.R : motion_.R + around_.geometry.noses[contact.nose].radius;
 }
 
 // How long normals may be taken as they are; kNever if none turns.
@@ -124,8 +144,7 @@ Vec2 HeldSolver::spin_rate(std::size_t k) const {
 // The vertical friction keeps its direction until the slip s_z changes sign.
 double HeldSolver::friction_flip(const Link& link) const {
     if (link.friction_z == 0.0 || link.N == 0.0 || link.stuck) return kNever;
-    const Segment &si = group_.balls[static_cast<std::size_t>(link.i)].segment,
-                  &sj = group_.balls[static_cast<std::size_t>(link.j)].segment;
+    const Segment &si = group_.balls[link.i].segment, &sj = group_.balls[link.j].segment;
     const Vec2 t(link.n.y(), -link.n.x());
     const double s_z = dot(planar(si.w) + planar(sj.w), t), rate = dot(si.dw + sj.dw, t);
     if (!(s_z * rate < 0.0)) return kNever;
@@ -208,10 +227,8 @@ double HeldSolver::write_segments(double longest, Opening opening) {
         const HeldContact& contact = group_.contacts[c];
         const Link& link = links_[c];
         if (contact.cushion >= 0)
-            interval = std::min(
-                interval,
-                time_to_line_end(around_.geometry.cushions[static_cast<std::size_t>(contact.cushion)],
-                                 group_.balls[static_cast<std::size_t>(link.i)].segment));
+            interval = std::min(interval, time_to_line_end(around_.geometry.cushions[contact.cushion],
+                                                           group_.balls[link.i].segment));
         if (link.j >= 0) interval = std::min(interval, friction_flip(link));
         if (opening == Opening::kEnds)
             interval = std::min({interval, opening_interval(link), bare_interval(c, interval)});

@@ -9,6 +9,15 @@
 
 namespace carom {
 
+/// [s] Shortest interval over which a resting contact keeps the directions of its forces where they turn.
+inline constexpr double kHoldShortest = 1e-5;
+/// [m] and [s] An overlap deeper than this is led out within the interval, but in no less time than this:
+/// what rounding adds up in a long push would come near to 1e-12 m.
+inline constexpr double kHoldDepth = 2e-14;
+inline constexpr double kHoldLeadOut = 1e-3;
+/// [s] A held ball that its own rolling friction would stop within this time rests, or it would stop again and again.
+inline constexpr double kHoldRest = 1e-8;
+
 class HeldSolver {
   public:
     HeldSolver(HeldGroup& group, const HeldSurroundings& around, const MotionParams& motion, double now);
@@ -65,8 +74,8 @@ class HeldSolver {
     void mark_released();
     Vec2 velocity(int body) const;
     double gap_rate(const Link& link) const;
-    Body& body(int index) { return bodies_[static_cast<std::size_t>(index)]; }
-    const Body& body(int index) const { return bodies_[static_cast<std::size_t>(index)]; }
+    Body& body(int index) { return bodies_[index]; }
+    const Body& body(int index) const { return bodies_[index]; }
 
     // resting_capture.cpp
     void capture();

@@ -109,8 +109,7 @@ void BoxSearch::rebuild() {
     }
     const auto by = [this](auto middle) {
         return [this, middle](int i, int j) {
-            const float p = middle(sorted_[static_cast<std::size_t>(i)]),
-                        q = middle(sorted_[static_cast<std::size_t>(j)]);
+            const float p = middle(sorted_[i]), q = middle(sorted_[j]);
             return p < q || (p == q && i < j);
         };
     };

@@ -91,7 +91,7 @@ class BoxSearch {
 template <class Found>
 bool BoxSearch::BlockVisitor<Found>::QueryCallback(int proxy) {
     const auto block = reinterpret_cast<std::uintptr_t>(boxes.tree_->GetUserData(proxy));
-    auto by_slot = [this](int slot) { found(boxes.index_[static_cast<std::size_t>(slot)]); };
+    auto by_slot = [this](int slot) { found(boxes.index_[slot]); };
     boxes.scan(block * kBlock, (block + 1) * kBlock, box, by_slot);
     return true;
 }

@@ -3,12 +3,17 @@
 #include <array>
 #include <cmath>
 
-#include "carom/engine/tolerances.h"
 #include "loop/shot.h"
 
 namespace carom {
 
 namespace {
+
+// [V] A contact of a cluster that closes faster than this sets the scale V itself: the step is made for
+// approaches near V.
+constexpr double kClusterFaster = 2.0;
+// [share of R] Gaps up to this are rounding of the positions: the balls touch.
+constexpr double kTouchUlp = 64.0 * 2.220446049250313e-16;
 
 // An order of places that mirrors in the axes and quarter turns keep, up to the order of mirror images among
 // themselves: so do the sums of a cluster, to the last bit.
@@ -46,8 +51,7 @@ double Shot::collect_cluster(int a, int b, double v_n) {
         collect_cluster_at(a, b, v_n);
         double fastest = v_n;
         for (const ClusterContact& c : cluster_contacts_) {
-            const ClusterBall &p = cluster_balls_[static_cast<std::size_t>(c.i)],
-                              &q = cluster_balls_[static_cast<std::size_t>(c.j)];
+            const ClusterBall &p = cluster_balls_[c.i], &q = cluster_balls_[c.j];
             fastest = std::max(fastest, c.n.dot(planar(p.v) - planar(q.v)));
         }
         if (cluster_balls_.size() < 3 || !(fastest > kClusterFaster * v_n)) return v_n;
@@ -102,8 +106,7 @@ void Shot::collect_cluster_at(int a, int b, double v_n) {
     }
     // By place; insertion keeps the order of equals and needs no memory.
     const auto place = [this](const ClusterContact& c) {
-        return Vec2(planar(cluster_balls_[static_cast<std::size_t>(c.i)].r) +
-                    planar(cluster_balls_[static_cast<std::size_t>(c.j)].r));
+        return Vec2(planar(cluster_balls_[c.i].r) + planar(cluster_balls_[c.j].r));
     };
     for (auto here = cluster_contacts_.begin(); here != cluster_contacts_.end(); ++here) {
         const auto to = std::upper_bound(cluster_contacts_.begin(), here, *here,
@@ -121,8 +124,7 @@ void Shot::collect_cluster_at(int a, int b, double v_n) {
         return start_segment(now_, b.r, b.v, b.w, motion_of(b.ball));
     };
     for (const ClusterContact& c : cluster_contacts_) {
-        const ClusterBall &p = cluster_balls_[static_cast<std::size_t>(c.i)],
-                          &q = cluster_balls_[static_cast<std::size_t>(c.j)];
+        const ClusterBall &p = cluster_balls_[c.i], &q = cluster_balls_[c.j];
         if (c.gap > 0.0 || held_together(p.ball, q.ball)) continue;
         Nearing pair = nearing(p.ball, q.ball);
         if (when == Pressed::kAfter) pair.a_c = pressing(pair.contact.n, segment(p), segment(q));

@@ -43,11 +43,11 @@ Vec2 Shot::place(const Candidate& c) const {
             return 0.5 * (here + Vec2(q.x(), q.y()));
         }
         case EventType::kBallPocket:
-            return plan_.geometry.pockets[static_cast<std::size_t>(c.b)].center;
+            return plan_.geometry.pockets[c.b].center;
         case EventType::kBallCushion:
         case EventType::kBallJaw: {
-            if (c.nose >= 0) return plan_.geometry.noses[static_cast<std::size_t>(c.nose)].center;
-            const CushionLine& line = plan_.geometry.cushions[static_cast<std::size_t>(c.b)];
+            if (c.nose >= 0) return plan_.geometry.noses[c.nose].center;
+            const CushionLine& line = plan_.geometry.cushions[c.b];
             return line.from + line.direction * line.direction.dot(here - line.from);
         }
         default:
@@ -66,7 +66,7 @@ bool Shot::before_at_once(const Candidate& x, const Candidate& y) const {
 }
 
 void Shot::changed(int ball) {
-    Mover& mover = mover_[static_cast<std::size_t>(ball)];
+    Mover& mover = mover_[ball];
     if (mover.queued) return;
     mover.queued = true;
     changed_.push_back(ball);
@@ -74,7 +74,7 @@ void Shot::changed(int ball) {
 
 // The first of a ball's transition, contact with the table and contact with another ball.
 Candidate Shot::first_of(int ball) const {
-    const Mover& mover = mover_[static_cast<std::size_t>(ball)];
+    const Mover& mover = mover_[ball];
     Candidate first{mover.own, EventType::kSlideRoll, ball, -1, -1};
     take_first(mover.feature, first);
     take_first(mover.pair, first);
@@ -84,13 +84,13 @@ Candidate Shot::first_of(int ball) const {
 // Finds the places of the balls whose candidates changed.
 void Shot::requeue() {
     for (const int ball : changed_) {
-        Mover& mover = mover_[static_cast<std::size_t>(ball)];
+        Mover& mover = mover_[ball];
         mover.queued = false;
-        key_[static_cast<std::size_t>(ball)] =
+        key_[ball] =
             std::min(std::min(mover.own, mover.feature.time), std::min(mover.pair.time, mover.refresh));
     }
     const auto earlier = [this](int x, int y) {
-        const double p = key_[static_cast<std::size_t>(x)], q = key_[static_cast<std::size_t>(y)];
+        const double p = key_[x], q = key_[y];
         return p != q ? p < q : p != kNever && before(first_of(x), first_of(y));
     };
     for (const int ball : changed_) queue_.update(ball, earlier);
@@ -108,8 +108,7 @@ Candidate Shot::next() {
         if (key_[i] == kNever) return {};
         const Candidate c = first_of(ball);
         const bool ended = mover_[i].refresh <= c.time;
-        const bool stale = c.type == EventType::kBallBall &&
-                           c.stamp != mover_[static_cast<std::size_t>(c.a == ball ? c.b : c.a)].stamp;
+        const bool stale = c.type == EventType::kBallBall && c.stamp != mover_[c.a == ball ? c.b : c.a].stamp;
         if (!ended && !stale) return c;
         const auto start = kProfile ? Clock::now() : Clock::time_point{};
         look_again(ball);

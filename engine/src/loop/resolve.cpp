@@ -10,6 +10,14 @@
 
 namespace carom {
 
+namespace {
+
+// [-] Rounds of the loop in a row that changed directions of sustained contacts but brought no event: as
+// bad.
+constexpr int kQuietCap = 1000000;
+
+}  // namespace
+
 void Shot::record_event(EventType type, int a, int b, int detail) {
     record_.events.push_back({now_, type, a, b, detail});
     quiet_ = 0;
@@ -74,8 +82,7 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     const BallParams& p = plan_.balls;
     const Physics& physics = plan_.scene.physics;
     const double mu_s = plan_.cloth_in_impact ? p.mu_s : 0.0;
-    const BallSize &size1 = plan_.sizes[static_cast<std::size_t>(one)],
-                   &size2 = plan_.sizes[static_cast<std::size_t>(two)];
+    const BallSize &size1 = plan_.sizes[one], &size2 = plan_.sizes[two];
     const BallBallModelInfo& model = *plan_.ball_ball;
     const kernel::ImpactParams params{.R = size1.R,
                                       .m = size1.m,
@@ -102,7 +109,7 @@ void Shot::resolve_ball_ball(const Candidate& c) {
                                                        : kernel::name(result.method);
     }
     if (result.steps >= kLongImpact) long_round_ = true;
-    const auto id = [this](int ball) { return record_.tracks[static_cast<std::size_t>(ball)].id; };
+    const auto id = [this](int ball) { return record_.tracks[ball].id; };
     if (result.status != kernel::ImpactStatus::kOk && result.status != kernel::ImpactStatus::kNotApproaching)
         fail(fmt::format("the impact of {} and {} could not be computed: {}", id(one), id(two),
                          kernel::describe(result.status)));
@@ -122,14 +129,14 @@ void Shot::resolve_nose(const Candidate& c) {
     Vec2 normal;  // into the table
     double height, curving = 0.0;
     if (c.nose >= 0) {
-        const Nose& nose = plan_.geometry.noses[static_cast<std::size_t>(c.nose)];
+        const Nose& nose = plan_.geometry.noses[c.nose];
         const Vec2 out = here - nose.center;
         normal = out / length(out);
         height = nose.height;
         const double v_t = cross(normal, Vec2(v.x(), v.y()));
         curving = v_t * v_t / (radius(c.a) + nose.radius);
     } else {
-        const CushionLine& line = plan_.geometry.cushions[static_cast<std::size_t>(c.b)];
+        const CushionLine& line = plan_.geometry.cushions[c.b];
         normal = Vec2(-line.direction.y(), line.direction.x());
         if (normal.dot(here - line.from) < 0.0) normal = -normal;
         height = line.height;
@@ -148,13 +155,13 @@ void Shot::resolve_nose(const Candidate& c) {
     if (hold_instead(contact, v_n, pressing(now_of(c.a).a), plan_.balls.e_c)) return;
 
     const BallParams& p = plan_.balls;
-    const BallSize& size = plan_.sizes[static_cast<std::size_t>(c.a)];
+    const BallSize& size = plan_.sizes[c.a];
     const CushionModelInfo& model = contact.jaw ? *plan_.jaw : *plan_.cushion;
     const CushionContact nose{
         .R = size.R, .m = size.m, .mu_s = p.mu_s, .e_c = p.e_c, .f_c = p.f_c, .height = height};
     if (!model.resolve(nose, normal, v, w))
         fail(fmt::format("the cushion model {} found no solution for the impact of ball {}; use another one",
-                         model.name, record_.tracks[static_cast<std::size_t>(c.a)].id));
+                         model.name, record_.tracks[c.a].id));
     const Segment after = start_segment(now_, r, v, w, motion_of(c.a));
     // A ball that rolls in slowly is braked; what brings it back, and ends the bounce, is the spin that it
     // keeps.
@@ -168,8 +175,8 @@ void Shot::resolve_nose(const Candidate& c) {
 
 void Shot::resolve_pocket(const Candidate& c) {
     free_ball(c.a);
-    begin(c.a, pocketed_segment(now_, plan_.geometry.pockets[static_cast<std::size_t>(c.b)]));
-    record_.tracks[static_cast<std::size_t>(c.a)].pocket = c.b;
+    begin(c.a, pocketed_segment(now_, plan_.geometry.pockets[c.b]));
+    record_.tracks[c.a].pocket = c.b;
     record_event(EventType::kBallPocket, c.a, c.b);
 }
 
@@ -224,8 +231,8 @@ void Shot::fail(const std::string& why) const {
     text += "last events:\n";
     for (std::size_t i = count > 8 ? count - 8 : 0; i < count; ++i) {
         const Event& e = record_.events[i];
-        text += fmt::format("  {:.17g} {} {} {}\n", e.time, name(e.type),
-                            record_.tracks[static_cast<std::size_t>(e.a)].id, record_.partner_id(e));
+        text += fmt::format("  {:.17g} {} {} {}\n", e.time, name(e.type), record_.tracks[e.a].id,
+                            record_.partner_id(e));
     }
     text += "balls that move (id state x y vx vy wx wy wz):\n";
     for (int i = 0; i < balls_; ++i) {
@@ -233,9 +240,9 @@ void Shot::fail(const std::string& why) const {
         if (s.state == MotionState::kStationary || s.state == MotionState::kPocketed) continue;
         const double tau = std::max(0.0, now_ - s.start);
         const Vec3 r = position_at(s, tau), v = velocity_at(s, tau), w = spin_at(s, tau, radius(i));
-        text += fmt::format("  {} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n",
-                            record_.tracks[static_cast<std::size_t>(i)].id, name(s.state), r.x(), r.y(),
-                            v.x(), v.y(), w.x(), w.y(), w.z());
+        text +=
+            fmt::format("  {} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n",
+                        record_.tracks[i].id, name(s.state), r.x(), r.y(), v.x(), v.y(), w.x(), w.y(), w.z());
     }
     text.pop_back();  // a message ends without a line end
     throw SimulationError(text);

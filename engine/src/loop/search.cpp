@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "carom/engine/tolerances.h"
 #include "loop/shot.h"
 
 namespace carom {
 
 namespace {
+
+// [share] Boxes that leave out far parts of the table are widened by this much: rounding stays inside.
+constexpr double kBoxShare = 1e-9;
 
 bool in_play(const Segment& segment) {
     return segment.state != MotionState::kPocketed;
@@ -75,9 +77,7 @@ Candidate Shot::pair(int a, const Path& mine, int b, double latest) const {
     const Segment &s = now_of(a), &q = now_of(b);
     if (!mine.moves && !translates(q.state)) return {};
     const double from = std::max(s.start, q.start);
-    const double until = std::min(
-        std::min(mover_[static_cast<std::size_t>(a)].until, mover_[static_cast<std::size_t>(b)].until),
-        latest);
+    const double until = std::min(std::min(mover_[a].until, mover_[b].until), latest);
     const Path one = from == s.start ? mine : path(a, from), two = path(b, from);
     const double reach = contact_distance(radius(a), radius(b));
     if (stays_apart(two.r - one.r, two.v - one.v, two.a - one.a, reach, span(from, until))) return {};
@@ -86,10 +86,10 @@ Candidate Shot::pair(int a, const Path& mine, int b, double latest) const {
 }
 
 void Shot::offer(int ball, int partner, Candidate c) {
-    Candidate& mine = mover_[static_cast<std::size_t>(ball)].pair;
+    Candidate& mine = mover_[ball].pair;
     if (!before(c, mine)) return;
     mine = c;
-    mine.stamp = mover_[static_cast<std::size_t>(partner)].stamp;
+    mine.stamp = mover_[partner].stamp;
     changed(ball);
 }
 
@@ -99,10 +99,9 @@ void Shot::search_pairs(int ball) {
     const Path mine = path(ball, now_of(ball).start);
     ball_boxes_.neighbours(ball, [this, ball, &mine](int other) {
         // Of two new balls the first one has done it.
-        if (mover_[static_cast<std::size_t>(other)].round == round_ && other < ball) return;
+        if (mover_[other].round == round_ && other < ball) return;
         if (held_together(ball, other)) return;
-        const double latest = std::max(mover_[static_cast<std::size_t>(ball)].pair.time,
-                                       mover_[static_cast<std::size_t>(other)].pair.time);
+        const double latest = std::max(mover_[ball].pair.time, mover_[other].pair.time);
         const Candidate c = pair(ball, mine, other, latest);
         if (c.time == kNever) return;
         offer(ball, other, c);
@@ -147,10 +146,10 @@ void Shot::redetect() {
 
 // Without an event: the ball's box has ended, or the contact that it was waiting for does not come.
 void Shot::look_again(int ball) {
-    Mover& mover = mover_[static_cast<std::size_t>(ball)];
+    Mover& mover = mover_[ball];
     ++round_;
     const double refresh = mover.refresh;
-    const bool ended = refresh <= key_[static_cast<std::size_t>(ball)];
+    const bool ended = refresh <= key_[ball];
     mover.pair = {};
     if (ended) {
         // Twice the way each time: a ball that meets nobody for ever is asked a finite number of times.

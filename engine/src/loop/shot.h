@@ -125,7 +125,7 @@ class Shot {
     void resolve_transition(const Candidate& c);
     void record_event(EventType type, int a, int b, int detail = -1);
     void begin(int ball, const Segment& segment) {
-        current_[static_cast<std::size_t>(ball)] = segment;
+        current_[ball] = segment;
         log_.push_back(segment);
         log_ball_.push_back(ball);
         touched_.push_back(ball);
@@ -162,12 +162,12 @@ class Shot {
     void sort_by_place(std::vector<HeldContact>& contacts) const;
     void restore_held();
 
-    const Segment& now_of(int ball) const { return current_[static_cast<std::size_t>(ball)]; }
+    const Segment& now_of(int ball) const { return current_[ball]; }
     Vec3 position_now(int ball) const { return position_at(now_of(ball), now_ - now_of(ball).start); }
     Vec3 velocity_now(int ball) const { return velocity_at(now_of(ball), now_ - now_of(ball).start); }
     Vec3 spin_now(int ball) const { return spin_at(now_of(ball), now_ - now_of(ball).start, radius(ball)); }
-    double radius(int ball) const { return plan_.sizes[static_cast<std::size_t>(ball)].R; }
-    const MotionParams& motion_of(int ball) const { return plan_.motion[static_cast<std::size_t>(ball)]; }
+    double radius(int ball) const { return plan_.sizes[ball].R; }
+    const MotionParams& motion_of(int ball) const { return plan_.motion[ball]; }
     /// From one time to another, on the long side of its rounding.
     static double span(double from, double to) { return (to - from) + 0x1p-50 * to; }
     static double nanoseconds(Clock::time_point from, Clock::time_point to) {
@@ -209,7 +209,7 @@ class Shot {
 // from now: the answer is then a function of the segments alone, whenever it is computed.
 inline Path Shot::path(int ball, double from) const {
     const Segment& s = now_of(ball);
-    const Mover& mover = mover_[static_cast<std::size_t>(ball)];
+    const Mover& mover = mover_[ball];
     const double tau = from - s.start;
     const Vec3 r = position_at(s, tau), v = velocity_at(s, tau);
     return {Vec2(r.x(), r.y()), Vec2(v.x(), v.y()),  s.a,          std::max(0.0, s.duration - tau),

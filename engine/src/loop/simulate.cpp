@@ -34,9 +34,8 @@ void Shot::set_up(bool profile) {
     }
     if (scene.cue) {
         for (int i = 0; i < balls_; ++i) {
-            if (scene.ball[static_cast<std::size_t>(i)].id != scene.cue->ball) continue;
-            const StruckBall struck =
-                strike(*scene.cue, plan_.sizes[static_cast<std::size_t>(i)], plan_.squirt);
+            if (scene.ball[i].id != scene.cue->ball) continue;
+            const StruckBall struck = strike(*scene.cue, plan_.sizes[i], plan_.squirt);
             begin(i, start_segment(0.0, now_of(i).r, struck.v, struck.w, motion_of(i)));
             record_.events.push_back({0.0, EventType::kCueStrike, i, -1, -1});
             if (profile) record_.costs.push_back({0.0, 0.0, 0.0, 0, "point"});
@@ -86,10 +85,9 @@ void Shot::take_up(const Record& record) {
 void Shot::finish() {
     std::vector<std::size_t> count(record_.tracks.size());
     for (std::size_t i = 0; i < count.size(); ++i) count[i] = record_.tracks[i].segments.size();
-    for (const int ball : log_ball_) ++count[static_cast<std::size_t>(ball)];
+    for (const int ball : log_ball_) ++count[ball];
     for (std::size_t i = 0; i < count.size(); ++i) record_.tracks[i].segments.reserve(count[i]);
-    for (std::size_t k = 0; k < log_.size(); ++k)
-        record_.tracks[static_cast<std::size_t>(log_ball_[k])].segments.push_back(log_[k]);
+    for (std::size_t k = 0; k < log_.size(); ++k) record_.tracks[log_ball_[k]].segments.push_back(log_[k]);
     std::size_t begin = 0;
     for (const std::size_t end : log_cluster_) {
         record_.clusters.emplace_back(log_member_.begin() + static_cast<std::ptrdiff_t>(begin),

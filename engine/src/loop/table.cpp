@@ -42,7 +42,7 @@ void Shot::find_parts(int ball) {
 }
 
 void Shot::detect_features(int ball) {
-    Candidate& first = mover_[static_cast<std::size_t>(ball)].feature;
+    Candidate& first = mover_[ball].feature;
     first = {};
     const Segment& s = now_of(ball);
     const int lines = static_cast<int>(plan_.geometry.cushions.size()),
@@ -68,7 +68,7 @@ void Shot::detect_features(int ball) {
 
 // What lies beyond the first contact found so far cannot come before it: the window of the rejects.
 void Shot::offer_line(int ball, const Path& p, int line, Candidate& first) const {
-    const CushionLine& c = plan_.geometry.cushions[static_cast<std::size_t>(line)];
+    const CushionLine& c = plan_.geometry.cushions[line];
     const double from = now_of(ball).start, R = radius(ball);
     if (stays_off_line(p, c.from, c.direction, R, std::min(p.horizon, span(from, first.time)))) return;
     if (held_to(ball, line, -1)) return;
@@ -77,7 +77,7 @@ void Shot::offer_line(int ball, const Path& p, int line, Candidate& first) const
 }
 
 void Shot::offer_nose(int ball, const Path& p, int nose, Candidate& first) const {
-    const Nose& n = plan_.geometry.noses[static_cast<std::size_t>(nose)];
+    const Nose& n = plan_.geometry.noses[nose];
     const double from = now_of(ball).start, reach = radius(ball) + n.radius;
     if (stays_apart(p.r - n.center, p.v, p.a, reach, std::min(p.horizon, span(from, first.time)))) return;
     if (held_to(ball, -1, nose)) return;
@@ -86,7 +86,7 @@ void Shot::offer_nose(int ball, const Path& p, int nose, Candidate& first) const
 }
 
 void Shot::offer_pocket(int ball, const Path& p, int pocket, Candidate& first) const {
-    const Pocket& k = plan_.geometry.pockets[static_cast<std::size_t>(pocket)];
+    const Pocket& k = plan_.geometry.pockets[pocket];
     const double from = now_of(ball).start;
     if (stays_apart(p.r - k.center, p.v, p.a, k.radius, std::min(p.horizon, span(from, first.time)))) return;
     const double t = time_to_pocket(p, k.center, k.radius);
@@ -95,7 +95,7 @@ void Shot::offer_pocket(int ball, const Path& p, int pocket, Candidate& first) c
 
 // A ball that rests inside a pocket's circle falls.
 void Shot::offer_rest(int ball, int pocket, Candidate& first) const {
-    const Pocket& k = plan_.geometry.pockets[static_cast<std::size_t>(pocket)];
+    const Pocket& k = plan_.geometry.pockets[pocket];
     const Segment& s = now_of(ball);
     if (length(Vec2(s.r.x(), s.r.y()) - k.center) < k.radius)
         first = {.time = s.start, .type = EventType::kBallPocket, .a = ball, .b = pocket};

@@ -9,6 +9,17 @@
 
 namespace carom {
 
+namespace {
+
+// [L/V] The map goes on while a listed pair would touch within this time.
+constexpr double kClusterLookAhead = 2.0;
+// [-] Largest exponent of the unloading law; restitutions below 0.05 are taken as 0.05 inside a cluster.
+constexpr int kLargestLawExponent = 1024;
+// [-] Sweeps of the rigid projection; a rack of 15 takes about 500.
+constexpr long kRigidSweeps = 100000;
+
+}  // namespace
+
 double fifth_root(double x) {
     if (x == 0.0) return 0.0;
     // x = 2^(5 q) f with f in [1, 32): start from a straight line in f, then Newton on y^5 = f with a fixed
@@ -118,7 +129,7 @@ long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<Cl
     // A slow pair can be the first to touch where faster ones are about to: these set the scale, or their
     // forces would need a million steps.
     for (const ClusterContact& c : contacts) {
-        const Vec3 closing = balls[static_cast<std::size_t>(c.i)].v - balls[static_cast<std::size_t>(c.j)].v;
+        const Vec3 closing = balls[c.i].v - balls[c.j].v;
         V = std::max(V, closing.x() * c.n.x() + closing.y() * c.n.y());
     }
     load(balls, contacts, settings.R, V);

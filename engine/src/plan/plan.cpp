@@ -14,6 +14,10 @@ namespace carom {
 
 namespace {
 
+// [share of the jaw radius] A cushion end this close to a jaw's circle is rounded off by it and needs no tip
+// of its own. The jaw is a full circle, so nothing can slip between the two.
+constexpr double kJawJoinShare = 1e-9;
+
 // An end of a cushion needs a circle of its own unless a jaw rounds it off.
 bool rounded_by_jaw(const Vec2& end, const std::vector<Jaw>& jaws) {
     for (const Jaw& jaw : jaws) {

@@ -8,12 +8,15 @@
 #include <vector>
 
 #include "carom/engine/ball_ball.h"
-#include "carom/engine/tolerances.h"
 #include "physics/cue.h"
 #include "physics/motion.h"
 
 namespace carom {
 namespace {
+
+// [-] Margin on how far a ball can go when the plan decides what it can reach; far above the rounding of the
+// bound.
+constexpr double kReachMargin = 1e-9;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 

@@ -183,7 +183,7 @@ Record::Aside& Record::Aside::operator=(const Aside& other) {
 }
 
 BallState Record::state_at(int ball, double t) const {
-    const BallTrack& track = tracks[static_cast<std::size_t>(ball)];
+    const BallTrack& track = tracks[ball];
     t = std::clamp(t, 0.0, duration);
     const Segment& s = track.segments[segment_index(track.segments, t)];
     const double tau = std::min(t - s.start, s.duration);
@@ -214,12 +214,11 @@ Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
             made.at_start.push_back(std::move(starts));
         }
     });
-    const BallTrack& track = tracks[static_cast<std::size_t>(ball)];
+    const BallTrack& track = tracks[ball];
     t = std::clamp(t, 0.0, duration);
     const std::size_t i = segment_index(track.segments, t);
     const Segment& s = track.segments[i];
-    return segment_turn(s, std::min(t - s.start, s.duration), made.largest_step) *
-           made.at_start[static_cast<std::size_t>(ball)][i];
+    return segment_turn(s, std::min(t - s.start, s.duration), made.largest_step) * made.at_start[ball][i];
 }
 
 std::string Record::hash() const {

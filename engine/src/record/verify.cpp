@@ -192,7 +192,7 @@ class Checker {
     }
 
     bool around(int ball, double time, const Segment*& before, const Segment*& after) const {
-        const std::vector<Segment>& segments = record_.tracks[static_cast<std::size_t>(ball)].segments;
+        const std::vector<Segment>& segments = record_.tracks[ball].segments;
         const auto first = std::lower_bound(segments.begin(), segments.end(), time,
                                             [](const Segment& s, double t) { return s.start < t; });
         if (first == segments.begin() || first == segments.end() || first->start != time) return false;

@@ -86,7 +86,7 @@ OrderedJson segment_json(const Segment& s) {
 OrderedJson event_json(const Record& record, const Event& event, const EventCost* cost) {
     OrderedJson out = {{"time", event.time}, {"type", name(event.type)}, {"a", event.a}, {"b", event.b}};
     if (event.type == EventType::kBallCluster)
-        out["balls"] = record.clusters[static_cast<std::size_t>(event.detail)];
+        out["balls"] = record.clusters[event.detail];
     else if (event.detail >= 0)
         out["nose"] = event.detail;
     if (cost != nullptr) {

@@ -14,6 +14,11 @@
 namespace carom::detail {
 namespace {
 
+// [1] Part of the largest coordinate by which such an overlap may also be explained: far from the origin
+// (1e5 m) the rounding of a typed coordinate, 2^-53 of it, exceeds kTouchTolerance. Two coordinates and a
+// difference make up to four roundings.
+constexpr double kTouchRounding = 0x1p-51;
+
 Vec2 planar(const BallStart& ball) {
     return ball.position.head<2>();
 }

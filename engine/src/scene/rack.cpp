@@ -36,7 +36,7 @@ std::vector<int> rows_of(const Rack& rack) {
 /// Fisher-Yates.
 void shuffle(std::vector<int>& numbers, SplitMix64& random) {
     for (std::size_t i = numbers.size(); i > 1; --i) {
-        std::swap(numbers[i - 1], numbers[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
+        std::swap(numbers[i - 1], numbers[random.below(static_cast<int>(i))]);
     }
 }
 
@@ -166,7 +166,7 @@ std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R
     if (rack.jitter > 0.0) add_jitter(slots, rack, R, random);
     std::vector<RackedBall> out(slots.size());
     for (std::size_t i = 0; i < slots.size(); ++i)
-        out[static_cast<std::size_t>(numbers[i] - 1)] = {std::to_string(numbers[i]), slots[i]};
+        out[numbers[i] - 1] = {std::to_string(numbers[i]), slots[i]};
     for (const RackedBall& ball : spotted(rack, table)) out.push_back(ball);
     return out;
 }

@@ -196,7 +196,7 @@ void StaticLayer::keep_depths(const View& view, const Scratch& scratch, int samp
     api_.BindFramebuffer(GL_FRAMEBUFFER, occluders_framebuffer_);
     api_.UseProgram(depth_program_);
     for (int i = 0; i < static_cast<int>(kNames.size()); ++i) {
-        gl::bind_texture(api_, depth_program_, i, kNames[static_cast<std::size_t>(i)],
+        gl::bind_texture(api_, depth_program_, i, kNames[i],
                          scratch.depth[scratch.slot(std::min(i, samples - 1))]);
     }
     api_.Uniform2f(api_.GetUniformLocation(depth_program_, "u_planes"), view.planes[0], view.planes[1]);

@@ -59,7 +59,7 @@ BallStyle ball_style(const std::string& id, const std::string& table_preset, int
     }
     if (number > 0) {
         style.number = number;
-        style.color = kPool[static_cast<std::size_t>(number <= 8 ? number - 1 : (number - 9) % 7)];
+        style.color = kPool[number <= 8 ? number - 1 : (number - 9) % 7];
         style.pattern = number <= 8 ? BallPattern::kSolid : BallPattern::kStripe;
         return style;
     }
@@ -69,7 +69,7 @@ BallStyle ball_style(const std::string& id, const std::string& table_preset, int
         style.pattern = BallPattern::kDots;
         return style;
     }
-    style.color = kPool[static_cast<std::size_t>(index % 7)];
+    style.color = kPool[index % 7];
     style.pattern = BallPattern::kHalves;
     return style;
 }

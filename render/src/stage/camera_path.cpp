@@ -23,7 +23,7 @@ constexpr int kFollowSteps = 12;
 // Direction in which the first ball leaves; +y if it does not move.
 Vec2 aim_of(const Record& record, int ball) {
     if (record.tracks.empty()) return Vec2::UnitY();
-    for (const Segment& segment : record.tracks[static_cast<std::size_t>(ball)].segments) {
+    for (const Segment& segment : record.tracks[ball].segments) {
         const Vec2 v = segment.v.head<2>();
         if (v.norm() > 0.0) return v.normalized();
     }
@@ -57,7 +57,7 @@ int ball_by_id(const Record& record, const std::string& id) {
 
 // A ball that left the table is followed to where it left.
 Vec3 place_to_follow(const Record& record, int ball, double t) {
-    const BallTrack& track = record.tracks[static_cast<std::size_t>(ball)];
+    const BallTrack& track = record.tracks[ball];
     const Segment& last = track.segments.back();
     if (last.state == MotionState::kPocketed && t > last.start) t = last.start;
     Vec3 place = record.state_at(ball, t).position;

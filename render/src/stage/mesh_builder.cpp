@@ -60,7 +60,7 @@ void MeshBuilder::polygon(const std::vector<Vec2>& outline, double z, Material m
     const std::vector<int> corners = triangulate(outline);
     for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
         const auto at = [&](std::size_t k) {
-            const Vec2& p = outline[static_cast<std::size_t>(corners[i + k])];
+            const Vec2& p = outline[corners[i + k]];
             return vertex(lift(p, z), Vec3::UnitZ(), p.x(), p.y(), material);
         };
         triangle(at(0), at(1), at(2));

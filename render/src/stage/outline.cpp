@@ -26,7 +26,7 @@ struct Link {
 };
 
 const Vec2& point_of(const Table& table, int end) {
-    const Cushion& cushion = table.cushions[static_cast<std::size_t>(end / 2)];
+    const Cushion& cushion = table.cushions[end / 2];
     return end % 2 == 0 ? cushion.from : cushion.to;
 }
 
@@ -42,10 +42,10 @@ std::vector<Link> link_ends(const Table& table) {
     const int ends = 2 * static_cast<int>(table.cushions.size());
     std::vector<Link> links(static_cast<std::size_t>(ends));
     const auto join = [&](int a, int b, int jaw) {
-        links[static_cast<std::size_t>(a)] = {b, jaw};
-        links[static_cast<std::size_t>(b)] = {a, jaw};
+        links[a] = {b, jaw};
+        links[b] = {a, jaw};
     };
-    const auto free = [&](int a) { return links[static_cast<std::size_t>(a)].end < 0; };
+    const auto free = [&](int a) { return links[a].end < 0; };
     for (int a = 0; a < ends; ++a) {
         for (int b = a + 1; b < ends && free(a); ++b) {
             if (free(b) && b / 2 != a / 2 && (point_of(table, a) - point_of(table, b)).norm() < kJoin)
@@ -80,8 +80,8 @@ Chain walk(const Table& table, const std::vector<Link>& links, int first_end, st
     int end = first_end;
     while (true) {
         const int cushion = end / 2, other = end ^ 1;
-        used[static_cast<std::size_t>(cushion)] = 1;
-        const double height = table.cushions[static_cast<std::size_t>(cushion)].height;
+        used[cushion] = 1;
+        const double height = table.cushions[cushion].height;
         // A joint without a jaw was pushed as the end of the cushion before.
         if (chain.points.empty() || (chain.points.back() - point_of(table, end)).norm() >= kJoin) {
             chain.points.push_back(point_of(table, end));
@@ -89,13 +89,12 @@ Chain walk(const Table& table, const std::vector<Link>& links, int first_end, st
         }
         chain.points.push_back(point_of(table, other));
         chain.heights.push_back(height);
-        const Link next = links[static_cast<std::size_t>(other)];
+        const Link next = links[other];
         if (next.end < 0) return chain;
         if (next.jaw >= 0) {
-            append_arc(chain, table.jaws[static_cast<std::size_t>(next.jaw)], point_of(table, other),
-                       point_of(table, next.end));
+            append_arc(chain, table.jaws[next.jaw], point_of(table, other), point_of(table, next.end));
         }
-        if (used[static_cast<std::size_t>(next.end / 2)]) {
+        if (used[next.end / 2]) {
             chain.closed = true;
             if ((chain.points.back() - chain.points.front()).norm() < kJoin) {
                 chain.points.pop_back();
@@ -169,7 +168,7 @@ std::vector<Vec2> offset_left(const std::vector<Vec2>& points, bool closed, doub
 std::vector<int> triangulate(const std::vector<Vec2>& polygon) {
     std::vector<int> left(polygon.size()), triangles;
     for (std::size_t i = 0; i < polygon.size(); ++i) left[i] = static_cast<int>(i);
-    const auto at = [&](int i) -> const Vec2& { return polygon[static_cast<std::size_t>(i)]; };
+    const auto at = [&](int i) -> const Vec2& { return polygon[i]; };
     const auto is_ear = [&](int a, int b, int c) {
         if (cross(at(b) - at(a), at(c) - at(b)) <= 0.0) return false;
         for (int p : left) {

@@ -126,13 +126,12 @@ Box2dOutcome run_box2d(const Record& record, double hz) {
     out.duration = static_cast<double>(step) * dt;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         if (out.pockets[i] >= 0)
-            out.positions.push_back(record.table.pockets[static_cast<std::size_t>(out.pockets[i])].center);
+            out.positions.push_back(record.table.pockets[out.pockets[i]].center);
         else
             out.positions.emplace_back(static_cast<double>(bodies[i]->GetPosition().x) / kScale,
                                        static_cast<double>(bodies[i]->GetPosition().y) / kScale);
     }
-    if (contacts.first() >= 0)
-        out.first_contact = record.tracks[static_cast<std::size_t>(contacts.first())].id;
+    if (contacts.first() >= 0) out.first_contact = record.tracks[contacts.first()].id;
     return out;
 }
 

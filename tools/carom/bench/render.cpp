@@ -13,11 +13,11 @@ namespace carom::tools {
 int run_bench_render(const BenchRenderArgs& args) {
     const Record record = simulate_plan(plan_scene(args.scene), {});
     ProgressLine line("bench render");
-    const auto rows = bench_render(record, args.frames, render::backend_from_name(args.gl),
-                                           [&line](long done, long total) {
-                                               throw_if_interrupted();
-                                               line.show_bar(done, total);
-                                           });
+    const auto rows =
+        bench_render(record, args.frames, render::backend_from_name(args.gl), [&line](long done, long total) {
+            throw_if_interrupted();
+            line.show_bar(done, total);
+        });
     if (args.json) {
         nlohmann::ordered_json list = nlohmann::ordered_json::array();
         for (const RenderBenchRow& row : rows) {

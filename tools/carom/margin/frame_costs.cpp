@@ -24,7 +24,7 @@ std::vector<FrameCost> costs_by_frame(const Record& record, double from, double 
     constexpr double kMsPerNs = 1e-6;
     sums[0].detect_ms = record.setup_detect_ns * kMsPerNs;
     for (std::size_t i = 0; i < record.events.size(); ++i) {
-        FrameCost& sum = sums[static_cast<std::size_t>(frame_of(record.events[i].time, from, fps, frames))];
+        FrameCost& sum = sums[frame_of(record.events[i].time, from, fps, frames)];
         sum.events.push_back(i);
         if (i >= record.costs.size()) continue;
         const EventCost& cost = record.costs[i];

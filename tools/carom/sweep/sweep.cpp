@@ -174,7 +174,7 @@ Outcomes write_rows(PartialFile& file, const Variation& variation, const ShotRan
         throw_if_interrupted();
         for (const SweepRow& row : queue.take()) {
             file.append(row.text);
-            ++outcomes[static_cast<std::size_t>(row.outcome)];
+            ++outcomes[row.outcome];
             ++done;
         }
         if (Clock::now() - flushed >= kFlushEvery) {
@@ -193,7 +193,7 @@ std::string summary(const Outcomes& outcomes, const SweepArgs& args, unsigned jo
         fmt::format("{}: {} in {:.2f} s on {}, {:.0f} a second\n", args.output, counted(shots, "shot"),
                     seconds, counted(jobs, "thread"), static_cast<double>(shots) / std::max(seconds, 1e-9));
     for (int i = 0; i < kShotOutcomes; ++i) {
-        const std::uint64_t n = outcomes[static_cast<std::size_t>(i)];
+        const std::uint64_t n = outcomes[i];
         if (n > 0) text += fmt::format("  {:<8}{:>10}\n", name(static_cast<ShotOutcome>(i)), n);
     }
     return text;
@@ -237,7 +237,7 @@ int run_sweep(const SweepArgs& args) {
     }
     file.commit();
     print(summary(outcomes, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
-    const std::uint64_t failed = outcomes[static_cast<std::size_t>(ShotOutcome::kRunFailed)];
+    const std::uint64_t failed = outcomes[ShotOutcome::kRunFailed];
     if (failed == 0) return kOk;
     message(fmt::format("{} failed while running; {} why", counted(failed, "shot"),
                         failed == 1 ? "its row says" : "their rows say"));

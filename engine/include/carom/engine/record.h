@@ -123,9 +123,7 @@ class Record {
     StopReason stopped = StopReason::kAtRest;
 
     /// Radius and mass of a ball.
-    BallSize size(int ball) const {
-        return tracks[static_cast<std::size_t>(ball)].own.value_or(balls.size());
-    }
+    BallSize size(int ball) const { return tracks[ball].own.value_or(balls.size()); }
 
     /// State of a ball at time t: the last segment that starts at or before t, in closed form. t before 0
     /// gives the start, t past the duration the state at the duration.

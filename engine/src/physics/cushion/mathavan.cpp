@@ -20,13 +20,24 @@
 #include <algorithm>
 #include <cmath>
 
-#include "carom/engine/tolerances.h"
 #include "physics/cushion/dormand_prince.h"
 #include "physics/cushion/mathavan_laws.h"
 #include "physics/cushion/models.h"
 
 namespace carom::detail {
 namespace {
+
+// [of the approach speed] Error per step of the cushion model mathavan_2010; a result of its ten or so steps
+// errs by about as much. Far below the ball-ball impact's default.
+constexpr double kCushionTolerance = 1e-7;
+// [of the approach speed] Slip at the nose that a nose which can stick is taken to have lost; what that
+// leaves out is of second order (docs/physics.md, "Cushion impact").
+constexpr double kCushionStick = 3e-5;
+// A nose that has let go slips by less than this for a while, and its direction follows the drive at once
+// (stiff): it is taken as driven. What that leaves out is of second order, about the square root of this
+// times its square.
+constexpr double kCushionCreep = 1e-4;
+constexpr int kCushionSteps = 5000;  // [-] bound on its steps; an impact takes 3 to 300
 
 using State = MathavanState;
 using Forces = MathavanForces;

@@ -1,8 +1,8 @@
 #include "carom/engine/cushion.h"
 
-#include <span>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "physics/cushion/models.h"
 

@@ -10,11 +10,14 @@
 #include <cmath>
 
 #include "carom/engine/math.h"
-#include "carom/engine/tolerances.h"
 #include "physics/cushion/models.h"
 
 namespace carom::detail {
 namespace {
+
+// [-] Grid on which the cushion model stronge brackets the end of stick: a thirtieth of the restitution, far
+// finer than the swing of its tangential spring.
+constexpr int kStrongeGrid = 32;
 
 constexpr double kOmega = 1.8;  // tangential over normal frequency; pooltool 0.6.0's value
 constexpr double kBeta = 3.5;
