@@ -1,5 +1,5 @@
-// Section 3.3: the baseline's branches with hints. Slip is the rule; no slip, and a cloth slip of zero, the
-// exception.
+// Section 3.3: the baseline's branches with hints. Slip is
+// the rule; no slip, and a cloth slip of zero, the exception.
 #pragma once
 
 #include "ladder/driver.h"

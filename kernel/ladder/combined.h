@@ -1,5 +1,4 @@
-// The paper's combined best: rsqrt with Newton, roots that wait for no branch, two stages, precomputed
-// constants.
+// The paper's combined best: rsqrt with Newton, roots that wait for no branch, two stages, precomputed constants.
 #pragma once
 
 #include "ladder/precomputed.h"

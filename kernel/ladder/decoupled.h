@@ -4,10 +4,9 @@
 //
 // The root of a step is extrapolated from the corrected roots of earlier steps and used as it is. What it was
 // wrong by, T f, corrects the history, and is added to the root of the step kLag later: no step waits for its
-// own correction, and none is lost but those of the last steps of a run. So the chain from step to step is
-// two sums and a product; the roots run beside it. The error is asked once in kBlock steps; a block in which
-// it is too large is done again by slow steps: the series, or sqrt and division (starts, near u = 0 or c =
-// 0).
+// own correction, and none is lost but those of the last steps of a run. So the chain from step to step is two
+// sums and a product; the roots run beside it. The error is asked once in kBlock steps; a block in which it is
+// too large is done again by slow steps: the series, or sqrt and division (starts, near u = 0 or c = 0).
 #pragma once
 
 #include "ladder/stretches.h"

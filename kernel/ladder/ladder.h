@@ -19,15 +19,14 @@ struct Rung {
     MarchFunction march;  ///< one impact a call
     BatchFunction batch;  ///< many
     bool portable_bits;   ///< the same bits on scalar, v3 and v4, with gcc and with clang
-    /// Largest difference from the baseline at N = 1000, relative to the approach speed, where the step
-    /// counts agree: on the paper's five states, and on 2000 random impacts (where chatter near stick
-    /// amplifies rounding).
+    /// Largest difference from the baseline at N = 1000, relative to the approach speed, where the step counts
+    /// agree: on the paper's five states, and on 2000 random impacts (where chatter near stick amplifies rounding).
     double bound_five, bound_random;
     const char* idea;
 };
 
-/// All rungs, the baseline first, in the order of the paper; those of an instruction set that this processor
-/// lacks too.
+/// All rungs, the baseline first, in the order of the paper;
+/// those of an instruction set that this processor lacks too.
 std::span<const Rung> ladder() noexcept;
 
 }  // namespace carom::kernel

@@ -1,6 +1,5 @@
-// Past the paper: one impact, every step done, its reduced state in one register. S = [x, a, |z|, b], where
-// (a, b) is the cloth slip of the pressed ball. R = [1/c, 1/u, 1/c, 1/u] is what limits the march. How it is
-// had:
+// Past the paper: one impact, every step done, its reduced state in one register. S = [x, a, |z|, b], where (a,
+// b) is the cloth slip of the pressed ball. R = [1/c, 1/u, 1/c, 1/u] is what limits the march. How it is had:
 //
 //   kExact      sqrt and division
 //   kSeed       extrapolated linearly, then corrected by a series before it is used
@@ -61,8 +60,8 @@ struct PackedMarch {
         const __m256d push = _mm256_set_pd(k.h, 0.0, 0.0, 0.0), mu = _mm256_set1_pd(k.mu_hs);
         const __m256d half = _mm256_set1_pd(0.5);
         __m256d S = _mm256_set_pd(stretch.b, stretch.z, stretch.a, stretch.x), sum_S = _mm256_setzero_pd();
-        // R of the last steps, the newest first. Zero, as at the start, gives e = 1: the first steps take the
-        // exact roots.
+        // R of the last steps, the newest first. Zero, as at the
+        // start, gives e = 1: the first steps take the exact roots.
         __m256d R1 = _mm256_setzero_pd(), R2 = R1, R3 = R1, R4 = R1, R5 = R1, R6 = R1;
         for (long m = 0; m < count; ++m) {
             CAROM_LOOP_BEGIN("packed march");

@@ -1,6 +1,6 @@
-// The baseline's loop under the paper's flags: compiled with -Ofast -march=znver3 -ffp-contract=fast, alone,
-// so that nothing else sees them. The link line never has -Ofast: no start-up code that switches the process
-// to flush-to-zero.
+// The baseline's loop under the paper's flags: compiled with -Ofast -march=znver3
+// -ffp-contract=fast, alone, so that nothing else sees them. The link line never
+// has -Ofast: no start-up code that switches the process to flush-to-zero.
 #include "ladder/paper_flags.h"
 #include "ladder/branch_hints.h"
 

@@ -1,5 +1,4 @@
-// Section 3.4: precomputation. Spins are carried as R w, impulses per unit mass, and every product of
-// constants once.
+// Section 3.4: precomputation. Spins are carried as R w, impulses per unit mass, and every product of constants once.
 #pragma once
 
 #include "ladder/driver.h"

@@ -6,8 +6,7 @@
 //   U[1] = u2, U[0] = -u1                                cloth slips, mirrored so that both sides read the
 //   same
 //
-// With c = |(x, z)|, A = mu_b h / c, xi = A x, t = A |z| and the pressed ball's q = mu_s t U / |U| one step
-// is
+// With c = |(x, z)|, A = mu_b h / c, xi = A x, t = A |z| and the pressed ball's q = mu_s t U / |U| one step is
 //
 //   x += -7 xi + q_x          |z| += -5 t + 5/2 q_y          v_n += 2 h - q_y
 //   U_pressed += (xi - kappa q_x, h - 5/2 sigma t - kappa q_y)

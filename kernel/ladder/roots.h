@@ -1,5 +1,4 @@
-// Reciprocal square roots. rsqrtss takes floats: squares of velocities outside [1e-30, 1e30] go to sqrt and
-// division.
+// Reciprocal square roots. rsqrtss takes floats: squares of velocities outside [1e-30, 1e30] go to sqrt and division.
 #pragma once
 
 #include <immintrin.h>

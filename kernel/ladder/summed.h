@@ -65,8 +65,7 @@ class SummedMarch {
     StopTest stop;
     long steps = 0;
 
-    // The reciprocal lengths and the rates at the state reached; `cloth`: that of the pressed ball takes
-    // part.
+    // The reciprocal lengths and the rates at the state reached; `cloth`: that of the pressed ball takes part.
     struct FirstStep {
         int pressed;
         bool slips, turns, cloth, rolls;

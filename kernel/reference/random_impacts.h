@@ -57,8 +57,7 @@ inline Impact random_impact(SplitMix64& rng) {
     b2.r[0] = b1.r[0] + 2.0 * p.R * nx;
     b2.r[1] = b1.r[1] + 2.0 * p.R * ny;
     const double speed = 0.05 * std::pow(160.0, rng.uniform());
-    // Cut angle: the direction of ball 1 against the line of centres; glancing hits leave 1e-3..0.1 of the
-    // speed.
+    // Cut angle: the direction of ball 1 against the line of centres; glancing hits leave 1e-3..0.1 of the speed.
     const double cut =
         kind == 4 ? std::acos(std::pow(10.0, rng.uniform(-3.0, -1.0))) : rng.uniform(-1.4, 1.4);
     const double c = std::cos(cut), s = std::sin(cut);

@@ -1,14 +1,12 @@
-// Legend: s = (x, z) slip between the balls, u = (a, b) slip of the active ball (the one pressed on the
-// cloth), both as in docs/kernel_tolerance.md; q the independent variable, dp = |s| |u| dq with p the normal
-// impulse per mass. In q neither the end of the slip (|s| -> 0) nor a cloth slip that passes close to zero is
-// singular:
+// Legend: s = (x, z) slip between the balls, u = (a, b) slip of the active ball (the one pressed on the cloth),
+// both as in docs/kernel_tolerance.md; q the independent variable, dp = |s| |u| dq with p the normal impulse
+// per mass. In q neither the end of the slip (|s| -> 0) nor a cloth slip that passes close to zero is singular:
 //
 //     x' = -7 mu_b x |u| + mu_s mu_b z a             a' = mu_b x |u| - kappa mu_s mu_b z a
 //     z' = -5 mu_b z |u| + 5/2 mu_s mu_b z b         b' = |s| |u| - 5/2 sigma mu_b z |u| - kappa mu_s mu_b z
 //     b p' = |s| |u|    v' = 2 p' - mu_s mu_b z b    W' = v p'    D' = mu_b |s| p' + mu_s mu_b z |u|^2
 //
-// and the friction impulses are sums of their own: X' = mu_b x |u|, Z' = mu_b z |u|, A' = mu_s mu_b z a, B'
-// likewise.
+// and the friction impulses are sums of their own: X' = mu_b x |u|, Z' = mu_b z |u|, A' = mu_s mu_b z a, B' likewise.
 #include "reference/solver.h"
 
 #include <algorithm>

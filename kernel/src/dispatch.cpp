@@ -54,8 +54,8 @@ bool parse_isa(const char* text, Isa& isa) noexcept {
     return false;
 }
 
-// By feature, because clang 14 does not know the names of the levels; what they leave out comes with these on
-// every CPU.
+// By feature, because clang 14 does not know the names of the
+// levels; what they leave out comes with these on every CPU.
 static bool has_v3() {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
            __builtin_cpu_supports("bmi2");

@@ -1,6 +1,5 @@
-// The contact frame that all kernels share: validation, projection, back-projection.
-// Included by files built for one instruction set: no std templates here, everything inline in an anonymous
-// namespace.
+// The contact frame that all kernels share: validation, projection, back-projection. Included by files
+// built for one instruction set: no std templates here, everything inline in an anonymous namespace.
 #pragma once
 
 #include "carom/kernel/impact.h"
@@ -20,8 +19,8 @@ struct Frame {
 
 // Heights that differ by more than this share of the distance are no planar impact.
 constexpr double kHeightTolerance = 1e-9;
-// An approach speed below this share of the largest velocity underflows in the work integral: no event (hard
-// case H30).
+// An approach speed below this share of the largest velocity
+// underflows in the work integral: no event (hard case H30).
 constexpr double kSlowestApproach = 1e-150;
 
 inline bool finite(double x) {
@@ -74,8 +73,8 @@ inline bool in_range(const ImpactParams& p) {
            p.e_b <= 1.0;
 }
 
-// Checks the input and projects it. Anything but kOk means that there is nothing to compute; `out` then holds
-// the input.
+// Checks the input and projects it. Anything but kOk means that
+// there is nothing to compute; `out` then holds the input.
 inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactParams& p, Frame& f,
                                 FrameState& s, ImpactResult& out) {
     ImpactStatus status = ImpactStatus::kOk;

@@ -1,5 +1,5 @@
-// Four doubles at once, the only vector shape of the kernel by tolerance: one ymm register with AVX2, two xmm
-// without.
+// Four doubles at once, the only vector shape of the kernel
+// by tolerance: one ymm register with AVX2, two xmm without.
 //
 // Every operation is + - * / or a square root of one lane, each correctly rounded, and sums over lanes have
 // one written order. So all instruction sets, compilers and optimisation levels give the same bits. No fused

@@ -100,8 +100,7 @@ TEST(Unequal, EqualBallsGiveTheInelasticImpact) {
     }
 }
 
-// Momentum and angular momentum about the contact are kept, energy falls, Coulomb's limit holds or the slip
-// ends.
+// Momentum and angular momentum about the contact are kept, energy falls, Coulomb's limit holds or the slip ends.
 TEST(Unequal, WhatCannotBeComputedGivesTheInputBack) {
     const kernel::Ball one{{0.0, 0.0, 0.03}, {0.0, 1.0, 0.0}, {1.0, 2.0, 3.0}},
         two{{0.0, 0.06, 0.03}, {0.0, 0.0, 0.0}, {}};
@@ -155,8 +154,8 @@ Scene scene_of(const std::string& text) {
     return parse_scene(text, "s.toml");
 }
 
-// Two balls on one cloth touch when their centres are 2 sqrt(R1 R2) apart; the elastic exchange is that of
-// two masses.
+// Two balls on one cloth touch when their centres are 2 sqrt(R1
+// R2) apart; the elastic exchange is that of two masses.
 TEST(Unequal, HeadOnElastic) {
     const Scene scene =
         scene_of(std::string(kSequential) +

@@ -1,5 +1,5 @@
-// The cluster maps against the test values of the design notes (clusters, section 9): racks, three-ball hits,
-// cradles.
+// The cluster maps against the test values of the design notes
+// (clusters, section 9): racks, three-ball hits, cradles.
 #include "physics/cluster.h"
 
 #include <gtest/gtest.h>

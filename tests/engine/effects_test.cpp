@@ -1,5 +1,4 @@
-// Only what a scene calls for: decisions, refusals, late need, and proofs that a skipped effect changes no
-// bit.
+// Only what a scene calls for: decisions, refusals, late need, and proofs that a skipped effect changes no bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -34,8 +34,8 @@ Table centred_box(double half_w, double half_l) {
     return table;
 }
 
-/// A break that ends in chaos: 15 racked balls 1e-4 m apart and a cue ball off the axis, on a table around
-/// the origin.
+/// A break that ends in chaos: 15 racked balls 1e-4 m apart
+/// and a cue ball off the axis, on a table around the origin.
 Scene centred_break(ClusterModel clusters = ClusterModel::kCompliant) {
     Scene scene = empty_scene();
     scene.table = centred_box(0.635, 1.27);

@@ -50,8 +50,8 @@ TEST(HeldGroups, WedgeOfNearlyOppositeNormals) {
     }
 }
 
-// The capture has to converge in such a wedge: swept contact by contact, the ball got 5.6e-12 m deep into the
-// cushion.
+// The capture has to converge in such a wedge: swept contact
+// by contact, the ball got 5.6e-12 m deep into the cushion.
 TEST(HeldGroups, WedgeOfACushionAndASlowBall) {
     Scene scene = empty_scene();
     scene.table = make_table("seven_foot");

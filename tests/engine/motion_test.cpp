@@ -129,8 +129,8 @@ TEST(Motion, ReferenceVectors) {
     }
 }
 
-// Orientation: a small-step integration of dq/dt = w q / 2 against orientation_at, with English so that the
-// axis turns.
+// Orientation: a small-step integration of dq/dt = w q / 2
+// against orientation_at, with English so that the axis turns.
 TEST(Motion, OrientationFollowsTheSpin) {
     Scene scene = empty_scene();
     add_ball(scene, "a", 0, 0, 1.5, 0.4, Vec3(-60.0, 20.0, 35.0));

@@ -214,9 +214,8 @@ TEST(RandomSceneRegressions, MarginsOfTheOthersStay) {
     EXPECT_EQ(what_breaks(scene), "");
 }
 
-// Whole scenes, by seed: friction between two balls that turned their slip over each 1e-5 s (24832), and a
-// slip that a capture had ended but that went on to drive its ball (33636 of the other family, where the
-// energy rose).
+// Whole scenes, by seed: friction between two balls that turned their slip over each 1e-5 s (24832), and a slip
+// that a capture had ended but that went on to drive its ball (33636 of the other family, where the energy rose).
 TEST(RandomSceneRegressions, SlipsThatEnd) {
     settles_within(RandomScene(24832).make(), 40000);
     EXPECT_EQ(what_breaks(RandomScene(33636, DrawOrder::kFirstFirst).make()), "");

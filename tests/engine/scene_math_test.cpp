@@ -47,8 +47,7 @@ TEST(Math, RadiansNearWholeQuadrants) {
     for (int k = -636000; k <= 636000; k += 7) {
         const double x = static_cast<double>(k * (std::numbers::pi_v<long double> / 2));
         const SinCos a = sin_cos(x);
-        // glibc reduces the extended argument exactly.
-        // exact.
+        // glibc reduces the extended argument exactly. exact.
         worst = std::fmax(worst, ulps(a.sin, std::sin(static_cast<long double>(x))));
         worst = std::fmax(worst, ulps(a.cos, std::cos(static_cast<long double>(x))));
     }
@@ -122,8 +121,8 @@ TEST(Math, DegreesWithinOneUlp) {
         const long double rad =
             std::fmod(static_cast<long double>(x), 360.0L) * (std::numbers::pi_v<long double> / 180);
         const SinCos a = sin_cos_deg(x);
-        // The reference loses bits near its zeros; leave those to WholeQuadrantsInDegreesAreExact and
-        // RadiansNearWholeQuadrants.
+        // The reference loses bits near its zeros; leave those to
+        // WholeQuadrantsInDegreesAreExact and RadiansNearWholeQuadrants.
         if (std::abs(a.sin) > 1e-2) worst = std::fmax(worst, ulps(a.sin, std::sin(rad)));
         if (std::abs(a.cos) > 1e-2) worst = std::fmax(worst, ulps(a.cos, std::cos(rad)));
     }

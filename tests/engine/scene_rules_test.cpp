@@ -389,8 +389,7 @@ TEST(Rest, OnlyWhatCanHappenCounts) {
     EXPECT_EQ(error_of("[balls]\nmu_r = 0\n[[ball]]\nspin = [0, 0, 5]\n"), "");
 }
 
-// Whatever is in a file, it is read or refused with a place in it; it never crashes and nothing else is
-// thrown.
+// Whatever is in a file, it is read or refused with a place in it; it never crashes and nothing else is thrown.
 TEST(Scenes, BrokenTextIsRefusedInTheSameForm) {
     const std::string good =
         read_file(std::filesystem::path(CAROM_SOURCE_DIR) / "scenes" / "eight_ball_break.toml");

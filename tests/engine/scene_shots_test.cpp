@@ -36,8 +36,8 @@ double first(const Record& r, EventType type) {
     return -1.0;
 }
 
-/// How far the cue ball ends in front of where it was when the balls met, along the diagonal of the three
-/// straight-in shots.
+/// How far the cue ball ends in front of where it was when the
+/// balls met, along the diagonal of the three straight-in shots.
 double advance_after_contact(const Record& r) {
     const double hit = first(r, EventType::kBallBall);
     EXPECT_GT(hit, 0.0);

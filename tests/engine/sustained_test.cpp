@@ -66,8 +66,7 @@ TEST(Sustained, SpinIntoACushion) {
     EXPECT_LE(record.events.size(), 6u);
 }
 
-// H5, oblique: 1 m/s along the cushion and 50 rad/s into it. Reference values of the notes: 0.328069 s, v_y =
-// 5/7.
+// H5, oblique: 1 m/s along the cushion and 50 rad/s into it. Reference values of the notes: 0.328069 s, v_y = 5/7.
 TEST(Sustained, ObliqueSpinIntoACushion) {
     Scene scene = empty_scene();
     scene.table = box(1.0, 20.0, 0.036576);

@@ -1,5 +1,4 @@
-// Throw, spin transfer and curved paths in whole shots (docs/physics.md: T10, T11, the throw table 7b,
-// masse).
+// Throw, spin transfer and curved paths in whole shots (docs/physics.md: T10, T11, the throw table 7b, masse).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,8 +14,8 @@ using namespace test;
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
-// One impact at cut angle phi [degrees] of a ball with speed v and spin (about the line of motion's left, and
-// vertical).
+// One impact at cut angle phi [degrees] of a ball with speed
+// v and spin (about the line of motion's left, and vertical).
 double throw_deg(double phi, double v, bool rolls, double w_z, double fall, double e_b = 1.0) {
     Scene scene = empty_scene();
     scene.balls.mu_b = 9.951e-3;
@@ -127,9 +126,8 @@ TEST(Throw, MathavanTakesTheFrictionOfItsSlip) {
     EXPECT_LE((a.tracks[1].segments.back().w - b.tracks[1].segments.back().w).norm(), 1e-12);
 }
 
-// Masse (T2, Coriolis): a raised cue with side curves the path; the final direction is that of v - (2/7) u,
-// from the point where the cue's line meets the cloth. Without elevation the path of a ball struck with side
-// is straight.
+// Masse (T2, Coriolis): a raised cue with side curves the path; the final direction is that of v - (2/7) u, from the
+// point where the cue's line meets the cloth. Without elevation the path of a ball struck with side is straight.
 TEST(Masse, ElevationAndSideCurveThePath) {
     const auto shot = [](double elevation, double side) {
         Scene scene = empty_scene();

@@ -1,5 +1,5 @@
-// The truth is itself checked: by other orders and step sizes, by its energy book, by closed solutions and by
-// the march.
+// The truth is itself checked: by other orders and step sizes,
+// by its energy book, by closed solutions and by the march.
 #include "reference/solver.h"
 
 #include <gtest/gtest.h>

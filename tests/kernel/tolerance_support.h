@@ -68,9 +68,8 @@ inline double approach_speed(const Impact& i) {
     return ((i.ball1.v[0] - i.ball2.v[0]) * dx + (i.ball1.v[1] - i.ball2.v[1]) * dy) / d;
 }
 
-/// Impacts around everything that is singular: slip that ends, cloth slip that passes or starts next to zero,
-/// both, over many decades; e_b and the frictions up to `mu_b` and `mu_s`, their limits included. Approach
-/// speed 1.
+/// Impacts around everything that is singular: slip that ends, cloth slip that passes or starts next to zero, both,
+/// over many decades; e_b and the frictions up to `mu_b` and `mu_s`, their limits included. Approach speed 1.
 inline Impact hard_random_impact(SplitMix64& rng, double mu_b, double mu_s, kernel::ClothSlip slip) {
     const auto decades = [&rng](double lo, double hi) { return lo * std::pow(hi / lo, rng.uniform()); };
     const auto sign = [&rng] { return rng.next() % 2 == 0 ? 1.0 : -1.0; };

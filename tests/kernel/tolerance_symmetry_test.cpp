@@ -40,8 +40,8 @@ TEST(ToleranceEnergy, NeverRises) {
     }
 }
 
-// The pair gains no momentum but the cloth's, which acts on one ball and is at most mu_s mu_b times the
-// normal impulse.
+// The pair gains no momentum but the cloth's, which acts on
+// one ball and is at most mu_s mu_b times the normal impulse.
 TEST(ToleranceMomentum, OnlyTheClothChangesIt) {
     SplitMix64 rng(52);
     for (int n = 0; n < 20000; ++n) {

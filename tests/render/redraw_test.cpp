@@ -178,8 +178,7 @@ TEST(RedrawWork, BallsOnBareClothAreTold) {
     alpha[4 * at + 3] = 254;
     balls = visible_balls(list, ClothMap(alpha, {480, 270}));
     EXPECT_FALSE(balls[7].plain);
-    // With it every ball that it meets in the picture, and those that these meet: the rack, or the cue ball
-    // alone.
+    // With it every ball that it meets in the picture, and those that these meet: the rack, or the cue ball alone.
     for (const DrawnBall& ball : balls) {
         EXPECT_FALSE(ball.plain && ball.box.meets(balls[7].box));
     }

@@ -271,8 +271,8 @@ TEST(TableMesh, NosesAreTheOutlineThatBallsBounceOff) {
         EXPECT_TRUE(is_drawn(cushion.from)) << cushion.id;
         EXPECT_TRUE(is_drawn(cushion.to)) << cushion.id;
     }
-    // The middle of each jaw's arc: the point of its circle that is nearest to the table's middle or a
-    // pocket's mouth.
+    // The middle of each jaw's arc: the point of its circle that
+    // is nearest to the table's middle or a pocket's mouth.
     for (const Jaw& jaw : table.jaws) {
         int on_circle = 0;
         for (const Vec2& nose : noses) on_circle += std::abs((nose - jaw.center).norm() - jaw.radius) < 1e-6;

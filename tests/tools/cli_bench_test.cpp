@@ -1,5 +1,5 @@
-// carom bench kernel: what it prints. Times are measured, and no test asserts one; counts and differences are
-// the kernel's.
+// carom bench kernel: what it prints. Times are measured, and
+// no test asserts one; counts and differences are the kernel's.
 #include <gtest/gtest.h>
 
 #include <map>

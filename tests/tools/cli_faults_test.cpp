@@ -149,8 +149,7 @@ TEST_F(Faults, AKilledRenderIsFinishedByResumeWithTheSameFrames) {
         process.send(SIGKILL);
         process.finish("");
     }
-    // Whatever stands under a frame's name is whole: killed between two system calls, only a temporary name
-    // is not.
+    // Whatever stands under a frame's name is whole: killed between two system calls, only a temporary name is not.
     for (int k = 0; k <= 100; ++k)
         if (fs::exists(frame(k))) {
             EXPECT_EQ(read_file(frame(k)), whole[k]) << k;

@@ -1,5 +1,4 @@
-// carom render: the view, overlays, contact sheets, raw frames, resuming, OpenGL libraries, and what a disk
-// refuses.
+// carom render: the view, overlays, contact sheets, raw frames, resuming, OpenGL libraries, and what a disk refuses.
 #include <gtest/gtest.h>
 
 #include <sys/stat.h>

@@ -170,8 +170,7 @@ TEST_P(Docs, CommandsWorkAsPrinted) {
     if (!not_run.empty()) GTEST_SKIP() << not_run;
 }
 
-// A command with a file belongs into a block, where it is run; a mention may only name options that there
-// are.
+// A command with a file belongs into a block, where it is run; a mention may only name options that there are.
 TEST_P(Docs, MentionsOfTheProgramAreRight) {
     static std::map<std::string, std::string> helps;
     const std::regex span("`(?:build/release/)?carom ([a-z]+)([^`]*)`"), option("--[a-z][a-z-]*");

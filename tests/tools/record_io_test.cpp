@@ -44,8 +44,8 @@ struct FieldsOfARecord {
 static_assert(sizeof(Record) == sizeof(FieldsOfARecord),
               "Record has another field: see the comment above, record files have to keep it");
 
-// Every value differs from its neighbours and from what a struct begins with, so that one which is lost or
-// swapped shows.
+// Every value differs from its neighbours and from what a struct
+// begins with, so that one which is lost or swapped shows.
 void expect_unusual(std::vector<double> values) {
     for (const double value : values) EXPECT_NE(value, 0.0);
     std::sort(values.begin(), values.end());

@@ -49,9 +49,8 @@ void wipe_line() {
     if (g_line_stands.exchange(false)) std::fputs("\r\033[K", stderr);
 }
 
-/// That the terminal has for the line, now: people pull at its corner. What does not say is as wide as
-/// terminals were. A line that reaches the edge would be two, and only one is wiped; Ctrl-C shows as "^C"
-/// behind it.
+/// That the terminal has for the line, now: people pull at its corner. What does not say is as wide as terminals
+/// were. A line that reaches the edge would be two, and only one is wiped; Ctrl-C shows as "^C" behind it.
 std::size_t columns() {
     struct winsize size {};
     constexpr std::size_t kUsual = 80, kFree = 3;

@@ -1,5 +1,4 @@
-// What every sub-command shares at the edge to the person or program that called it: output, progress,
-// interruption.
+// What every sub-command shares at the edge to the person or program that called it: output, progress, interruption.
 #pragma once
 
 #include <chrono>

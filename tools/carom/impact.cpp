@@ -15,8 +15,8 @@
 namespace carom::tools {
 namespace {
 
-/// Lines of standard input, of bounded length. Not std::getline: that neither returns on SIGINT nor stops at
-/// a length.
+/// Lines of standard input, of bounded length. Not std::getline:
+/// that neither returns on SIGINT nor stops at a length.
 class LineReader {
   public:
     enum class Got : unsigned char { kLine, kTooLong, kEnd };

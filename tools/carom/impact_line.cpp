@@ -1,5 +1,5 @@
-// One line of carom impact: JSON in, JSON out. Keys are those of the design, section 7, and "id", which is
-// handed back.
+// One line of carom impact: JSON in, JSON out. Keys are those
+// of the design, section 7, and "id", which is handed back.
 #include "impact_line.h"
 
 #include <fmt/core.h>

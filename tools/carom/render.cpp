@@ -136,8 +136,7 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
 // A record that was not profiled has no costs: then the bar shows drawing, reading back and encoding alone.
 void set_simulation_costs(const Record& record, render::SequenceOptions& options) {
     if (record.costs.empty()) return;
-    // Frames before the first and after the last take the events there, which are none of those that are
-    // shown.
+    // Frames before the first and after the last take the events there, which are none of those that are shown.
     const double before = std::ceil(options.from * options.fps);
     const auto first = static_cast<long>(before);
     const long frames = render::frame_count(options.from, options.to.value_or(record.duration), options.fps);

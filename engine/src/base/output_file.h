@@ -9,8 +9,8 @@ namespace carom {
 
 /// Every failure is a std::runtime_error that names the file and the reason.
 ///
-/// What is not a regular file (/dev/null, a named pipe) is written to directly: renaming would replace the
-/// device itself.
+/// What is not a regular file (/dev/null, a named pipe) is
+/// written to directly: renaming would replace the device itself.
 class OutputFile {
   public:
     explicit OutputFile(std::string path);

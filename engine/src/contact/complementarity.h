@@ -19,9 +19,8 @@ struct Complementarity {
     /// Block principal pivoting: exchange all that is infeasible while their number falls, else one by least
     /// index (Murty's rule), which ends for every P-matrix (Judice and Pires, "A block principal pivoting
     /// algorithm for large-scale strictly monotone linear complementarity problems", 1994). The diagonal is
-    /// raised by kContactSoftness of itself, so that contacts more than a group needs (a ball in three of
-    /// them) share their load evenly and have one answer; refinement takes its effect out again, down to
-    /// rounding.
+    /// raised by kContactSoftness of itself, so that contacts more than a group needs (a ball in three of them)
+    /// share their load evenly and have one answer; refinement takes its effect out again, down to rounding.
     /// @return false if no answer was found within the bound on pivots (A is no P-matrix); z is then 0
     bool solve();
 

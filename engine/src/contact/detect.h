@@ -24,8 +24,8 @@ struct Path {
 /// rounding noise of the projection, not an approach.
 inline constexpr double kClosingUlp = 8.0;
 
-/// Time until the centres of two balls come within `reach` (R1 + R2) while closing; kNever if not within both
-/// horizons.
+/// Time until the centres of two balls come within `reach`
+/// (R1 + R2) while closing; kNever if not within both horizons.
 double time_to_ball(const Path& ball1, const Path& ball2, double reach);
 
 /// Time until the centre comes within `reach` of a fixed point while closing.
@@ -61,10 +61,9 @@ inline double least(double c, double b, double a, double T) {
     return low - kTermShare * (std::abs(c) + std::abs(linear) + std::abs(square));
 }
 
-/// Whether a relative motion stays out of reach on [0, window], by a margin far above rounding: then the
-/// functions above would find nothing there. No root, no division by a length; false where a look is needed.
-/// Two projections bound the distance from below: on the direction to the other centre now, and across the
-/// relative velocity.
+/// Whether a relative motion stays out of reach on [0, window], by a margin far above rounding: then the functions
+/// above would find nothing there. No root, no division by a length; false where a look is needed. Two projections
+/// bound the distance from below: on the direction to the other centre now, and across the relative velocity.
 inline bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reach, double window) {
     if (!(window >= 0.0)) return true;
     const double far = reach * (1.0 + kApartShare);

@@ -39,8 +39,7 @@ void HeldSolver::run() {
     solve_forces(0.0);
     if (hold_returning()) solve_forces(0.0);
     for (Link& link : links_) link.pressed = link.N > 0.0;
-    // The normal turns while the balls move across each other; a margin keeps the third order from
-    // penetrating.
+    // The normal turns while the balls move across each other; a margin keeps the third order from penetrating.
     const double turning = turning_interval();
     if (turning < kNever) solve_forces(turning);
     double longest = kNever, interval = write_segments(longest, Opening::kIgnored);
@@ -136,9 +135,8 @@ bool HeldSolver::any_deep() const {
                        [](const Link& l) { return !l.open && l.depth > kHoldDepth; });
 }
 
-// A contact ends once its gap opens by more than rounding: never at the same instant as it began, so that no
-// contact can come and go without end. One without force that does not open (balls at rest, or that roll
-// alike) stays.
+// A contact ends once its gap opens by more than rounding: never at the same instant as it began, so that no contact
+// can come and go without end. One without force that does not open (balls at rest, or that roll alike) stays.
 void HeldSolver::mark_released() {
     for (std::size_t c = 0; c < links_.size(); ++c) {
         group_.contacts[c].force = links_[c].N;

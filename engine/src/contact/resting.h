@@ -15,8 +15,7 @@
 
 namespace carom {
 
-/// Whether a contact that closes at v_n [m/s] while pressed together with a_c [m/s^2] is held instead of
-/// bouncing.
+/// Whether a contact that closes at v_n [m/s] while pressed together with a_c [m/s^2] is held instead of bouncing.
 bool holds(double v_n, double a_c, double restitution);
 
 /// Speed that counts as none in a held group [m/s]: what rounding makes of the velocities in a few sums of
@@ -60,8 +59,7 @@ struct HeldSurroundings {
 /// marked released; one without force that does not open stays.
 void solve_held(HeldGroup& group, const HeldSurroundings& around, const MotionParams& motion, double now);
 
-/// Time until the foot point of a ball that runs along a cushion passes the cushion's end; 0 if it is leaving
-/// it now.
+/// Time until the foot point of a ball that runs along a cushion passes the cushion's end; 0 if it is leaving it now.
 double time_to_line_end(const CushionLine& line, const Segment& segment);
 
 /// The state of a member at its own transition (slip gone, stopped, spin gone), in place.

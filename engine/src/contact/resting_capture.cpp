@@ -10,8 +10,7 @@ namespace carom {
 
 namespace {
 
-// [-] A held contact that opens at some rate is closed only if no ball changes by more than this many times
-// the rate.
+// [-] A held contact that opens at some rate is closed only if no ball changes by more than this many times the rate.
 constexpr double kStickyShare = 10.0;
 
 }  // namespace

@@ -195,8 +195,7 @@ bool HeldSolver::drop_margins(const std::vector<std::size_t>& active) {
     return any;
 }
 
-// Margins can ask for what a wedge cannot give, and friction can leave no answer at all (Painleve): then
-// without.
+// Margins can ask for what a wedge cannot give, and friction can leave no answer at all (Painleve): then without.
 bool HeldSolver::solve_contacts() {
     const bool margins =
         std::any_of(links_.begin(), links_.end(), [](const Link& l) { return l.margin != 0.0; });

@@ -29,8 +29,7 @@ constexpr double kHoldTicks = 8.0;
 // [-] A slip or velocity that turns ends where it is nearest to nothing, if it comes as near as this share
 // of itself; else it only turns.
 constexpr double kHoldEnds = 0.5;
-// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the
-// straight line.
+// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the straight line.
 constexpr double kHoldStraight = 1e-9;
 
 // Longest time up to kHoldLongest at which `error` is at most `allowed`, in steps of a fifth.
@@ -170,8 +169,7 @@ double HeldSolver::opening_interval(const Link& link) const {
     return std::max(told, std::min(started, std::sqrt(2.0 * kHoldGap / opening)));
 }
 
-// A normal that turns without its margin (there was no room for it) closes the gap with the third power of
-// the time.
+// A normal that turns without its margin (there was no room for it) closes the gap with the third power of the time.
 double HeldSolver::bare_interval(std::size_t c, double interval) const {
     const Link& link = links_[c];
     Vec2 t;

@@ -1,6 +1,5 @@
-// First time at which a distance falls to zero. Bracketing only: no complex root, no epsilon on an imaginary
-// part. Hard cases, section 2 (derivative cascade after Yuksel, HPG 2022; stable rule after Bannerman et al.,
-// 2014).
+// First time at which a distance falls to zero. Bracketing only: no complex root, no epsilon on an imaginary part.
+// Hard cases, section 2 (derivative cascade after Yuksel, HPG 2022; stable rule after Bannerman et al., 2014).
 #pragma once
 
 #include <limits>
@@ -9,10 +8,10 @@ namespace carom {
 
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// f(t) = c[0] + c[1] t + ... + c[4] t^4 on [0, T], T finite.
-/// Returns the first t > 0 at which f, having been > 0, reaches 0 from above (f(t) >= 0 at the returned time
-/// up to rounding); where f starts at <= 0 (touching and not closing), also a later maximum at which f, still
-/// <= 0, turns down again. kNever if there is none.
+/// f(t) = c[0] + c[1] t + ... + c[4] t^4 on [0, T], T finite. Returns the first t > 0
+/// at which f, having been > 0, reaches 0 from above (f(t) >= 0 at the returned time
+/// up to rounding); where f starts at <= 0 (touching and not closing), also a later
+/// maximum at which f, still <= 0, turns down again. kNever if there is none.
 double first_descent(const double (&c)[5], double T);
 
 /// The same for h0 + h1 t + h2 t^2 / 2 (T may be infinite): the root at which it

@@ -30,8 +30,7 @@ class BoxSearch {
 
     void place(int index, const Box& box);
     void remove(int index);
-    /// Call between placing and searching: now and then, blocks are formed anew of what has become
-    /// neighbours.
+    /// Call between placing and searching: now and then, blocks are formed anew of what has become neighbours.
     void settle() {
         if (tree_ && --until_rebuild_ <= 0) rebuild();
     }

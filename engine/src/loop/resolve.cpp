@@ -12,8 +12,7 @@ namespace carom {
 
 namespace {
 
-// [-] Rounds of the loop in a row that changed directions of sustained contacts but brought no event: as
-// bad.
+// [-] Rounds of the loop in a row that changed directions of sustained contacts but brought no event: as bad.
 constexpr int kQuietCap = 1000000;
 
 }  // namespace
@@ -163,8 +162,7 @@ void Shot::resolve_nose(const Candidate& c) {
         fail(fmt::format("the cushion model {} found no solution for the impact of ball {}; use another one",
                          model.name, record_.tracks[c.a].id));
     const Segment after = start_segment(now_, r, v, w, motion_of(c.a));
-    // A ball that rolls in slowly is braked; what brings it back, and ends the bounce, is the spin that it
-    // keeps.
+    // A ball that rolls in slowly is braked; what brings it back, and ends the bounce, is the spin that it keeps.
     if (holds(v_n, motion_of(c.a).slide, p.e_c) && hold_instead(contact, v_n, pressing(after.a), p.e_c))
         return;
     if constexpr (kProfile) cost_.method = model.name;

@@ -30,9 +30,8 @@ bool Shot::held_to(int ball, int cushion, int nose) const {
 }
 
 // Captures the contact if a bounce would be over before the contact itself is; if a held ball closes by no
-// more than the rounding of the velocities that hold; or if the same contact has bounced again and again in
-// no time, as in a wedge whose sides take the speed out of each other: the limit of such a row is the
-// capture.
+// more than the rounding of the velocities that hold; or if the same contact has bounced again and again in no
+// time, as in a wedge whose sides take the speed out of each other: the limit of such a row is the capture.
 bool Shot::hold_instead(const HeldContact& contact, double v_n, double a_c, double restitution) {
     const bool rounding =
         (is_held(contact.i) || (contact.j >= 0 && is_held(contact.j))) && v_n <= rounding_of_held(contact);
@@ -162,8 +161,7 @@ void Shot::solve_group(int ball, Transitions transitions) {
     }
 }
 
-// What ended, if it did: a ball that the group drives on at once has not stopped, and slips on without an
-// event.
+// What ended, if it did: a ball that the group drives on at once has not stopped, and slips on without an event.
 void Shot::record_transitions(const HeldGroup& group) {
     for (const HeldBall& member : group.balls) {
         const Segment& s = now_of(member.ball);

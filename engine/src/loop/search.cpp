@@ -39,8 +39,7 @@ void extend(double r, double v, double a, double T, double margin, double& low, 
 
 }  // namespace
 
-// Where the ball's surface can be from the time `from` until `duration` later; the share keeps rounding
-// inside.
+// Where the ball's surface can be from the time `from` until `duration` later; the share keeps rounding inside.
 Box Shot::swept(int ball, double from, double duration) const {
     const Segment& s = now_of(ball);
     const Vec3 r = position_at(s, from - s.start), v = velocity_at(s, from - s.start);

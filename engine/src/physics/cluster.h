@@ -39,8 +39,7 @@ struct ClusterSettings {
     kernel::ContactPhaseFunction integrate;
 };
 
-/// Duration of a Hertz contact at the approach speed V, t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation
-/// 5).
+/// Duration of a Hertz contact at the approach speed V, t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation 5).
 double contact_time(double V);
 
 /// L = (V^2 m / k)^0.4 [m] with kContactStiffness.

@@ -14,8 +14,7 @@
 namespace carom {
 namespace {
 
-// [-] Margin on how far a ball can go when the plan decides what it can reach; far above the rounding of the
-// bound.
+// [-] Margin on how far a ball can go when the plan decides what it can reach; far above the rounding of the bound.
 constexpr double kReachMargin = 1e-9;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();

@@ -66,8 +66,7 @@ std::string unescaped(std::string_view token) {
     return Json::parse(token).get<std::string>();
 }
 
-/// Where in the text a byte stands. A NUL or a newline more or less does not matter: this is for a person's
-/// editor.
+/// Where in the text a byte stands. A NUL or a newline more or less does not matter: this is for a person's editor.
 SourceLocation location(std::string_view text, std::size_t byte) {
     SourceLocation where{1, 1};
     for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {

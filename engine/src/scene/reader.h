@@ -1,5 +1,4 @@
-// A typed reader over toml++: every value is checked where it is read, and every error names its place in the
-// file.
+// A typed reader over toml++: every value is checked where it is read, and every error names its place in the file.
 #pragma once
 
 #include <toml++/toml.h>
@@ -42,8 +41,7 @@ using carom::in_quotes;
 
 SourceLocation place(const toml::node& node);
 
-/// Reads one table of the file. `path` names it in messages ("cue", "table.cushion"); the file as a whole is
-/// "".
+/// Reads one table of the file. `path` names it in messages ("cue", "table.cushion"); the file as a whole is "".
 class Section {
   public:
     /// @throws SceneError for a key that is not in `keys`

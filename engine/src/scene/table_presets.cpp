@@ -58,9 +58,8 @@ PocketTable seven_foot() {
 /// specifications allow (corner 4.5 to 4.625 in, side 5 to 5.125 in), and so are the angles between rail and
 /// facing (corner 142, side 104 degrees; here they count from 135 and from 90). The nose, at 64 % of the
 /// ball's diameter, lies within their 62.5 to 64.5 %. The numbers of the WPA are recalled, not read again for
-/// this table. Carried over from the seven-foot table: cushion width,
-/// jaw radii, pocket radii and depths; they give shelves of 37.6 mm in the corners and 4 mm at the sides
-/// (specified: 25 to 57 mm, 0 to 9.5 mm).
+/// this table. Carried over from the seven-foot table: cushion width, jaw radii, pocket radii and depths;
+/// they give shelves of 37.6 mm in the corners and 4 mm at the sides (specified: 25 to 57 mm, 0 to 9.5 mm).
 PocketTable nine_foot() {
     PocketTable t = seven_foot();
     t.length = 2.54;
@@ -111,8 +110,8 @@ PocketTable snooker_table() {
 /// The parts of one quarter of the table, in the frame of its corner: x and y from the corner into the table,
 /// the pocket at the origin. The other quarters are its mirror images.
 struct Quarter {
-    Vec2 short_jaw, short_tip,
-        short_back;  ///< on the short rail: jaw centre, facing at the nose, facing at the back
+    /// On the short rail: jaw centre, facing at the nose, facing at the back
+    Vec2 short_jaw, short_tip, short_back;
     Vec2 long_jaw, long_tip, long_back;  ///< the same on the long rail
     Vec2 side_jaw, side_tip, side_back;  ///< on the long rail, at the side pocket
 };
@@ -250,8 +249,7 @@ Table make_table(std::string_view preset) {
 
 BallParams make_ball_params(std::string_view preset) {
     BallParams p{};
-    // Pool: sources and measured ranges in docs/physics.md; the frictions and restitutions serve all three
-    // presets.
+    // Pool: sources and measured ranges in docs/physics.md; the frictions and restitutions serve all three presets.
     p.R = 0.028575;
     p.m = 0.170097;
     p.mu_s = 0.2;

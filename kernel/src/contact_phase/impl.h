@@ -31,8 +31,7 @@ struct Work {
     int balls, contacts;
     int rows, lanes;  // sizes of the arrays per ball and per contact
     // Per ball a row (v_x, R w_x, v_y, R w_y | -, R w_z, -, -): the state, its stages and their slopes. In a
-    // slope the fifth number is the sum of the vertical forces, the eighth minus the sum of friction over
-    // slip.
+    // slope the fifth number is the sum of the vertical forces, the eighth minus the sum of friction over slip.
     double *y, *y_stage, *dy[kStages];
     // Per contact.
     double *d, *d_stage, *rate[kStages], *nx, *ny, *memory;
@@ -266,8 +265,7 @@ CAROM_INLINE double step(Work& w, const Law& law, double longest) {
 // The largest overlap inside a step in which a contact turned back, from the cubic Hermite interpolant:
 // without it the energy of each contact carries an error of order h^2.
 CAROM_INLINE double peak(double before, double after, double m0, double m1) {
-    // d(s) = d0 + m0 s + (3 rise - 2 m0 - m1) s^2 + (m0 + m1 - 2 rise) s^3; its slope falls from m0 > 0 to m1
-    // < 0.
+    // d(s) = d0 + m0 s + (3 rise - 2 m0 - m1) s^2 + (m0 + m1 - 2 rise) s^3; its slope falls from m0 > 0 to m1 < 0.
     const double rise = after - before, q2 = 3.0 * rise - 2.0 * m0 - m1, q3 = m0 + m1 - 2.0 * rise;
     const double s = m0 / (__builtin_sqrt(largest(0.0, q2 * q2 - 3.0 * q3 * m0)) - q2);
     return s > 0.0 && s < 1.0 ? before + s * (m0 + s * (q2 + s * q3)) : 0.0;

@@ -1,7 +1,6 @@
 // Batches by tolerance: easy impacts in lanes, harder ones compacted into lanes of 8 nodes, those that need
-// stretches in lanes that take up the next impact as soon as one is through; special cases one at a time.
-// Built once per instruction set, together with the single kernel; CAROM_TOLERANCE_BATCH_NAME is the
-// function's name.
+// stretches in lanes that take up the next impact as soon as one is through; special cases one at a time. Built
+// once per instruction set, together with the single kernel; CAROM_TOLERANCE_BATCH_NAME is the function's name.
 #pragma once
 
 #include "tolerance/batch_lanes.h"

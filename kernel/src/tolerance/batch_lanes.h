@@ -98,8 +98,7 @@ CAROM_INLINE WideMask wide_enter(const Wide (&in)[kInputs], WideFrame& f) {
         ((magnitude(f.x1) + magnitude(f.y1)) + (magnitude(f.x2) + magnitude(f.y2))) +
         in[kRadius] * ((magnitude(f.wx1) + magnitude(f.wy1)) + (magnitude(f.wz1) + magnitude(f.wx2)) +
                        (magnitude(f.wy2) + magnitude(f.wz2)));
-    // Lanes of an extreme range of speeds go to the single kernel, which knows where an impact ends to be
-    // one.
+    // Lanes of an extreme range of speeds go to the single kernel, which knows where an impact ends to be one.
     return (wrong == 0.0) & (d > 0.0) & (magnitude(dz) <= kHeightTolerance * d) & (in[kRadius] > 1e-100) &
            (in[kMass] > 0.0) & (in[kMuS1] >= 0.0) & (in[kMuS2] >= 0.0) & (in[kMuB] > 0.0) &
            (in[kMuS1] <= kLargestFriction) & (in[kMuS2] <= kLargestFriction) &

@@ -2,14 +2,12 @@
 //
 // Legend (docs/kernel_tolerance.md): everything is per mass and scaled by the approach speed. s = (x, z) slip
 // between the balls, z >= 0; u = (a, b) slip of the active ball on the cloth; p normal impulse; v normal
-// velocity, -1 at the start; xi = mu_b x/|s|, zeta = mu_b z/|s|, g_a = mu_s zeta a/|u|, g_b = mu_s zeta
-// b/|u|;
+// velocity, -1 at the start; xi = mu_b x/|s|, zeta = mu_b z/|s|, g_a = mu_s zeta a/|u|, g_b = mu_s zeta b/|u|;
 //
 //     x' = -7 xi + g_a   z' = -5 zeta + 5/2 g_b   a' = xi - kappa g_a   b' = 1 - sigma zeta - kappa g_b   v'
 //     = 2 - g_b
 //
-// with sigma and kappa = 1 - sigma: (-5/2, 7/2) for the consistent sign of the cloth slip, (5/2, -3/2) as
-// published.
+// with sigma and kappa = 1 - sigma: (-5/2, 7/2) for the consistent sign of the cloth slip, (5/2, -3/2) as published.
 #pragma once
 
 #include "frame.h"
@@ -158,8 +156,7 @@ CAROM_INLINE double late_share(const Lanes<K>& f) {
 }
 
 // The impulse at which the stretch ends, from the cloth force at its nodes. Compression ends where v = 0,
-// restitution where the work of the normal impulse is e_b^2 times that of compression; both by quadrature of
-// g_b.
+// restitution where the work of the normal impulse is e_b^2 times that of compression; both by quadrature of g_b.
 template <int K, End kEnd>
 CAROM_INLINE void find_end(const Model& m, const State& start, const Lanes<K>& g_b, const EndRows<K>& rows,
                            Stretch& stretch) {
@@ -186,8 +183,8 @@ struct Nodes {
     Lanes<K> xi, zeta, g_a, g_b;  // the forces
 };
 
-// Forces at the nodes. `exact`: fresh reciprocal roots; otherwise the old ones are corrected by one cubic
-// Newton step.
+// Forces at the nodes. `exact`: fresh reciprocal roots;
+// otherwise the old ones are corrected by one cubic Newton step.
 template <int K, bool kExact>
 CAROM_INLINE V4 forces(const Model& m, Nodes<K>& n) {
     V4 worst = all(0.0);
@@ -256,9 +253,8 @@ CAROM_INLINE void add_stretch(const Model& m, const Impulses& t, State& state, I
     total.g_b += t.g_b;
 }
 
-// Solves one stretch. False if the sweeps do not converge; then nothing has changed but `stretch.h`.
-// The roots of the first `exact` sweeps are fresh, those of later ones carried; `root_s` is 1/|s| at the
-// start.
+// Solves one stretch. False if the sweeps do not converge; then nothing has changed but `stretch.h`. The
+// roots of the first `exact` sweeps are fresh, those of later ones carried; `root_s` is 1/|s| at the start.
 template <int K, End kEnd>
 CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stretch& stretch, double root_s,
                             int exact) {
@@ -277,8 +273,8 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
     }
     forces<K, true>(m, n);
     const double reach = 7.0 * m.mu_b * stretch.h;
-    // A change of the slips leaves an error of contraction * change behind the next forces, and those act
-    // over `reach`.
+    // A change of the slips leaves an error of contraction * change
+    // behind the next forces, and those act over `reach`.
     V4 tight = n.root_s.v[0] * n.root_s.v[0] + all(m.mu_s * m.mu_s) * (n.root_u.v[0] * n.root_u.v[0]);
     if constexpr (K == 2) {
         tight += n.root_s.v[1] * n.root_s.v[1] + all(m.mu_s * m.mu_s) * (n.root_u.v[1] * n.root_u.v[1]);

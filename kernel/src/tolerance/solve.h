@@ -1,5 +1,5 @@
-// Which method solves an impact, and the intervals of those that no single collocation solves.
-// Legend: tolerance_collocation.h.
+// Which method solves an impact, and the intervals of those that
+// no single collocation solves. Legend: tolerance_collocation.h.
 #pragma once
 
 #include "carom/kernel/tolerance.h"

@@ -1,8 +1,7 @@
 // One collocation of many impacts at once: a lane is an impact, the nodes stand in arrays.
 //
-// Legend: tolerance_collocation.h. A lane sees only its own numbers, so that its bits depend neither on the
-// width of the registers nor on its neighbours: each keeps the impulses of the sweep at which it converged
-// itself.
+// Legend: tolerance_collocation.h. A lane sees only its own numbers, so that its bits depend neither on the width
+// of the registers nor on its neighbours: each keeps the impulses of the sweep at which it converged itself.
 #pragma once
 
 #include "tolerance/collocation.h"
@@ -340,8 +339,7 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
         const Wide change = wide_slips<N>(m, start, h, n);
         Wide p_c;
         const Wide h_new = wide_find_end<N>(m, n.g_b, rows, p_c), dh = h_new - h;
-        // Rows are set anew in the lanes where that matters; the others keep theirs, whatever their
-        // neighbours do.
+        // Rows are set anew in the lanes where that matters; the others keep theirs, whatever their neighbours do.
         const WideMask moved = open & (magnitude(t_c - rows.t) * m.mu_b * m.mu_s > kRowsGoal * tolerance);
         if (any(moved)) wide_set_rows<N>(choose(moved, t_c, rows.t), rows);
         t_c = 2.0 * p_c / h_new - 1.0;

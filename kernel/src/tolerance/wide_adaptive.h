@@ -1,7 +1,6 @@
 // One stretch of many impacts at once, as collocate() does for one. Legend: tolerance_collocation.h.
 //
-// A lane sees only its own numbers: its bits depend neither on the width of the registers nor on its
-// neighbours.
+// A lane sees only its own numbers: its bits depend neither on the width of the registers nor on its neighbours.
 #pragma once
 
 #include "tolerance/wide.h"

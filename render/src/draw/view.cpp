@@ -11,8 +11,7 @@ std::array<float, 3> to_float(const Vec3& v) {
     return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-// Near and far planes around everything that can be seen, as tight as the eye's distance from the table
-// allows.
+// Near and far planes around everything that can be seen, as tight as the eye's distance from the table allows.
 std::array<double, 2> clip_planes(const Camera& camera, const TableMesh& table) {
     const Vec3 low(table.bounds.low.x(), table.bounds.low.y(), -0.3);
     const Vec3 high(table.bounds.high.x(), table.bounds.high.y(), table.bounds.top + 0.1);

@@ -132,8 +132,7 @@ class FrameLoop {
         return stage_.at(frames_[i].time, cost);
     }
 
-    // The time that the frame itself takes is not known while it is drawn: that of frames just before stands
-    // for it.
+    // The time that the frame itself takes is not known while it is drawn: that of frames just before stands for it.
     double last_cost_ms(std::size_t i) {
         const double encode_ms = writer_.last_encode_ms();
         // With threads, frame i - 1 is not read back yet.

@@ -1,5 +1,5 @@
-// A shared library opened at run time and kept open: drivers register thread-exit handlers, so closing one is
-// not safe.
+// A shared library opened at run time and kept open: drivers
+// register thread-exit handlers, so closing one is not safe.
 #pragma once
 
 #include <string>

@@ -161,8 +161,7 @@ CameraPath::CameraPath(const Record& record, const TableMesh& table, const std::
 
 Camera CameraPath::at(double t) const {
     if (follow_ball_ < 0) return fixed_;
-    // A raised cosine over the ball's past and future: the camera starts before the ball does and never
-    // jerks.
+    // A raised cosine over the ball's past and future: the camera starts before the ball does and never jerks.
     Vec3 sum = Vec3::Zero();
     double weights = 0.0;
     for (int i = -kFollowSteps; i <= kFollowSteps; ++i) {

@@ -9,12 +9,10 @@ namespace carom::render {
 
 namespace {
 
-// [m] Ends closer than this are drawn as joined: far below a pixel, far above the rounding of typed
-// coordinates.
+// [m] Ends closer than this are drawn as joined: far below a pixel, far above the rounding of typed coordinates.
 constexpr double kJoin = 1e-5;
 
-// [m] An end lies on a jaw when it is this close to its circle: tangent points typed with four decimals
-// count.
+// [m] An end lies on a jaw when it is this close to its circle: tangent points typed with four decimals count.
 constexpr double kOnJaw = 2e-4;
 
 // [rad] Length of one straight piece of a drawn arc.

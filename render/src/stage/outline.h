@@ -23,8 +23,7 @@ double signed_area(const std::vector<Vec2>& polygon);
 
 bool contains(const std::vector<Vec2>& polygon, const Vec2& point);
 
-/// Every vertex moved `distance` to the left of the line, mitred (the mitre limited to three times the
-/// distance).
+/// Every vertex moved `distance` to the left of the line, mitred (the mitre limited to three times the distance).
 std::vector<Vec2> offset_left(const std::vector<Vec2>& points, bool closed, double distance);
 
 /// Triangles (index triples) of a simple polygon by ear clipping; runs counter-clockwise.

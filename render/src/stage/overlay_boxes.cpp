@@ -15,8 +15,7 @@ namespace {
 constexpr Rgba kPanel{0.0F, 0.0F, 0.0F, 0.60F};
 constexpr Rgba kInk{0.97F, 0.97F, 0.95F, 1.0F};
 
-// Height of a capital: readable on a small frame, not large on a big one, and both panels fit beside each
-// other.
+// Height of a capital: readable on a small frame, not large on a big one, and both panels fit beside each other.
 double text_height(const DrawList& list) {
     return std::clamp(std::min(list.camera.size.height / 48.0, list.camera.size.width / 36.0), 5.0, 28.0);
 }

@@ -5,8 +5,7 @@
 
 namespace carom::render {
 
-/// Adds the marks of a preset (none to a custom outline). rail: distance of the diamonds from the nose line
-/// [m].
+/// Adds the marks of a preset (none to a custom outline). rail: distance of the diamonds from the nose line [m].
 void add_table_marks(const Table& table, TableMesh& mesh, MeshBuilder& builder, double rail);
 
 }  // namespace carom::render

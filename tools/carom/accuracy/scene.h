@@ -69,8 +69,7 @@ double gain_of(const Plan& plan, const Record& record);
 /// The loosest power of ten that keeps gain x tolerance x kFlight within the target; nothing where that is
 /// below the tightest tolerance, which is where double precision ends.
 std::optional<double> deserved_tolerance(double gain, double target);
-/// [m] An impact that errs by the share t of the speed errs by t times the way to the next one: up to about
-/// this.
+/// [m] An impact that errs by the share t of the speed errs by t times the way to the next one: up to about this.
 inline constexpr double kFlight = 1.0;
 
 /// A plan of the same scene with another setting; exactly one of the two.

@@ -362,8 +362,7 @@ KernelBench measure_kernel(const BenchOptions& options) {
     bench.random = options.random;
     bench.cycle_ns = cycle_ns();
     bench.probe_ns = cost_of_a_probe();
-    // The baseline is the v3 build where there is one, also under CAROM_ISA=scalar or v4: all ratios mean the
-    // same.
+    // The baseline is the v3 build where there is one, also under CAROM_ISA=scalar or v4: all ratios mean the same.
     TimedKernel baseline;
     const Isa baseline_isa = available(Isa::kV3) ? Isa::kV3 : Isa::kScalar;
     bench.baseline_isa = name(baseline_isa);

@@ -29,8 +29,7 @@ struct FrameCost {
 /// counts for frame 0. Nothing is lost: the sums over all frames are the sums over all events.
 std::vector<FrameCost> costs_by_frame(const Record& record, double from, double fps, long frames);
 
-/// Percentile by nearest rank: the smallest value such that at least p percent of all values are not above
-/// it.
+/// Percentile by nearest rank: the smallest value such that at least p percent of all values are not above it.
 /// @param sorted  ascending, not empty   @param p  0..100
 double percentile(const std::vector<double>& sorted, double p);
 

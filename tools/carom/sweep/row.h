@@ -19,8 +19,7 @@ struct SweepRow {
     ShotOutcome outcome;
 };
 
-/// `shot,KEY...,outcome,duration,events,first_contact,pocketed,ID.x,ID.y,ID.pocket...,message`, with a line
-/// end.
+/// `shot,KEY...,outcome,duration,events,first_contact,pocketed,ID.x,ID.y,ID.pocket...,message`, with a line end.
 std::string sweep_header(const Variation& variation);
 
 /// Runs one shot. Invalid values and a failing simulation make a row too, with empty results and a message.

@@ -39,9 +39,8 @@ struct BallBallModelInfo {
 const BallBallModelInfo& ball_ball_model(BallBallModel model);
 
 /// Two balls of different size. The planar model holds both to the cloth: the horizontal velocities along the
-/// line of centres part at e_b times the approach, whatever the tilt of that line. Friction is known for
-/// equal radii only: mu_b must be 0 where the radii differ. Equations: docs/physics.md, "Balls of different
-/// size".
+/// line of centres part at e_b times the approach, whatever the tilt of that line. Friction is known for equal
+/// radii only: mu_b must be 0 where the radii differ. Equations: docs/physics.md, "Balls of different size".
 ///
 /// @param params  R and m are not read
 void collide_unequal(const BallSize& size1, const BallSize& size2, const kernel::Ball& ball1,

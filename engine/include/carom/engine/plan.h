@@ -50,12 +50,11 @@ struct Plan {
     const BallBallModelInfo* ball_ball = nullptr;
     BallBallSettings impact;
     kernel::ContactPhaseFunction contact_phase = nullptr;  ///< of compliant clusters
-    ClusterModel clusters =
-        ClusterModel::kSequential;  ///< kSequential where fewer than three balls leave nothing to decide
+    /// KSequential where fewer than three balls leave nothing to decide
+    ClusterModel clusters = ClusterModel::kSequential;
     Search ball_search = Search::kDirect;   ///< among balls
     Search table_search = Search::kDirect;  ///< among cushions, noses and pockets
-    /// [ball radii] Way that a ball's box covers before it is renewed; infinite: until the ball's next own
-    /// event.
+    /// [ball radii] Way that a ball's box covers before it is renewed; infinite: until the ball's next own event.
     double box_travel = std::numeric_limits<double>::infinity();
     std::vector<std::string> warnings;  ///< one sentence each, for stderr
 };

@@ -1,5 +1,5 @@
-// Record: what happened. Per ball a list of closed-form motion segments, plus the ordered events. Immutable
-// once made.
+// Record: what happened. Per ball a list of closed-form motion
+// segments, plus the ordered events. Immutable once made.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -96,8 +96,8 @@ struct BallState {
 
 struct BallTrack {
     std::string id;
-    std::vector<Segment>
-        segments;  ///< ordered by start; a later one with the same start replaces the earlier
+    /// Ordered by start; a later one with the same start replaces the earlier
+    std::vector<Segment> segments;
     int pocket = -1;
     std::optional<BallSize> own = std::nullopt;  ///< as BallStart::own
     bool operator==(const BallTrack&) const = default;
@@ -114,8 +114,8 @@ class Record {
     RenderSettings render;
     std::vector<BallTrack> tracks;
     std::vector<Event> events;
-    std::vector<std::vector<int>>
-        clusters;  ///< balls of every ball_cluster event, by position; a and b are the pair that met
+    /// Balls of every ball_cluster event, by position; a and b are the pair that met
+    std::vector<std::vector<int>> clusters;
     std::vector<EventCost> costs;  ///< empty, or one per event
     double setup_detect_ns = 0.0;  ///< profiled: first detection of all pairs
     double duration = 0.0;         ///< s

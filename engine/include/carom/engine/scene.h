@@ -52,8 +52,8 @@ struct BallParams {
     double e_b;    ///< ball-ball restitution
     double e_c;    ///< cushion restitution
     double f_c;    ///< cushion friction
-    /// Ball-ball friction that falls with the slip u [m/s]: mu_b + mu_b_more exp(-mu_b_fall u). 0: mu_b at
-    /// every speed.
+    /// Ball-ball friction that falls with the slip u [m/s]:
+    /// mu_b + mu_b_more exp(-mu_b_fall u). 0: mu_b at every speed.
     double mu_b_more = 0.0;
     double mu_b_fall = 0.0;  ///< [s/m]
     BallSize size() const { return {R, m}; }

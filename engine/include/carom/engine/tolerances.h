@@ -10,8 +10,8 @@ namespace carom {
 /// rounding of typed coordinates.
 inline constexpr double kTouchTolerance = 1e-12;
 
-/// [ulp of |v| + R |w|] A ball whose cloth slip is at most this is rolling: the rounding of computing the
-/// slip itself.
+/// [ulp of |v| + R |w|] A ball whose cloth slip is at most
+/// this is rolling: the rounding of computing the slip itself.
 inline constexpr double kRollingUlp = 8.0;
 
 /// [s] and [-] More events than this within one such span is an error with a dump, never a silent stop.

@@ -27,10 +27,9 @@ struct VariedShot {
 
 /// A scene file and the rules by which its values vary.
 ///
-/// A rule is KEY=DISTRIBUTION. KEY is written as in the file, with dots: cue.speed, balls.mu_b, rack.seed.
-/// One element of an array is named by its number from 0 or by its name (x, y, z; side, height):
-/// cue.offset.side. Balls go by their ids, parts of an outline by their names: ball.cue.position.x,
-/// table.pocket.p1.radius.
+/// A rule is KEY=DISTRIBUTION. KEY is written as in the file, with dots: cue.speed, balls.mu_b, rack.seed. One
+/// element of an array is named by its number from 0 or by its name (x, y, z; side, height): cue.offset.side.
+/// Balls go by their ids, parts of an outline by their names: ball.cue.position.x, table.pocket.p1.radius.
 ///
 ///   uniform(a,b)                a <= x < b
 ///   normal(sd), normal(mean,sd) without a mean, around the number in the file

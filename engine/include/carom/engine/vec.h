@@ -1,5 +1,4 @@
-// Vectors of the engine. Planar sums (x, y) are taken as Vec2 so that swapping the axes swaps nothing but
-// names.
+// Vectors of the engine. Planar sums (x, y) are taken as Vec2 so that swapping the axes swaps nothing but names.
 #pragma once
 
 #include <Eigen/Core>

@@ -14,9 +14,8 @@
 // driven. The two never stick together: that would stop the ball.
 //
 // The independent variable is the fall of v_y, from the approach speed (1, all velocities are relative to it)
-// to 0 and on until the work of restitution is e^2 times that of compression. Method: Dormand and Prince
-// 5(4) with the step that the last error asks for; steps end where a slip vanishes or a stuck contact lets
-// go.
+// to 0 and on until the work of restitution is e^2 times that of compression. Method: Dormand and Prince 5(4)
+// with the step that the last error asks for; steps end where a slip vanishes or a stuck contact lets go.
 #include <algorithm>
 #include <cmath>
 
@@ -172,9 +171,8 @@ class Impact {
         return steps_ < kLateSteps ? kLateStick : kLateStick * (1 << std::min(10, steps_ / kLateSteps));
     }
 
-    // Takes away what is left of the slip at a nose that sticks from now on, by the friction that would do
-    // it: when it does makes no difference to first order, because a stuck nose takes up the drive in
-    // between.
+    // Takes away what is left of the slip at a nose that sticks from now on, by the friction that would do it:
+    // when it does makes no difference to first order, because a stuck nose takes up the drive in between.
     void end_slip(const Vec2& slip) {
         const Vec2 mu = nose_hold_clamped() ? Vec2(0.0, 0.0) : Vec2(laws_.mu * laws_.c * cloth_direction_);
         const double q_y = slip.y() / (laws_.s * laws_.s + 2.5 + (2.5 - laws_.s) * mu.y());
@@ -210,16 +208,15 @@ class Impact {
         return (direction - was).squaredNorm();
     }
 
-    // Most that v_y may fall before a slip vanishes; a little less, so that its direction is still one at the
-    // end.
+    // Most that v_y may fall before a slip vanishes; a little less, so that its direction is still one at the end.
     double until_gone(const Vec2& slip, const Vec2& rate) const {
         const double size = norm(slip);
         const double closing = size > floor() ? -(slip.x() * rate.x() + slip.y() * rate.y()) / size : 0.0;
         return closing > 0.0 ? 0.95 * size / closing : 2.0;
     }
 
-    // One accepted step: v_y falls by at most `most` (0: no limit), the work stays at or below `target` (0:
-    // no limit).
+    // One accepted step: v_y falls by at most `most` (0: no
+    // limit), the work stays at or below `target` (0: no limit).
     void advance(double most, double target) {
         if (!known_) slope_ = slope(y_);
         double h = std::min(step_, 1.0);

@@ -22,8 +22,7 @@ inline double approach_speed(const Vec2& normal, const Vec3& v) {
     return -(v.x() * normal.x() + v.y() * normal.y());
 }
 
-/// The inclined contact of the models `impulse` and `stronge`: normal from the nose to the centre of the
-/// ball.
+/// The inclined contact of the models `impulse` and `stronge`: normal from the nose to the centre of the ball.
 struct NoseContact {
     Vec3 n;          ///< unit
     double u_n;      ///< normal contact velocity, < 0

@@ -26,8 +26,8 @@ struct ImpactParams {
     double mu_s1;  ///< sliding friction of ball 1 on the cloth, >= 0
     double mu_s2;  ///< sliding friction of ball 2 on the cloth, >= 0
     double mu_b;   ///< friction between the balls, >= 0
-    double
-        e_b;  ///< coefficient of restitution, 0..1 (mathavan: energetic, W_restitution = e_b^2 W_compression)
+    /// Coefficient of restitution, 0..1 (mathavan: energetic, W_restitution = e_b^2 W_compression)
+    double e_b;
     ClothSlip cloth_slip = ClothSlip::kConsistent;
 };
 
@@ -42,8 +42,7 @@ enum class ImpactStatus : unsigned char {
 /// What is wrong, in words; "" for kOk and kNotApproaching.
 const char* describe(ImpactStatus status) noexcept;
 
-/// How an impact by tolerance was solved (tolerance.h); kNone from every other kernel and where nothing was
-/// computed.
+/// How an impact by tolerance was solved (tolerance.h); kNone from every other kernel and where nothing was computed.
 enum class ToleranceMethod : unsigned char {
     kNone,
     kClosedFrictionless,  ///< no friction between the balls: one formula

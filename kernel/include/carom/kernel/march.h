@@ -30,8 +30,7 @@ MarchFunction march_function(Isa isa) noexcept;
 /// stick) it has its bits (docs/kernel.md). `isa` must be available.
 void collide_balls_batch(Isa isa, const ImpactBatch& batch, int n, const ImpactBatchResult& result) noexcept;
 
-/// An impact of v_n > 0 ends after N + 1 to about N + 31 steps; only degenerate parameters come near this
-/// bound.
+/// An impact of v_n > 0 ends after N + 1 to about N + 31 steps; only degenerate parameters come near this bound.
 inline constexpr long kMarchStepLimit = 64;
 
 }  // namespace carom::kernel

@@ -32,9 +32,8 @@ using ToleranceFunction = void (*)(const Ball& ball1, const Ball& ball2, const I
 /// The kernel built for one instruction set (which must be available). All give the same bits.
 ToleranceFunction tolerance_function(Isa isa) noexcept;
 
-/// Solves every impact of a batch; the bound holds for each. All instruction sets give the same bits,
-/// whatever the length of the batch and the place of an impact in it; they need not be the bits of
-/// ToleranceFunction.
+/// Solves every impact of a batch; the bound holds for each. All instruction sets give the same bits, whatever
+/// the length of the batch and the place of an impact in it; they need not be the bits of ToleranceFunction.
 using ToleranceBatchFunction = void (*)(const ImpactBatch& batch, double tolerance,
                                         const ImpactBatchResult& result) noexcept;
 

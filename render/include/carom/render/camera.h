@@ -1,5 +1,4 @@
-// A perspective camera. Lengths in m, table frame (z up). Pixels: x to the right, y down, pixel centres at
-// +0.5.
+// A perspective camera. Lengths in m, table frame (z up). Pixels: x to the right, y down, pixel centres at +0.5.
 #pragma once
 
 #include <optional>

@@ -31,8 +31,7 @@ struct BallStyle {
     int number = 0;  ///< 1..99, or 0 for none
 };
 
-/// How a ball looks, by its id and the table it is on ("3" is a numbered ball, but a red one on a snooker
-/// table).
+/// How a ball looks, by its id and the table it is on ("3" is a numbered ball, but a red one on a snooker table).
 BallStyle ball_style(const std::string& id, const std::string& table_preset, int index);
 
 struct DrawBall {
@@ -47,8 +46,7 @@ using Rgba = std::array<float, 4>;  ///< as on the screen, 0..1; the last is opa
 
 enum class LineLayer : std::uint8_t { kUnderBalls, kOverBalls };
 
-/// A straight line in the table's space, of a width in pixels, with round ends. What stands before it hides
-/// it.
+/// A straight line in the table's space, of a width in pixels, with round ends. What stands before it hides it.
 struct DrawLine {
     Vec3 a{0.0, 0.0, 0.0}, b{0.0, 0.0, 0.0};
     float width = 2.0F;

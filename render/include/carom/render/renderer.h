@@ -37,8 +37,8 @@ class Renderer {
     /// The same, but only those that differ from what the image shows.
     void read(KeptImage& image);
 
-    /// Those of the draw() before, while the last one goes on in the driver's threads. Needs two draws of one
-    /// size before.
+    /// Those of the draw() before, while the last one goes on in
+    /// the driver's threads. Needs two draws of one size before.
     void read_previous(KeptImage& image);
 
   private:

@@ -16,13 +16,12 @@
 
 namespace carom::render {
 
-/// Receives one frame as packed RGB rows, top row first. Frames come in order, from one thread (not the
-/// caller's).
+/// Receives one frame as packed RGB rows, top row first. Frames come in order, from one thread (not the caller's).
 using RawSink = std::function<void(const std::uint8_t* rgb, std::size_t bytes)>;
 
 struct SequenceOptions {
-    std::string pattern =
-        "frames/%05d.png";  ///< exactly one %d or %0Nd; empty: frames are encoded, thrown away
+    /// Exactly one %d or %0Nd; empty: frames are encoded, thrown away
+    std::string pattern = "frames/%05d.png";
     double fps = 60.0;
     double from = 0.0;          ///< s
     std::optional<double> to;   ///< s; default: the record's duration

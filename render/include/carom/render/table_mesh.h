@@ -1,5 +1,4 @@
-// The table as triangles, made from the cushions, jaws and pockets that balls really bounce off and fall
-// into.
+// The table as triangles, made from the cushions, jaws and pockets that balls really bounce off and fall into.
 #pragma once
 
 #include <cstdint>
