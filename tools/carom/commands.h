@@ -1,7 +1,7 @@
 // The sub-commands: what each takes from the command line,
 // and the function that does it. Each returns an exit status.
 //
-// A new one needs: a struct and a run_ function here, a file of its own, and an add_ function in command_line.cpp.
+// A new one needs: a struct and a run_ function here, a file of its own, and an add_ function in options/.
 #pragma once
 
 #include <cstdint>

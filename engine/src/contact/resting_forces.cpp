@@ -10,8 +10,6 @@ namespace carom {
 
 namespace {
 
-// [-] Rounding of the forces, relative.
-constexpr double kHoldRounding = 1e-9;
 // [of what drives a group] Forces beyond this have no answer: what asks for them is left out. A wedge of
 // slope s multiplies the drive by 1/s, and slopes down to 1e-8 are solved; contacts that contradict each
 // other, by 1/kContactSoftness. The second: a wedge that has no room for margins.
@@ -19,10 +17,6 @@ constexpr double kLargestHold = 1e9;
 constexpr double kLargestLeadOut = 1e4;
 // [-] Mobility of balls at rest while it is decided which of them stay, against 1 of a ball that slips.
 constexpr double kRestGives = 1e-4;
-// [-] Times that a ball may change between rest, rolling and sliding in one solution.
-constexpr int kModeChanges = 8;
-// [-] Changes after which a slow ball is no longer tried at rest.
-constexpr int kStopTries = 4;
 // [of the coefficient] To which the friction that ends a slip is solved.
 constexpr double kStickAccuracy = 1e-3;
 // [of kHoldShortest] A held ball that its own rolling friction would stop within this time takes the
@@ -211,89 +205,6 @@ bool HeldSolver::solve_contacts() {
         link.stuck = false;
     }
     return solve_contacts_once({.friction = false, .margins = false});
-}
-
-bool HeldSolver::change_mode(Body& b, Mode mode) {
-    if (b.changes >= kModeChanges) return false;
-    ++b.changes;
-    b.mode = mode;
-    return true;
-}
-
-// A ball at rest stays while (5/7) |F| <= mu_r g, with the forces of what it leans on.
-bool HeldSolver::resting_holds(Body& b) {
-    const Vec2 drive = b.due + (5.0 / 7.0) * (b.push + b.couple);
-    const double size = length(drive), rounding = kHoldRounding * (motion_.slide + length(b.push));
-    if (size <= motion_.roll + rounding) return true;
-    if (!change_mode(b, Mode::kRolling)) return true;
-    b.starts = true;
-    b.direction = drive / size;
-    return false;
-}
-
-// A ball rolls while the cloth can give what that takes. One that has no velocity yet rolls along the force
-// on it, or stays after all.
-bool HeldSolver::rolling_holds(Body& b) {
-    const double grip = motion_.slide * load(b) + motion_.roll;
-    if (length(b.a - b.push) > grip * (1.0 + kHoldRounding)) {
-        const Vec2 slip = b.push - 2.5 * b.couple;
-        const double size = length(slip);
-        if (!change_mode(b, Mode::kSliding)) return true;
-        b.starts = true;
-        b.direction = size > 0.0 ? Vec2(slip / size) : Vec2(-b.direction);
-        return false;
-    }
-    if (!b.starts) return true;
-    // Of a slow ball friction takes the direction at the end of the shortest interval, v + h a: at its start
-    // it would turn the ball over within less, now this way, now that.
-    const Vec2 drive = b.due + (5.0 / 7.0) * (b.push + b.couple);
-    const double size = length(drive);
-    const bool moves = b.due.x() != 0.0 || b.due.y() != 0.0;
-    if (size <= motion_.roll && moves) {
-        // It stops within that interval, if the forces that come of stopping it so soon leave it there too.
-        if (may_stop_ && b.changes < kStopTries && change_mode(b, Mode::kResting)) return false;
-        return turn_to(b, b.due, length(b.due));
-    }
-    if (!moves && (size <= motion_.roll || b.changes >= kModeChanges)) {
-        b.mode = Mode::kResting;
-        b.changes = kModeChanges;  // for good
-        return false;
-    }
-    return turn_to(b, drive, size);
-}
-
-// A ball that starts to slip slips along what drives the slip.
-bool HeldSolver::sliding_holds(Body& b) {
-    bool hold = true;
-    if (!b.lifted && b.lift > around_.gravity) {
-        b.lifted = true;
-        hold = false;
-    }
-    const Vec2 slip = b.push - 2.5 * b.couple;
-    const double size = length(slip);
-    return (!b.starts || size == 0.0 || turn_to(b, slip, size)) && hold;
-}
-
-bool HeldSolver::turn_to(Body& b, const Vec2& drive, double size) {
-    if (dot(b.direction, drive) > 0.0 && std::abs(cross(b.direction, drive)) <= kHoldRounding * size)
-        return true;
-    if (b.changes >= kModeChanges) return true;
-    ++b.changes;
-    b.direction = drive / size;
-    return false;
-}
-
-// Whether every ball can do what its mode says; where not, the mode or the direction changes, a bounded
-// number of times: a ball that finds no consistent mode rests, or keeps its direction.
-bool HeldSolver::modes_hold() {
-    bool hold = true;
-    for (Body& b : bodies_) {
-        const bool holds = b.mode == Mode::kResting   ? resting_holds(b)
-                           : b.mode == Mode::kRolling ? rolling_holds(b)
-                                                      : sliding_holds(b);
-        hold = hold && holds;
-    }
-    return hold;
 }
 
 // The rate of v_t^2 / |r|, 3 v_t a_t / |r|, must not close the gap within the interval.

@@ -1,5 +1,5 @@
 // One solution of one held group (resting.h): capture, forces, intervals. Split over resting.cpp (the order of
-// steps), resting_capture.cpp, resting_forces.cpp and resting_intervals.cpp.
+// steps), resting_capture.cpp, resting_forces.cpp, resting_modes.cpp and resting_intervals.cpp.
 #pragma once
 
 #include <vector>
@@ -9,6 +9,10 @@
 
 namespace carom {
 
+/// [-] Times that a ball may change between rest, rolling and sliding in one solution.
+inline constexpr int kModeChanges = 8;
+/// [-] Rounding of the forces, relative.
+inline constexpr double kHoldRounding = 1e-9;
 /// [s] Shortest interval over which a resting contact keeps the directions of its forces where they turn.
 inline constexpr double kHoldShortest = 1e-5;
 /// [m] and [s] An overlap deeper than this is led out within the interval, but in no less time than this:
@@ -105,14 +109,16 @@ class HeldSolver {
     Vec2 response(const Link& link, int body, bool friction) const;
     void accelerate();
     void sum_forces();
+    double load(const Body& body) const;
+    double gap_acceleration(const Link& link) const;
+
+    // resting_modes.cpp
     bool modes_hold();
     bool resting_holds(Body& body);
     bool rolling_holds(Body& body);
     bool sliding_holds(Body& body);
     bool change_mode(Body& body, Mode mode);
     bool turn_to(Body& body, const Vec2& drive, double size);
-    double load(const Body& body) const;
-    double gap_acceleration(const Link& link) const;
 
     // resting_intervals.cpp
     double across(std::size_t link, Vec2& velocity_across) const;

@@ -18,6 +18,9 @@
 
 namespace carom {
 
+/// [share] Boxes that leave out far parts of the table are widened by this much: rounding stays inside.
+inline constexpr double kBoxShare = 1e-9;
+
 /// A rectangle on the table [m].
 struct Box {
     double low_x, low_y, high_x, high_y;

@@ -9,12 +9,6 @@ namespace carom {
 
 namespace {
 
-// [V] A contact of a cluster that closes faster than this sets the scale V itself: the step is made for
-// approaches near V.
-constexpr double kClusterFaster = 2.0;
-// [share of R] Gaps up to this are rounding of the positions: the balls touch.
-constexpr double kTouchUlp = 64.0 * 2.220446049250313e-16;
-
 // An order of places that mirrors in the axes and quarter turns keep, up to the order of mirror images among
 // themselves: so do the sums of a cluster, to the last bit.
 bool before_place(const Vec2& p, const Vec2& q) {

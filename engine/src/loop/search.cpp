@@ -8,9 +8,6 @@ namespace carom {
 
 namespace {
 
-// [share] Boxes that leave out far parts of the table are widened by this much: rounding stays inside.
-constexpr double kBoxShare = 1e-9;
-
 bool in_play(const Segment& segment) {
     return segment.state != MotionState::kPocketed;
 }

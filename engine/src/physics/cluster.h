@@ -10,6 +10,12 @@
 
 namespace carom {
 
+/// [V] A contact of a cluster that closes faster than this sets the scale V itself: the step is made for
+/// approaches near V.
+inline constexpr double kClusterFaster = 2.0;
+/// [share of R] Gaps up to this are rounding of the positions: the balls touch.
+inline constexpr double kTouchUlp = 64.0 * 2.220446049250313e-16;
+
 /// [V] and [L/V] Regularisation of the friction in the compliant map, which errs by about 2e-3 V in stick (docs/hard_cases.md), and its
 /// longest steps: without friction, where they err by 3e-7 V, and with it, where 2e-5 V (largest of 40 racks 8e-5 V) is far below the former.
 inline constexpr double kClusterEpsilon = 2e-3;

@@ -14,10 +14,9 @@
 #include "bench/clock.h"
 #include "bench/five_states.h"
 #include "bench/machine.h"
+#include "bench/timed_kernel.h"
 #include "carom/kernel/tolerance.h"
 #include "console.h"
-#include "ladder/ladder.h"
-#include "reference/batch_arrays.h"
 #include "reference/random_impacts.h"
 #include "reference/solver.h"
 
@@ -25,48 +24,7 @@ namespace carom::tools {
 namespace {
 
 using namespace kernel;
-using reference::BatchArrays;
 using reference::Impact;
-
-/// A list of impacts, once one by one and once as arrays.
-struct ImpactSet {
-    ImpactSet(std::vector<Impact> list, ClothSlip slip, int copies) : impacts(std::move(list)) {
-        for (Impact& impact : impacts) impact.params.cloth_slip = slip;
-        std::vector<Impact> many;
-        for (int i = 0; i < copies; ++i) many.insert(many.end(), impacts.begin(), impacts.end());
-        arrays = std::make_unique<BatchArrays>(many, slip);
-        in_arrays = many.size();
-    }
-    std::vector<Impact> impacts;
-    std::unique_ptr<BatchArrays> arrays;
-    std::size_t in_arrays;
-};
-
-/// One thing to measure: a rung, or a tolerance, for one impact or for a batch.
-struct TimedKernel {
-    KernelRow row;
-    std::function<void(const Impact&, int n, ImpactResult&)> one;
-    std::function<void(const BatchArrays&, int n)> many;
-    std::vector<double> five_ns, random_ns;  ///< per impact, one entry a round
-    int five_calls = 1, random_calls = 1;
-
-    /// Every impact of the set once.
-    void run(const ImpactSet& set, int n, std::vector<ImpactResult>& results) const {
-        if (one) {
-            for (std::size_t i = 0; i < set.impacts.size(); ++i) one(set.impacts[i], n, results[i]);
-        } else {
-            many(*set.arrays, n);
-        }
-    }
-    /// Impacts in one run.
-    std::size_t size(const ImpactSet& set) const { return one ? set.impacts.size() : set.in_arrays; }
-
-    double time(const ImpactSet& set, int n, int calls, std::vector<ImpactResult>& results) const {
-        const double start = thread_ns();
-        for (int c = 0; c < calls; ++c) run(set, n, results);
-        return (thread_ns() - start) / (static_cast<double>(calls) * static_cast<double>(size(set)));
-    }
-};
 
 double difference(const ImpactResult& a, const ImpactResult& b, const Impact& in) {
     double most = 0.0;
@@ -81,89 +39,6 @@ double difference(const ImpactResult& a, const ImpactResult& b, const Impact& in
     const double approach = ((in.ball1.v[0] - in.ball2.v[0]) * dx + (in.ball1.v[1] - in.ball2.v[1]) * dy) /
                             std::sqrt(dx * dx + dy * dy);
     return most / approach;
-}
-
-std::vector<ImpactResult> results_of(const TimedKernel& subject, const ImpactSet& set, int n) {
-    std::vector<ImpactResult> results(set.impacts.size());
-    subject.run(set, n, results);
-    if (subject.many)
-        for (std::size_t i = 0; i < results.size(); ++i) results[i] = set.arrays->get(i);
-    return results;
-}
-
-std::vector<TimedKernel> subjects(const std::vector<Isa>& isas) {
-    std::vector<TimedKernel> list;
-    for (const Rung& rung : ladder()) {
-        if (std::find(isas.begin(), isas.end(), rung.isa) == isas.end()) continue;
-        TimedKernel s;
-        s.row = {std::string("march ") + rung.name, rung.section, rung.march ? "single" : "batch", rung.isa,
-                 rung.portable_bits};
-        if (rung.march)
-            s.one = [f = rung.march](const Impact& i, int n, ImpactResult& out) {
-                f(i.ball1, i.ball2, i.params, n, out);
-            };
-        else
-            s.many = [f = rung.batch](const BatchArrays& a, int n) { f(a.batch, n, a.result); };
-        list.push_back(std::move(s));
-    }
-    const struct {
-        const char* name;
-        double tolerance;
-    } asked[] = {{"tolerance 1e-3", 1e-3}, {"tolerance 1e-6", 1e-6}, {"tolerance 1e-10", 1e-10}};
-    for (Isa isa : isas) {
-        for (const auto& a : asked) {
-            TimedKernel s;
-            s.row = {a.name, "past it", "single", isa, true};
-            s.one = [f = tolerance_function(isa), t = a.tolerance](const Impact& i, int, ImpactResult& out) {
-                f(i.ball1, i.ball2, i.params, t, out);
-            };
-            list.push_back(std::move(s));
-            TimedKernel b;
-            b.row = {a.name, "past it", "batch", isa, true};
-            b.many = [f = tolerance_batch_function(isa), t = a.tolerance](const BatchArrays& arrays, int) {
-                f(arrays.batch, t, arrays.result);
-            };
-            list.push_back(std::move(b));
-        }
-    }
-    return list;
-}
-
-/// Whether a name is meant: the name itself, or its first words, unless another row has just these.
-bool is_meant(const std::string& name, const std::string& wanted, bool exact) {
-    return exact ? name == wanted : name.rfind(wanted + " ", 0) == 0;
-}
-
-/// Keeps the rows that are asked for.
-void choose(std::vector<TimedKernel>& list, const std::vector<std::string>& only) {
-    if (only.empty()) return;
-    std::vector<bool> keep(list.size(), false);
-    for (const std::string& wanted : only) {
-        bool found = false;
-        for (const bool exact : {true, false}) {
-            if (found) break;
-            for (std::size_t i = 0; i < list.size(); ++i) {
-                if (!is_meant(list[i].row.name, wanted, exact)) continue;
-                keep[i] = found = true;
-            }
-        }
-        if (found) continue;
-        std::string names;
-        for (std::size_t i = 0; i < list.size(); ++i) {
-            const std::string& name = list[i].row.name;
-            const auto same = [&name](const TimedKernel& s) { return s.row.name == name; };
-            if (std::none_of(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(i), same))
-                names += (names.empty() ? "" : ", ") + name;
-        }
-        throw UsageError(
-            fmt::format("--only: there is no form \"{}\" on the instruction sets of this run; name one "
-                        "of these, or first words of some: {}",
-                        wanted, names));
-    }
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < list.size(); ++i)
-        if (keep[i]) std::swap(list[kept++], list[i]);
-    list.resize(kept);
 }
 
 constexpr int kSubsteps = 1000;
@@ -321,29 +196,7 @@ double cost_of_a_probe() {
     return median(costs);
 }
 
-std::vector<Isa> chosen_isas() {
-    Isa isa{};
-    const IsaChoice choice = isa_from_environment(isa);
-    if (choice == IsaChoice::kUnknownName) throw UsageError("CAROM_ISA: unknown; scalar, v3 or v4");
-    if (choice == IsaChoice::kUnavailable) throw UsageError("CAROM_ISA: this processor does not have it");
-    const char* forced = std::getenv("CAROM_ISA");
-    if (forced != nullptr && *forced != '\0') return {isa};
-    std::vector<Isa> list;
-    for (Isa candidate : {Isa::kScalar, Isa::kV3, Isa::kV4})
-        if (available(candidate)) list.push_back(candidate);
-    return list;
-}
-
 }  // namespace
-
-std::vector<KernelRow> kernel_rows(const BenchOptions& options) {
-    std::vector<TimedKernel> list = subjects(chosen_isas());
-    choose(list, options.only);
-    std::vector<KernelRow> rows;
-    rows.reserve(list.size());
-    for (const TimedKernel& s : list) rows.push_back(s.row);
-    return rows;
-}
 
 KernelBench measure_kernel(const BenchOptions& options) {
     if (options.random < 1) throw UsageError("--random: expected at least 1");
@@ -353,8 +206,7 @@ KernelBench measure_kernel(const BenchOptions& options) {
     for (const BenchImpact& s : kFiveStates) states.push_back({s.ball1, s.ball2, s.params});
     const ImpactSet five(states, slip, 16);
     const ImpactSet random(reference::random_impacts(options.seed, options.random), slip, 1);
-    std::vector<TimedKernel> list = subjects(chosen_isas());
-    choose(list, options.only);
+    std::vector<TimedKernel> list = timed_kernels(options.only);
 
     KernelBench bench;
     bench.cpu = processor();
