@@ -169,7 +169,8 @@ void read_cue(const Section& top, Scene& scene) {
     cue.speed = s.number("speed", cue.speed, at_least(0.0, kMaxSpeed, "m/s"));
     cue.aim_deg = s.number("aim_deg", cue.aim_deg, at_least(-kMaxAngle, kMaxAngle, "degrees"));
     cue.elevation_deg = s.number("elevation_deg", cue.elevation_deg, {0.0, false, 90.0, true, "degrees"});
-    const Vec2 offset = s.vec2("offset", {cue.side, cue.height}, "[side, height]", at_least(-1.0, 1.0, "ball radii"));
+    const Vec2 offset =
+        s.vec2("offset", {cue.side, cue.height}, "[side, height]", at_least(-1.0, 1.0, "ball radii"));
     cue.side = offset.x();
     cue.height = offset.y();
     if (offset.squaredNorm() > kMiscueOffset * kMiscueOffset) {
