@@ -109,6 +109,16 @@ TEST(CliUsage, HelpNamesEveryDefault) {
     }
 }
 
+TEST(CliUsage, OneIsNotMany) {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("s.toml", "[[ball]]\n[cue]\n[stop]\nevents = 1\n");
+    EXPECT_TRUE(contains(carom({"simulate", scene}).out, ": 1 ball, 0.0000 s, 1 event; "));
+    EXPECT_TRUE(contains(carom({"check", scene}).out, "or after 1 event\n"));
+    const std::string margin = carom({"margin", scene, "--no-render"}).out;
+    EXPECT_TRUE(contains(margin, ": 1 frame of 16.667 ms")) << margin;
+    EXPECT_TRUE(contains(margin, " ms, 1 event\n")) << margin;
+}
+
 TEST(CliUsage, AFullDiskIsAnError) {
     ProcessOptions options;
     options.output_to = "/dev/full";
