@@ -239,10 +239,10 @@ TEST(TableMesh, ThePresetsHaveEverything) {
             ASSERT_TRUE(std::isfinite(vertex.x + vertex.y + vertex.z + vertex.nx + vertex.ny + vertex.nz));
             ++used[vertex.material];
         }
-        EXPECT_GT(used[Material::kCloth], 0);
-        EXPECT_GT(used[Material::kCushion], 0);
-        EXPECT_GT(used[Material::kWood], 0);
-        EXPECT_EQ(used[Material::kPocket] > 0, !table.pockets.empty());
+        EXPECT_GT(used[static_cast<std::size_t>(Material::kCloth)], 0);
+        EXPECT_GT(used[static_cast<std::size_t>(Material::kCushion)], 0);
+        EXPECT_GT(used[static_cast<std::size_t>(Material::kWood)], 0);
+        EXPECT_EQ(used[static_cast<std::size_t>(Material::kPocket)] > 0, !table.pockets.empty());
         EXPECT_FALSE(mesh.blended.empty());
     }
 }

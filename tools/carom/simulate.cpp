@@ -27,7 +27,7 @@ struct CostSum {
 std::array<CostSum, kEventTypes> costs_by_kind(const Record& record) {
     std::array<CostSum, kEventTypes> sums{};
     for (std::size_t i = 0; i < record.costs.size(); ++i) {
-        CostSum& sum = sums[record.events.at(i).type];
+        CostSum& sum = sums[static_cast<std::size_t>(record.events.at(i).type)];
         ++sum.count;
         sum.detect += record.costs[i].detect_ns;
         sum.resolve += record.costs[i].resolve_ns;
@@ -92,7 +92,7 @@ std::string summary(const Record& record, const std::string& scene) {
     fmt::format_to(line, "{}: {}, {:.4f} s, {}; {}\n\nevents\n", scene, counted(record.tracks.size(), "ball"),
                    record.duration, counted(record.events.size(), "event"), reason(record.stopped));
     std::array<long, kEventTypes> counts{};
-    for (const Event& event : record.events) ++counts[event.type];
+    for (const Event& event : record.events) ++counts[static_cast<std::size_t>(event.type)];
     for (int type = 0; type < kEventTypes; ++type) {
         const long count = counts[type];
         if (count > 0) fmt::format_to(line, "  {:<22}{:>6}\n", name(static_cast<EventType>(type)), count);

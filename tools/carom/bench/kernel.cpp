@@ -15,6 +15,7 @@
 #include "bench/five_states.h"
 #include "bench/machine.h"
 #include "bench/timed_kernel.h"
+#include "carom/kernel/march.h"
 #include "carom/kernel/tolerance.h"
 #include "console.h"
 #include "reference/random_impacts.h"

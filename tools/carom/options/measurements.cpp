@@ -8,6 +8,7 @@
 #include "bench/shot.h"
 #include "carom/engine/scene.h"
 #include "commands.h"
+#include "console.h"
 #include "options/options.h"
 
 namespace carom::tools {

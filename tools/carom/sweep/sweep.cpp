@@ -174,7 +174,7 @@ Outcomes write_rows(PartialFile& file, const Variation& variation, const ShotRan
         throw_if_interrupted();
         for (const SweepRow& row : queue.take()) {
             file.append(row.text);
-            ++outcomes[row.outcome];
+            ++outcomes[static_cast<std::size_t>(row.outcome)];
             ++done;
         }
         if (Clock::now() - flushed >= kFlushEvery) {
@@ -237,7 +237,7 @@ int run_sweep(const SweepArgs& args) {
     }
     file.commit();
     print(summary(outcomes, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
-    const std::uint64_t failed = outcomes[ShotOutcome::kRunFailed];
+    const std::uint64_t failed = outcomes[static_cast<std::size_t>(ShotOutcome::kRunFailed)];
     if (failed == 0) return kOk;
     message(fmt::format("{} failed while running; {} why", counted(failed, "shot"),
                         failed == 1 ? "its row says" : "their rows say"));
