@@ -171,7 +171,7 @@ TEST_F(CliSimulate, MotionWithoutEndGoesOnToTheStopTime) {
     const ProcessResult result =
         carom({"simulate", scene, "--verify", "--samples", folder_.file("s.csv"), "--sample-dt", "0.02"});
     EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_NE(result.out.find("1 balls, 0.1000 s, 0 events; stopped at its time\n"), std::string::npos)
+    EXPECT_NE(result.out.find("1 ball, 0.1000 s, 0 events; stopped at its time\n"), std::string::npos)
         << result.out;
     EXPECT_NE(result.out.find("cue    sliding       1.100000   1.000000\n"), std::string::npos) << result.out;
     EXPECT_EQ(lines_of(read_file(folder_.file("s.csv"))).size(), 1u + 6u);
@@ -188,7 +188,7 @@ TEST_F(CliSimulate, MotionWithoutEndGoesOnToTheStopTime) {
     const ProcessResult endless = carom({"simulate", events, "--verify", "-o", folder_.file("r.json")});
     EXPECT_EQ(endless.status, 0) << endless.err;
     EXPECT_NE(
-        endless.out.find("1 balls, 0.0000 s, 0 events; nothing more happens, but balls move for ever\n"),
+        endless.out.find("1 ball, 0.0000 s, 0 events; nothing more happens, but balls move for ever\n"),
         std::string::npos)
         << endless.out;
     EXPECT_EQ(read_record(folder_.file("r.json")).stopped, StopReason::kEndless);

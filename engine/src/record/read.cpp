@@ -111,7 +111,7 @@ Segment read_segment(const JsonValue& value) {
         value, {"start", "state", "r", "v", "w", "a", "dw", "spin_decay", "duration", "held", "ends"});
     Segment s;
     s.start = all.at("start").non_negative();
-    s.state = all.at("state").one_of<MotionState>(5);
+    s.state = all.at("state").one_of<MotionState>(kMotionStates);
     s.r = all.at("r").vector<3>();
     s.v = all.at("v").vector<3>();
     s.w = all.at("w").vector<3>();
@@ -291,7 +291,7 @@ Record parse_record(std::string_view text, const std::string& name, std::vector<
     const Format format{read_version(all), all.at("profiled").boolean()};
     Record record;
     record.duration = all.at("duration").non_negative();
-    record.stopped = all.at("stopped").one_of<StopReason>(4);
+    record.stopped = all.at("stopped").one_of<StopReason>(kStopReasons);
     record.start_time = all.at("start_time").number();
     record.gravity = all.at("gravity").number();
     record.setup_detect_ns = all.at("setup_detect_ns").non_negative();

@@ -19,6 +19,7 @@
 namespace carom {
 
 enum class MotionState : std::uint8_t { kStationary, kSpinning, kSliding, kRolling, kPocketed };
+inline constexpr int kMotionStates = 5;
 const char* name(MotionState state);
 
 /// One ball between two events that touch it. Times inside are relative to `start`.
@@ -84,6 +85,7 @@ struct EventCost {
 /// kEndless: balls move that nothing stops, nothing more happens to them, and there was no time to stop at;
 /// the record ends at its last event.
 enum class StopReason : std::uint8_t { kAtRest, kTime, kEvents, kEndless };
+inline constexpr int kStopReasons = 4;
 const char* name(StopReason reason);
 
 /// State of one ball at a time.
