@@ -187,9 +187,8 @@ TEST_F(CliSimulate, MotionWithoutEndGoesOnToTheStopTime) {
         "[balls]\nmu_sp = 0\n[[ball]]\nposition = [0.6, 0.5]\nspin = [0, 0, 5]\n[stop]\nevents = 4\n");
     const ProcessResult endless = carom({"simulate", events, "--verify", "-o", folder_.file("r.json")});
     EXPECT_EQ(endless.status, 0) << endless.err;
-    EXPECT_NE(
-        endless.out.find("1 ball, 0.0000 s, 0 events; nothing more happens, but balls move for ever\n"),
-        std::string::npos)
+    EXPECT_NE(endless.out.find("1 ball, 0.0000 s, 0 events; nothing more happens, but balls move for ever\n"),
+              std::string::npos)
         << endless.out;
     EXPECT_EQ(read_record(folder_.file("r.json")).stopped, StopReason::kEndless);
     ASSERT_EQ(carom({"sweep", events, "--vary", "ball.cue.position.x=list(1)", "--count", "1", "-o",
