@@ -16,9 +16,9 @@ namespace carom::reference {
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;  // in radians
 
-class SplitMix64 {
+class Generator {
   public:
-    explicit SplitMix64(std::uint64_t seed) : state_(seed) {}
+    explicit Generator(std::uint64_t seed) : state_(seed) {}
     std::uint64_t next() {
         std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ull);
         z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
@@ -38,7 +38,7 @@ struct Impact {
     kernel::ImpactParams params;
 };
 
-inline Impact random_impact(SplitMix64& rng) {
+inline Impact random_impact(Generator& rng) {
     Impact impact{};
     kernel::ImpactParams& p = impact.params;
     p.R = 0.028575;
@@ -115,7 +115,7 @@ inline Impact random_impact(SplitMix64& rng) {
 }
 
 inline std::vector<Impact> random_impacts(std::uint64_t seed, int count) {
-    SplitMix64 rng(seed);
+    Generator rng(seed);
     std::vector<Impact> impacts;
     impacts.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) impacts.push_back(random_impact(rng));

@@ -15,7 +15,9 @@
 #include "reference/random_impacts.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::Impact;
+using reference::random_impacts;
+
 namespace {
 
 constexpr double kR = 0.028575;

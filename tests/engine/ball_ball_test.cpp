@@ -14,7 +14,6 @@
 #include "support/scene_errors.h"
 
 namespace carom {
-using namespace reference;
 namespace {
 
 using namespace test;
@@ -42,18 +41,18 @@ TEST(BallBall, ModelsReadWhatTheySay) {
         const BallBallModelInfo& info = ball_ball_model(model);
         EXPECT_EQ(info.model, model);
         bool spin = false, turns = false, friction = false, restitution = false, cloth = false, sign = false;
-        SplitMix64 rng(3);
+        reference::Generator rng(3);
         for (int i = 0; i < 100; ++i) {
-            Impact x = random_impact(rng);
+            reference::Impact x = reference::random_impact(rng);
             x.params.e_b = 0.9;
-            const auto after = [&](const Impact& y) {
+            const auto after = [&](const reference::Impact& y) {
                 kernel::ImpactResult result;
                 info.collide(settings(), y.ball1, y.ball2, y.params, result);
                 EXPECT_EQ(result.status, kernel::ImpactStatus::kOk);
                 return result;
             };
             const kernel::ImpactResult base = after(x);
-            Impact y = x;
+            reference::Impact y = x;
             y.params.mu_b += 0.01;
             friction = friction || !same(base, after(y));
             y = x;
@@ -83,9 +82,9 @@ TEST(BallBall, ModelsReadWhatTheySay) {
 }
 
 TEST(Unequal, EqualBallsGiveTheInelasticImpact) {
-    SplitMix64 rng(4);
+    reference::Generator rng(4);
     for (int i = 0; i < 1000; ++i) {
-        const Impact x = random_impact(rng);
+        const reference::Impact x = reference::random_impact(rng);
         kernel::ImpactResult a, b;
         kernel::collide_inelastic(x.ball1, x.ball2, x.params, a);
         const BallSize size{x.params.R, x.params.m};
@@ -123,9 +122,9 @@ TEST(Unequal, WhatCannotBeComputedGivesTheInputBack) {
 }
 
 TEST(Unequal, MassesOfAnyRatio) {
-    SplitMix64 rng(5);
+    reference::Generator rng(5);
     for (int i = 0; i < 1000; ++i) {
-        const Impact x = random_impact(rng);
+        const reference::Impact x = reference::random_impact(rng);
         const double R = x.params.R, m1 = rng.uniform(0.05, 0.4), m2 = rng.uniform(0.05, 0.4);
         kernel::ImpactResult r;
         collide_unequal({R, m1}, {R, m2}, x.ball1, x.ball2, x.params, r);
@@ -197,7 +196,7 @@ TEST(Unequal, CushionAndCueTakeTheBallsOwn) {
 
 // Random scenes with a heavy, large ball among small ones: every law holds after every event.
 TEST(Unequal, RandomScenesKeepEveryLaw) {
-    SplitMix64 rng(6);
+    reference::Generator rng(6);
     int hits = 0, held = 0;
     for (int i = 0; i < 300; ++i) {
         Scene scene = empty_scene();

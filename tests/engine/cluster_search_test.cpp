@@ -24,10 +24,11 @@ Scene crowd(int n, long events, std::uint64_t seed, bool friction) {
     while (side * side < n) ++side;
     const double R = scene.balls.R, cell = 2.3 * R;
     scene.table = box(cell * side, cell * side, 0.036576);
-    SplitMix64 rng(seed);
+    Generator rng(seed);
     for (int i = 0; i < n; ++i) {
-        const double x = cell * (i % side + rng.uniform(0.44, 0.56));
-        const double y = cell * (static_cast<double>(i / side) + rng.uniform(0.44, 0.56));
+        const int column = i % side, row = i / side;
+        const double x = cell * (column + rng.uniform(0.44, 0.56));
+        const double y = cell * (row + rng.uniform(0.44, 0.56));
         const SinCos way = sin_cos_deg(rng.uniform(0.0, 360.0));
         const double kind = rng.uniform();
         const double speed = kind < 0.3 ? 0.0 : kind < 0.95 ? rng.uniform(0.1, 1.5) : 9.0;

@@ -15,7 +15,6 @@
 #include "support/engine_cases.h"
 
 namespace carom {
-using namespace reference;
 namespace {
 
 using namespace test;
@@ -239,10 +238,10 @@ TEST(Cluster, SqueezedBallStays) {  // H6
 
 // Two balls through the map are the pair kernel's impact, up to the bias of the regularisation.
 TEST(Cluster, TwoBallsAreThePairKernel) {
-    SplitMix64 rng(7);
+    reference::Generator rng(7);
     std::vector<double> differences;
     for (int k = 0; k < 60; ++k) {
-        const Impact impact = random_impact(rng);
+        const reference::Impact impact = reference::random_impact(rng);
         kernel::ImpactResult want;
         kernel::march_function(kernel::best_isa())(impact.ball1, impact.ball2, impact.params, 100000, want);
         const auto from = [](const kernel::Ball& b, int id) {
@@ -271,7 +270,7 @@ TEST(Cluster, TwoBallsAreThePairKernel) {
 }
 
 TEST(Cluster, NeverGainsEnergyAndLeavesNothingClosing) {
-    SplitMix64 rng(11);
+    reference::Generator rng(11);
     for (int k = 0; k < 60; ++k) {
         std::vector<ClusterBall> balls = rack(1.0);
         const double gap = rng.uniform(0.0, 3e-4);
@@ -285,7 +284,7 @@ TEST(Cluster, NeverGainsEnergyAndLeavesNothingClosing) {
 }
 
 TEST(Cluster, FifthRoot) {
-    SplitMix64 rng(5);
+    reference::Generator rng(5);
     for (int k = 0; k < 20000; ++k) {
         const double x = std::pow(10.0, rng.uniform(-300.0, 300.0));
         EXPECT_NEAR(fifth_root(x) / static_cast<double>(std::pow(static_cast<long double>(x), 0.2L)), 1.0,

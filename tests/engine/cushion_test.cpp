@@ -15,7 +15,6 @@
 #include "support/engine_cases.h"
 
 namespace carom {
-using namespace reference;
 namespace {
 
 using namespace test;
@@ -130,7 +129,7 @@ double energy(const CushionContact& p, const Vec3& v, const Vec3& w) {
 }
 
 // Random impacts: sliding, rolling (no slip at the cloth), straight in, hardly approaching.
-Case random_case(SplitMix64& rng, int kind) {
+Case random_case(reference::Generator& rng, int kind) {
     Case x;
     const double R = 0.028575;
     x.contact = {R,
@@ -149,7 +148,7 @@ Case random_case(SplitMix64& rng, int kind) {
 }
 
 TEST(Cushion, EnergyFallsTheBallLeavesAndMirrorsAgree) {
-    SplitMix64 rng(7);
+    reference::Generator rng(7);
     for (int i = 0; i < 4000; ++i) {
         const Case x = random_case(rng, i % 4);
         for (const CushionModel model : kCushionModels) {
@@ -173,7 +172,7 @@ TEST(Cushion, EnergyFallsTheBallLeavesAndMirrorsAgree) {
 
 // All velocities twice as large, twice as large afterwards: no model has a speed of its own.
 TEST(Cushion, EveryModelIsHomogeneous) {
-    SplitMix64 rng(8);
+    reference::Generator rng(8);
     for (int i = 0; i < 400; ++i) {
         const Case x = random_case(rng, i % 4);
         for (const CushionModel model : kCushionModels) {
@@ -199,7 +198,7 @@ TEST(Cushion, TheTableHasEveryModelOnce) {
 
 // A model that does not read the cloth or the height does not change with them.
 TEST(Cushion, ModelsReadWhatTheySay) {
-    SplitMix64 rng(9);
+    reference::Generator rng(9);
     for (const CushionModel model : kCushionModels) {
         const CushionModelInfo& info = cushion_model(model);
         bool cloth = false, height = false, friction = false, spin = false;
@@ -237,7 +236,7 @@ TEST(Cushion, ModelsReadWhatTheySay) {
 
 // With the nose at ball height and no friction every model is the smooth one (T17), with its own meaning of e_c.
 TEST(Cushion, WithoutFrictionAtBallHeightEveryModelReflects) {
-    SplitMix64 rng(10);
+    reference::Generator rng(10);
     for (int i = 0; i < 400; ++i) {
         Case x = random_case(rng, i % 4);
         x.contact.f_c = 0.0;
@@ -255,7 +254,7 @@ TEST(Cushion, WithoutFrictionAtBallHeightEveryModelReflects) {
 
 // The closed forms then have the bits of the smooth model, along any direction of the nose.
 TEST(Cushion, WithoutFrictionAtBallHeightTheClosedFormsAreSmoothBitForBit) {
-    SplitMix64 rng(14);
+    reference::Generator rng(14);
     for (int i = 0; i < 4000; ++i) {
         Case x = random_case(rng, i % 4);
         x.contact.f_c = 0.0;
@@ -334,7 +333,7 @@ TEST(Cushion, Mathavan2010IsTheLimitOfTheMarch) {
         v = Vec3(-v_y, v_x, 0.0);
         w = Vec3(-w_y, w_x, w_z);
     };
-    SplitMix64 rng(11);
+    reference::Generator rng(11);
     for (int i = 0; i < 60; ++i) {
         Case x = random_case(rng, i % 3);
         // Beyond f = tan(theta) a stuck nose and a clamped load of the cloth have no common limit (data/README).
@@ -353,7 +352,7 @@ TEST(Cushion, Mathavan2010IsTheLimitOfTheMarch) {
 // Errors of the 2010 model at its tolerance, over impacts whose load on the cloth has a limit (as above): the
 // same impact solved ten thousand times finer. Every impact ends.
 TEST(Cushion, Mathavan2010KeepsItsTolerance) {
-    SplitMix64 rng(12);
+    reference::Generator rng(12);
     std::vector<double> off;
     for (int i = 0; i < 20000; ++i) {
         Case x = random_case(rng, i % 4);
@@ -377,7 +376,7 @@ TEST(Cushion, Mathavan2010KeepsItsTolerance) {
 
 // Any scene that the reader lets pass: the model ends, or says that it did not (then it changes nothing).
 TEST(Cushion, Mathavan2010EndsOrSaysSo) {
-    SplitMix64 rng(13);
+    reference::Generator rng(13);
     int solved = 0, refused = 0;
     for (int i = 0; i < 30000; ++i) {
         Case x = random_case(rng, i % 4);

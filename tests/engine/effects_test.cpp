@@ -11,7 +11,6 @@
 #include "support/engine_cases.h"
 
 namespace carom {
-using namespace reference;
 namespace {
 
 using namespace test;
@@ -36,7 +35,7 @@ std::string plan_error(const std::string& text) {
 }
 
 // A random scene on a box of 1.2 x 2.4 m: up to four balls, moving and resting, at most 40 events.
-Scene random_scene(SplitMix64& rng) {
+Scene random_scene(reference::Generator& rng) {
     Scene scene = empty_scene();
     scene.table = box(1.2, 2.4, 0.036576);
     if (rng.next() % 2 == 0) scene.physics.substeps = 200;
@@ -63,7 +62,7 @@ void no_side(Scene& scene) {
     for (BallStart& ball : scene.ball) ball.spin.z() = 0.0;
 }
 
-void strike_instead(Scene& scene, SplitMix64& rng) {
+void strike_instead(Scene& scene, reference::Generator& rng) {
     scene.ball[0].velocity.setZero();
     scene.ball[0].spin.setZero();
     Cue cue;
@@ -79,35 +78,36 @@ void strike_instead(Scene& scene, SplitMix64& rng) {
 // Every effect, and what makes it unnecessary in a random scene.
 struct Zero {
     const char* keyword;
-    void (*make)(Scene&, SplitMix64&);
+    void (*make)(Scene&, reference::Generator&);
 };
 const Zero kZeros[] = {
-    {"sliding", [](Scene& s, SplitMix64&) { s.balls.mu_s = 0.0; }},
-    {"rolling", [](Scene& s, SplitMix64&) { s.balls.mu_r = 0.0; }},
+    {"sliding", [](Scene& s, reference::Generator&) { s.balls.mu_s = 0.0; }},
+    {"rolling", [](Scene& s, reference::Generator&) { s.balls.mu_r = 0.0; }},
     {"spin_decay",
-     [](Scene& s, SplitMix64&) {
+     [](Scene& s, reference::Generator&) {
          s.balls.mu_b = s.balls.f_c = 0.0;
          no_side(s);
      }},
-    {"spin_decay", [](Scene& s, SplitMix64&) { s.balls.mu_sp = 0.0; }},
-    {"throw", [](Scene& s, SplitMix64&) { s.balls.mu_b = 0.0; }},
+    {"spin_decay", [](Scene& s, reference::Generator&) { s.balls.mu_sp = 0.0; }},
+    {"throw", [](Scene& s, reference::Generator&) { s.balls.mu_b = 0.0; }},
     {"throw",
-     [](Scene& s, SplitMix64&) {
+     [](Scene& s, reference::Generator&) {
          s.balls.mu_b = 0.0;
          s.physics.ball_ball = BallBallModel::kInelastic;
      }},
-    {"cloth_in_impact", [](Scene& s, SplitMix64&) { s.balls.mu_b = 0.0; }},
-    {"cloth_in_impact", [](Scene& s, SplitMix64&) { s.balls.mu_s = 0.0; }},
-    {"cloth_in_impact", [](Scene& s, SplitMix64&) { s.physics.ball_ball = BallBallModel::kInelastic; }},
+    {"cloth_in_impact", [](Scene& s, reference::Generator&) { s.balls.mu_b = 0.0; }},
+    {"cloth_in_impact", [](Scene& s, reference::Generator&) { s.balls.mu_s = 0.0; }},
+    {"cloth_in_impact",
+     [](Scene& s, reference::Generator&) { s.physics.ball_ball = BallBallModel::kInelastic; }},
     {"cushions",
-     [](Scene& s, SplitMix64&) {
+     [](Scene& s, reference::Generator&) {
          s.table = box(900.0, 900.0, 0.036576);
          s.table.cushions.erase(s.table.cushions.begin());
          s.table.cushions.pop_back();
          s.stop.time = 1.5;
      }},
     {"cushion_friction",
-     [](Scene& s, SplitMix64& rng) {
+     [](Scene& s, reference::Generator& rng) {
          constexpr CushionModel kClosed[] = {CushionModel::kHan2005, CushionModel::kImpulse,
                                              CushionModel::kStronge};
          s.physics.cushion = kClosed[rng.next() % 3];
@@ -123,23 +123,23 @@ const Zero kZeros[] = {
          if (rng.next() % 2 == 0) s.physics.jaw = kClosed[rng.next() % 3];
      }},
     {"pockets",
-     [](Scene& s, SplitMix64& rng) {
+     [](Scene& s, reference::Generator& rng) {
          s.stop.time = 1.0;
          for (int i = 0; i < 3; ++i)
              s.table.pockets.push_back({"p", Vec2(500.0 + 5.0 * i, rng.uniform(-500.0, 500.0)), 0.06, 0.08});
      }},
     {"squirt",
-     [](Scene& s, SplitMix64& rng) {
+     [](Scene& s, reference::Generator& rng) {
          strike_instead(s, rng);
          s.cue->side = 0.0;
      }},
     {"squirt",
-     [](Scene& s, SplitMix64& rng) {
+     [](Scene& s, reference::Generator& rng) {
          strike_instead(s, rng);
          s.cue->end_mass = 0.0;
      }},
     {"clusters",
-     [](Scene& s, SplitMix64&) {
+     [](Scene& s, reference::Generator&) {
          while (s.ball.size() > 2) s.ball.pop_back();
      }},
 };
@@ -147,7 +147,7 @@ const Zero kZeros[] = {
 // Skipped, and forced on with nothing to do: the same record, bit for bit.
 TEST(Effects, SkippedAndZeroGiveTheSameRecordOver1000Scenes) {
     for (const Zero& zero : kZeros) {
-        SplitMix64 rng(20261121);
+        reference::Generator rng(20261121);
         std::size_t events = 0;
         for (int i = 0; i < 1000; ++i) {
             Scene scene = random_scene(rng);
@@ -172,7 +172,7 @@ TEST(Effects, SkippedAndZeroGiveTheSameRecordOver1000Scenes) {
 
 // Everything forced on, in scenes that need only some of it: the plan leaves out nothing that shows.
 TEST(Effects, PlanAndEverythingOnGiveTheSameRecord) {
-    SplitMix64 rng(5);
+    reference::Generator rng(5);
     for (int i = 0; i < 1000; ++i) {
         Scene scene = random_scene(rng);
         if (i % 3 == 0) scene.stop.time = 0.05;
@@ -236,7 +236,7 @@ TEST(Effects, ListsHoldWhatIsNeeded) {
 
 // Scenes near the bound of their reach: what is skipped is never met.
 TEST(Effects, ReachIsNeverTooShort) {
-    SplitMix64 rng(99);
+    reference::Generator rng(99);
     int skipped = 0, met = 0;
     for (int i = 0; i < 4000; ++i) {
         Scene scene = empty_scene();
@@ -302,7 +302,7 @@ TEST(Effects, LateNeedIsCaught) {
 
 // P4: no cliff between a skipped effect and a vanishing one.
 TEST(Effects, VanishingFrictionIsNoFriction) {
-    SplitMix64 rng(3);
+    reference::Generator rng(3);
     for (int i = 0; i < 100; ++i) {
         Scene scene = random_scene(rng);
         scene.stop.events = 3;

@@ -14,7 +14,6 @@
 #include "support/hard_scenes.h"
 
 namespace carom {
-using namespace reference;
 namespace {
 
 using namespace test;
@@ -32,7 +31,7 @@ TEST(Graze, OracleKnowsAStraightLine) {
 }
 
 TEST(Graze, HundredThousandPairs) {
-    SplitMix64 rng(10);
+    reference::Generator rng(10);
     int hits = 0, misses = 0, decided = 0;
     double worst_gap = 0.0, deepest_wrong = 0.0;
     for (int k = 0; decided < 100000; ++k) {

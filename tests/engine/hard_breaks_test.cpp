@@ -9,7 +9,6 @@
 #include "support/hard_scenes.h"
 
 namespace carom {
-using namespace reference;
 namespace {
 
 using namespace test;
@@ -18,7 +17,7 @@ using namespace test;
 class Breaks : public testing::TestWithParam<double> {};
 
 TEST_P(Breaks, NoneExplodes) {
-    SplitMix64 rng(38);
+    reference::Generator rng(38);
     std::size_t most = 0;
     for (int i = 0; i < 250; ++i) {
         char text[400];

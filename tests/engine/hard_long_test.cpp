@@ -9,7 +9,6 @@
 #include "support/hard_scenes.h"
 
 namespace carom {
-using namespace reference;
 namespace {
 
 using namespace test;
@@ -19,7 +18,7 @@ TEST(HardLong, AMillionEvents) {
     Scene scene = frictionless();
     scene.table = box(1.0, 2.0, 0.036576);
     scene.physics.clusters = ClusterModel::kSequential;
-    SplitMix64 rng(32);
+    reference::Generator rng(32);
     while (scene.ball.size() < 16) {
         const double x = rng.uniform(0.05, 0.95), y = rng.uniform(0.05, 1.95);
         bool free = true;

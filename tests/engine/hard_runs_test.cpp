@@ -17,7 +17,6 @@
 #include "support/hard_scenes.h"
 
 namespace carom {
-using namespace reference;
 namespace {
 
 using namespace test;
@@ -115,7 +114,7 @@ TEST(HardRuns, TimeReversal) {
         Scene scene = frictionless();
         scene.table = centred_box(0.635, 1.27);
         scene.physics.clusters = ClusterModel::kSequential;
-        SplitMix64 rng(35);
+        reference::Generator rng(35);
         while (scene.ball.size() < 10) {
             const double x = rng.uniform(-0.6, 0.6), y = rng.uniform(-1.2, 1.2);
             bool free = true;

@@ -176,7 +176,7 @@ TEST(HeldGroups, WedgeWithGreatForcesDoesNotCreep) {
 
 // z >= 0, w = A z + q >= 0, z w = 0 for A = G G^T, with up to twice as many contacts as directions.
 TEST(Complementarity, RandomProblemsWithRedundantContacts) {
-    reference::SplitMix64 rng(1);
+    reference::Generator rng(1);
     for (int round = 0; round < 2000; ++round) {
         const std::size_t contacts = 1 + static_cast<std::size_t>(rng.uniform(0.0, 12.0)), ways = 6;
         std::vector<double> G(contacts * ways), drive(ways);

@@ -10,7 +10,6 @@
 #include "support/engine_cases.h"
 
 namespace carom {
-using namespace reference;
 namespace {
 
 using namespace test;
@@ -55,7 +54,7 @@ TEST(Scenes, SameBitsOnEveryInstructionSetAndEveryTime) {
 
 // Breaks of random speed, line and gap: none runs into the cap, none breaks a law.
 TEST(Scenes, SeededBreaks) {
-    SplitMix64 rng(20261121);
+    reference::Generator rng(20261121);
     std::size_t most = 0;
     for (int i = 0; i < 100; ++i) {
         const double gaps[] = {0.0, 1e-12, 1e-6, 1e-4};

@@ -20,7 +20,7 @@ using namespace test;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Box random_box(SplitMix64& rng) {
+Box random_box(Generator& rng) {
     const double x = rng.uniform(-3.0, 3.0), y = rng.uniform(-3.0, 3.0);
     Box box{x, y, x + rng.uniform(0.0, 0.5), y + rng.uniform(0.0, 0.5)};
     if (rng.uniform() < 0.02) box = {-kInfinity, -kInfinity, kInfinity, kInfinity};
@@ -37,7 +37,7 @@ TEST(BoxSearch, FindsEveryOverlap) {
         BoxSearch direct, tree;
         direct.set_up(count, Search::kDirect);
         tree.set_up(count, Search::kTree);
-        SplitMix64 rng(static_cast<std::uint64_t>(count));
+        Generator rng(static_cast<std::uint64_t>(count));
         std::vector<Box> boxes(static_cast<std::size_t>(count));
         std::vector<bool> in(boxes.size(), true);
         const auto place = [&](int i) {
@@ -86,7 +86,7 @@ TEST(EventQueue, TheWinnerIsTheLeast) {
         queue.set_up(count);
         std::vector<double> time(static_cast<std::size_t>(count));
         const auto earlier = [&time](int i, int j) { return time[i] < time[j]; };
-        SplitMix64 rng(7);
+        Generator rng(7);
         const auto change = [&](int i) { time[i] = rng.uniform() < 0.2 ? kInfinity : rng.uniform(); };
         for (int i = 0; i < count; ++i) change(i);
         for (int i = 0; i < count; ++i) queue.update(i, earlier);
@@ -108,7 +108,7 @@ TEST(EventQueue, TheWinnerIsTheLeast) {
 
 // Random paths, many of them aimed so that they pass at about the reach.
 TEST(Rejects, NeverLeaveOutAContact) {
-    SplitMix64 rng(11);
+    Generator rng(11);
     int rejected = 0, contacts = 0;
     const double R = 0.028575;
     const auto vec = [&rng](double size) { return Vec2{rng.uniform(-size, size), rng.uniform(-size, size)}; };

@@ -13,10 +13,9 @@
 #include "reference/random_impacts.h"
 
 namespace carom::kernel {
-using namespace reference;
 namespace {
 
-using reference::SplitMix64;
+using reference::Generator;
 
 constexpr double kLookAhead = 2.0, kTimeLimit = 2000.0;
 
@@ -183,7 +182,7 @@ class Plain {
 };
 
 // Some balls of a triangular lattice, with small gaps, some of them 0; one runs into the others.
-Cluster random_cluster(SplitMix64& rng) {
+Cluster random_cluster(reference::Generator& rng) {
     Cluster c;
     std::vector<std::array<double, 2>> places;
     const double density = rng.uniform(0.3, 1.0);
@@ -209,7 +208,7 @@ Cluster random_cluster(SplitMix64& rng) {
     return c;
 }
 
-HertzLaw random_law(SplitMix64& rng) {
+HertzLaw random_law(reference::Generator& rng) {
     const int p = 1 << static_cast<int>(rng.uniform(0.0, 4.0));
     const double b = rng.uniform();
     return {1.0 - b,
@@ -222,7 +221,7 @@ HertzLaw random_law(SplitMix64& rng) {
 }
 
 TEST(ContactPhase, EveryInstructionSetIsThePlainProgram) {
-    SplitMix64 rng(3);
+    reference::Generator rng(3);
     std::set<std::size_t> sizes;
     for (int k = 0; k < 300; ++k) {
         const Cluster start = random_cluster(rng);
@@ -274,7 +273,7 @@ TEST(ContactPhase, NeverGainsEnergy) {
             sum += (n % 5 < 2 ? 0.5 : 0.2) * c.motion[n] * c.motion[n];
         return sum;
     };
-    SplitMix64 rng(8);
+    reference::Generator rng(8);
     for (int k = 0; k < 200; ++k) {
         Cluster c = random_cluster(rng);
         if (c.contacts.empty()) continue;

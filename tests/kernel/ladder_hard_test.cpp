@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ladder/ladder.h"
+#include "reference/random_impacts.h"
 #include "support/hard_impacts.h"
 #include "support/impact_cases.h"
 #include "support/rung_runner.h"
@@ -109,7 +110,7 @@ TEST_P(HardRung, PowersOfTwoScale) {
     if (std::string(GetParam().name).find("rsqrt") != std::string::npos ||
         std::string(GetParam().name) == "combined")
         return;
-    std::vector<Impact> impacts = random_impacts(6, 40), scaled = impacts;
+    std::vector<Impact> impacts = reference::random_impacts(6, 40), scaled = impacts;
     for (Impact& impact : scaled)
         for (int k = 0; k < 3; ++k)
             for (double* x : {&impact.ball1.v[k], &impact.ball1.w[k], &impact.ball2.v[k], &impact.ball2.w[k]})
@@ -132,7 +133,7 @@ TEST_P(HardRung, PowersOfTwoScale) {
 // A lane that cannot be computed is flagged and changes nothing in the others.
 TEST_P(HardRung, BadLanesHoldUpNobody) {
     if (GetParam().batch == nullptr) return;
-    const std::vector<Impact> good = random_impacts(8, 40);
+    const std::vector<Impact> good = reference::random_impacts(8, 40);
     std::vector<Impact> mixed;
     for (std::size_t i = 0; i < good.size(); ++i) {
         mixed.push_back(good[i]);

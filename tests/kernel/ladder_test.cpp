@@ -15,7 +15,11 @@
 #include "support/rung_runner.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::BatchArrays;
+using reference::Generator;
+using reference::Impact;
+using reference::random_impacts;
+
 namespace {
 
 using namespace kernel;
@@ -142,7 +146,7 @@ void make_glancing(Impact& impact, double share) {
 // The difference that collide_balls_batch promises, on many impacts, half of them glancing.
 TEST(Ladder, BatchesFollowTheBaseline) {
     std::vector<Impact> impacts = random_impacts(21, 4000);
-    SplitMix64 rng(22);
+    Generator rng(22);
     for (std::size_t i = 0; i < impacts.size(); i += 2)
         make_glancing(impacts[i], std::pow(10.0, rng.uniform(-6.0, -1.0)));
     for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {

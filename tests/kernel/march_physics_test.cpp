@@ -9,7 +9,10 @@
 #include "support/impact_cases.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::Impact;
+using reference::kDegree;
+using reference::random_impacts;
+
 namespace {
 
 using namespace kernel;

@@ -6,7 +6,9 @@
 #include "support/impact_cases.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::Impact;
+using reference::random_impacts;
+
 namespace {
 
 using namespace kernel;

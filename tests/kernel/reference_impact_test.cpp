@@ -11,7 +11,15 @@
 #include "tolerance_support.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::error_of;
+using reference::Generator;
+using reference::Impact;
+using reference::ImpactTruth;
+using reference::random_impact;
+using reference::random_impacts;
+using reference::reference_impact;
+using reference::TruthSettings;
+
 namespace {
 
 using namespace kernel;
@@ -32,7 +40,7 @@ ImpactTruth truth(const Impact& i, const TruthSettings& settings = {}) {
 }
 
 TEST(ReferenceImpact, OrderAndStepSizeDoNotMatter) {
-    SplitMix64 rng(11);
+    Generator rng(11);
     for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
         for (int n = 0; n < 300; ++n) {
             Impact i = n % 2 == 0 ? random_impact(rng) : hard_random_impact(rng, 0.12, 0.4, slip);
@@ -48,7 +56,7 @@ TEST(ReferenceImpact, OrderAndStepSizeDoNotMatter) {
 
 // T14: what both frictions and the restitution take is what the balls lose.
 TEST(ReferenceImpact, EnergyBookCloses) {
-    SplitMix64 rng(12);
+    Generator rng(12);
     for (int n = 0; n < 400; ++n) {
         const Impact i =
             n % 2 == 0 ? random_impact(rng) : hard_random_impact(rng, 1.0, 1.0, ClothSlip::kConsistent);

@@ -12,7 +12,10 @@
 #include "tolerance_support.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::error_of;
+using reference::Impact;
+using reference::ImpactTruth;
+using reference::reference_impact;
 
 /// Expects every error within the tolerance plus a few units of rounding of the largest speed. One sign of
 /// the cloth slip per call.

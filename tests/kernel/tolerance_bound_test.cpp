@@ -8,7 +8,11 @@
 #include "tolerance_bound.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::Generator;
+using reference::Impact;
+using reference::random_impact;
+using reference::random_impacts;
+
 namespace {
 
 using namespace kernel;
@@ -36,7 +40,7 @@ TEST(ToleranceBound, WithoutRestitution) {
 
 // Slow, fast, and almost only sideways: the bound is relative to the approach speed until rounding shows.
 TEST(ToleranceBound, AnyApproachSpeed) {
-    SplitMix64 rng(44);
+    Generator rng(44);
     std::vector<Impact> impacts;
     for (int n = 0; n < 1500; ++n) {
         Impact i = random_impact(rng);
@@ -64,7 +68,7 @@ TEST(ToleranceBound, AnyApproachSpeed) {
 }
 
 TEST(ToleranceBound, ImpactsBuiltToBeHard) {
-    SplitMix64 rng(45);
+    Generator rng(45);
     std::vector<Impact> impacts;
     for (int n = 0; n < 3000; ++n)
         impacts.push_back(hard_random_impact(rng, 0.12, 0.4, ClothSlip::kConsistent));

@@ -12,7 +12,11 @@
 #include "tolerance_support.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::error_of;
+using reference::Impact;
+using reference::ImpactTruth;
+using reference::reference_impact;
+
 namespace {
 
 using namespace kernel;

@@ -11,7 +11,8 @@
 #include "reference/random_impacts.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::Generator;
+using reference::Impact;
 
 inline std::vector<kernel::Isa> isas() {
     std::vector<kernel::Isa> list;
@@ -70,7 +71,7 @@ inline double approach_speed(const Impact& i) {
 
 /// Impacts around everything that is singular: slip that ends, cloth slip that passes or starts next to zero, both,
 /// over many decades; e_b and the frictions up to `mu_b` and `mu_s`, their limits included. Approach speed 1.
-inline Impact hard_random_impact(SplitMix64& rng, double mu_b, double mu_s, kernel::ClothSlip slip) {
+inline Impact hard_random_impact(Generator& rng, double mu_b, double mu_s, kernel::ClothSlip slip) {
     const auto decades = [&rng](double lo, double hi) { return lo * std::pow(hi / lo, rng.uniform()); };
     const auto sign = [&rng] { return rng.next() % 2 == 0 ? 1.0 : -1.0; };
     Impact i{};

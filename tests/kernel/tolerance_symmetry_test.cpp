@@ -14,14 +14,14 @@ namespace {
 
 using namespace kernel;
 
-Impact any_impact(SplitMix64& rng) {
+Impact any_impact(Generator& rng) {
     return rng.next() % 2 == 0 ? random_impact(rng)
                                : hard_random_impact(rng, 0.3, 0.6, ClothSlip::kConsistent);
 }
 
 // U4. A part of rounding is left: the energies are sums of squares of numbers that were rounded once.
 TEST(ToleranceEnergy, NeverRises) {
-    SplitMix64 rng(51);
+    Generator rng(51);
     for (double tolerance : {1e-1, 1e-3, 1e-6, 1e-10}) {
         const int count = tolerance < 1e-8 ? 100000 : 300000;
         std::vector<Impact> impacts;
@@ -43,7 +43,7 @@ TEST(ToleranceEnergy, NeverRises) {
 // The pair gains no momentum but the cloth's, which acts on
 // one ball and is at most mu_s mu_b times the normal impulse.
 TEST(ToleranceMomentum, OnlyTheClothChangesIt) {
-    SplitMix64 rng(52);
+    Generator rng(52);
     for (int n = 0; n < 20000; ++n) {
         Impact i = any_impact(rng);
         if (n % 2 == 0) i.params.mu_s1 = i.params.mu_s2 = 0.0;
@@ -81,7 +81,7 @@ void quarter_turn(double (&r)[3], double (&v)[3], double (&w)[3]) {
 
 template <class Transform>
 void expect_equivariant(Transform transform, std::uint64_t seed) {
-    SplitMix64 rng(seed);
+    Generator rng(seed);
     int differing = 0;
     std::vector<Impact> impacts, images;
     for (int n = 0; n < 20000; ++n) {

@@ -12,7 +12,15 @@
 #include "tolerance_support.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::error_of;
+using reference::Generator;
+using reference::Impact;
+using reference::ImpactTruth;
+using reference::kDegree;
+using reference::random_impact;
+using reference::random_impacts;
+using reference::reference_impact;
+
 namespace {
 
 using namespace kernel;
@@ -136,7 +144,7 @@ TEST(Tolerance, MathavanTable) {
 
 // T14 at the strictest tolerance: the energy that is lost is what restitution and both frictions take.
 TEST(Tolerance, EnergyBook) {
-    SplitMix64 rng(21);
+    Generator rng(21);
     for (int n = 0; n < 300; ++n) {
         const Impact i =
             n % 2 == 0 ? random_impact(rng) : hard_random_impact(rng, 0.2, 0.5, ClothSlip::kConsistent);

@@ -9,7 +9,7 @@
 #include "support/hard_scenes.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::Generator;
 
 /// n balls on a jittered square grid (n a square), 1 m/s in random directions; a fifth of the area is balls.
 inline Scene gas(int n, long events, std::uint64_t seed) {
@@ -20,7 +20,7 @@ inline Scene gas(int n, long events, std::uint64_t seed) {
     while (side * side < n) ++side;
     const double cell = 4.0 * scene.balls.R;
     scene.table = box(cell * side, cell * side, 0.036576);
-    SplitMix64 rng(seed);
+    Generator rng(seed);
     for (int i = 0; i < n; ++i) {
         const SinCos v = sin_cos_deg(rng.uniform(0.0, 360.0));
         const int column = i % side, row = i / side;

@@ -8,14 +8,14 @@
 #include "reference/random_impacts.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::Generator;
 
 inline Vec2 turned(const Vec2& a, const Vec2& e) {
     return {a.x() * e.x() - a.y() * e.y(), a.x() * e.y() + a.y() * e.x()};
 }
 
 /// From the origin. kind: 0 at rest, 1 rolls, 2 slides.
-inline Path random_path(SplitMix64& rng, int kind, double speed) {
+inline Path random_path(Generator& rng, int kind, double speed) {
     const SinCos c = sin_cos(rng.uniform(0.0, 6.283185307179586)),
                  d = sin_cos(rng.uniform(0.0, 6.283185307179586));
     const Vec2 v = speed * Vec2(c.cos, c.sin);
@@ -25,7 +25,7 @@ inline Path random_path(SplitMix64& rng, int kind, double speed) {
 }
 
 /// Puts ball 2 so that at the time t the two pass at right angles to their relative velocity, `depth` within reach.
-inline void set_to_graze(const Path& one, Path& two, double t, double depth, double reach, SplitMix64& rng) {
+inline void set_to_graze(const Path& one, Path& two, double t, double depth, double reach, Generator& rng) {
     const Vec2 v = (two.v - one.v) + t * (two.a - one.a);
     const double speed = length(v);
     const Vec2 across = turned(v / speed, Vec2(0.0, rng.next() % 2 ? 1.0 : -1.0));

@@ -15,7 +15,7 @@
 #include "support/hard_scenes.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::Generator;
 
 /// The order in which the numbers of a vector are drawn, and those of a speed: the same seed gives two
 /// scenes, of two families that have nothing else in common.
@@ -209,7 +209,7 @@ class RandomScene {
         }
     }
 
-    SplitMix64 rng_;
+    Generator rng_;
     Scene scene_;
     DrawOrder order_;
     int tries_ = 0;

@@ -11,7 +11,8 @@
 #include "reference/batch_arrays.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::BatchArrays;
+using reference::Impact;
 
 inline std::vector<kernel::ImpactResult> run_rung(const kernel::Rung& rung, std::vector<Impact> impacts,
                                                   int n, kernel::ClothSlip slip) {

@@ -19,7 +19,6 @@
 #include "support/engine_cases.h"
 
 namespace carom::tools {
-using namespace reference;
 namespace {
 
 using namespace test;
@@ -158,7 +157,7 @@ TEST(OutcomeOf, NamesContactsAndTheFirstBallHit) {
     EXPECT_EQ(outcome.pockets, (std::vector<int>{-1, -1, -1}));
 }
 
-Scene seeded_break(SplitMix64& rng, int seed) {
+Scene seeded_break(reference::Generator& rng, int seed) {
     char text[400];
     const double x = 0.635 + rng.uniform(-0.012, 0.012), speed = rng.uniform(5.0, 12.0);
     std::snprintf(text, sizeof text,
@@ -172,7 +171,7 @@ Scene seeded_break(SplitMix64& rng, int seed) {
 // every 100 breaks for which double precision allows it.
 TEST(Recommendation, MeetsAMillimetreOnSeededBreaks) {
     constexpr double kTarget = 1e-3;
-    SplitMix64 rng(9);
+    reference::Generator rng(9);
     int allowed = 0, met = 0, unresolved = 0, looser = 0;
     for (int i = 0; i < 100; ++i) {
         const Scene scene = seeded_break(rng, i + 1);

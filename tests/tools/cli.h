@@ -8,6 +8,10 @@
 
 namespace carom::test {
 
+inline bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
 /// Runs the built program.
 inline ProcessResult carom(std::vector<std::string> arguments, ProcessOptions options = {}) {
     arguments.insert(arguments.begin(), CAROM_PROGRAM);

@@ -10,10 +10,6 @@
 namespace carom::test {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", kSmallScene);

@@ -11,7 +11,6 @@
 #include "reference/random_impacts.h"
 
 namespace carom::tools {
-using namespace reference;
 namespace {
 
 Record record_with_events(const std::vector<double>& times) {
@@ -39,7 +38,7 @@ TEST(FrameOf, AnEventAtAFrameBelongsToThatFrame) {
 }
 
 TEST(FrameOf, HoldsItsDefinitionForAnyTime) {
-    reference::SplitMix64 rng(3);
+    reference::Generator rng(3);
     for (int i = 0; i < 100000; ++i) {
         const double fps = rng.uniform(1.0, 300.0), from = rng.uniform(0.0, 5.0),
                      t = from + rng.uniform(0.0, 20.0);
@@ -99,7 +98,7 @@ TEST(FrameWalls, CountsFramesAndNotWhatIsBetweenThem) {
 }
 
 TEST(CostsByFrame, AgreesWithTheRendererOnTheFrames) {
-    reference::SplitMix64 rng(5);
+    reference::Generator rng(5);
     for (int i = 0; i < 1000; ++i) {
         const double fps = rng.uniform(1.0, 200.0), duration = rng.uniform(0.0, 20.0);
         const long frames = render::frame_count(0.0, duration, fps);

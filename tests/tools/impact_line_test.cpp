@@ -12,7 +12,6 @@
 #include "reference/random_impacts.h"
 
 namespace carom::tools {
-using namespace reference;
 namespace {
 
 using Json = nlohmann::json;
@@ -243,7 +242,7 @@ TEST(ImpactLine, HostileLinesAreErrors) {
 }
 
 TEST(ImpactLine, AnyChangedLineIsAnsweredInOneLine) {
-    reference::SplitMix64 rng(21);
+    reference::Generator rng(21);
     const std::string wholes[] = {ball_ball_line().dump(), cushion_line().dump()};
     int refused = 0;
     for (int i = 0; i < 5000; ++i) {

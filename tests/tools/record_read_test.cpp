@@ -209,7 +209,7 @@ TEST(Printable, NothingSteersATerminal) {
 }
 
 TEST(RecordFile, AnyChangedByteIsReadOrRefused) {
-    reference::SplitMix64 rng(11);
+    reference::Generator rng(11);
     Record small = sample_record();
     for (BallTrack& track : small.tracks) track.segments.resize(2);
     const TemporaryFolder folder;

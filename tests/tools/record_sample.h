@@ -12,19 +12,19 @@
 #include "support/process.h"
 
 namespace carom::test {
-using namespace reference;
+using reference::Generator;
 
 using Json = nlohmann::json;
 
 /// Any finite double, all exponents alike; signed zeros and subnormals are among them.
-inline double any_double(SplitMix64& rng) {
+inline double any_double(Generator& rng) {
     for (;;) {
         const double value = std::bit_cast<double>(rng.next());
         if (std::isfinite(value)) return value;
     }
 }
 
-inline Segment any_segment(SplitMix64& rng, double start) {
+inline Segment any_segment(Generator& rng, double start) {
     Segment s;
     s.start = start;
     for (int i = 0; i < 3; ++i) {
@@ -45,7 +45,7 @@ inline Segment any_segment(SplitMix64& rng, double start) {
 }
 
 inline Record sample_record() {
-    SplitMix64 rng(7);
+    Generator rng(7);
     Record record;
     record.table.preset = "nine_foot";
     record.table.width = 1.27;

@@ -150,8 +150,10 @@ int write_sheet(const RenderArgs& args, const Record& record, const render::Sequ
     const render::FrameSize grid = parse_sheet(args.sheet);
     const std::string path = args.pattern.find('%') == std::string::npos ? args.pattern : "sheet.png";
     render::render_sheet(record, options, grid.width, grid.height, path);
-    print(fmt::format("{}: {}\n", counted(static_cast<std::size_t>(grid.width * grid.height), "picture"),
-                      path));
+    print(fmt::format(
+        "{}: {}\n",
+        counted(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height), "picture"),
+        path));
     return kOk;
 }
 

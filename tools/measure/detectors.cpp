@@ -88,7 +88,7 @@ double by_bracketing(const Pair& pair) {
 
 /// Random pairs, or pairs that pass within 1e-16 m to 1e-4 m of touching.
 std::vector<Pair> pairs(int count, bool grazing) {
-    SplitMix64 rng(grazing ? 10 : 11);
+    Generator rng(grazing ? 10 : 11);
     std::vector<Pair> list;
     while (static_cast<int>(list.size()) < count) {
         constexpr int kKinds[][2] = {{1, 0}, {2, 0}, {1, 1}, {2, 1}, {2, 2}};

@@ -3,12 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace carom::render {
-
-namespace {
-constexpr double kPi = 3.14159265358979323846;
-}
 
 Vec3 Camera::forward() const {
     return (target - eye).normalized();
@@ -23,7 +20,7 @@ Vec3 Camera::image_up() const {
 }
 
 double Camera::tan_half_y() const {
-    return std::tan(fov_y_deg * kPi / 360.0);
+    return std::tan(fov_y_deg * std::numbers::pi / 360.0);
 }
 
 double Camera::tan_half_x() const {

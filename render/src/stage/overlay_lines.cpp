@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "stage/overlay_boxes.h"
@@ -10,7 +11,6 @@ namespace carom::render {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kOnCloth = 0.0012;  // [m] height of lines on the cloth
 
 // [s] For how long a ring shows a new event.
@@ -103,8 +103,8 @@ void add_events(DrawList& list, const Record& record, double t) {
         if (age >= 1.0) continue;
         Rgba fading = color;
         fading[3] = static_cast<float>(1.0 - age);
-        add_circle(list, place, record.balls.R * (1.0 + 2.0 * age), 0.0, 2.0 * kPi, line_width(list, 2.0),
-                   fading, LineLayer::kOverBalls);
+        add_circle(list, place, record.balls.R * (1.0 + 2.0 * age), 0.0, 2.0 * std::numbers::pi,
+                   line_width(list, 2.0), fading, LineLayer::kOverBalls);
     }
 }
 
@@ -145,7 +145,7 @@ void add_spin(DrawList& list, const Record& record, double t) {
             add_arrow_head(list, tip, along, std::min(0.6 * R, 0.5 * length), width, level);
         }
         // A full arc stands for 60 rad/s about the vertical.
-        const double arc = std::clamp(state.spin.z() / 60.0, -1.0, 1.0) * 1.7 * kPi;
+        const double arc = std::clamp(state.spin.z() / 60.0, -1.0, 1.0) * 1.7 * std::numbers::pi;
         if (std::abs(arc) > 0.05) {
             const Vec3 level_center(state.position.x(), state.position.y(), R);
             add_circle(list, level_center, 1.4 * R, 0.0, arc, width, vertical, LineLayer::kOverBalls);
@@ -173,7 +173,7 @@ void add_ghost(DrawList& list, const Record& record, double t) {
                here = record.state_at(striker, t).position;
     const Rgba color{1.0F, 1.0F, 1.0F, 0.85F};
     const float width = line_width(list, 1.6);
-    add_circle(list, there, R, 0.0, 2.0 * kPi, width, color, LineLayer::kOverBalls);
+    add_circle(list, there, R, 0.0, 2.0 * std::numbers::pi, width, color, LineLayer::kOverBalls);
     if ((there - here).norm() > 2.0 * R) {
         const Vec3 along = (there - here).normalized();
         list.lines.push_back({here + R * along, there - R * along, width, color, LineLayer::kUnderBalls});

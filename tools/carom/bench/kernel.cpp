@@ -58,7 +58,7 @@ void time_all(std::vector<TimedKernel>& list, const ImpactSet& five, const Impac
         s.random_calls = std::max(1, static_cast<int>(5e6 / std::max(all, 1.0)));
         s.random_calls = std::min(s.random_calls, 4);
     }
-    reference::SplitMix64 rng(99);
+    reference::Generator rng(99);
     std::vector<std::size_t> order(list.size());
     std::iota(order.begin(), order.end(), 0u);
     ProgressLine progress("bench kernel");

@@ -24,7 +24,7 @@ double cpu_ms() {
     return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-double wall_ms(Clock::time_point since) {
+double wall_ms_since(Clock::time_point since) {
     return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
 }
 
@@ -61,7 +61,7 @@ void measure_stages(const Record& record, FrameSize size, int frames, Backend ba
         const double t1 = cpu_ms();
         renderer.read(image);
         const double t2 = cpu_ms();
-        if (i == 0) row.setup_ms = wall_ms(start);
+        if (i == 0) row.setup_ms = wall_ms_since(start);
         encode_png(image.image(), 1, bytes);
         const double t3 = cpu_ms();
         const Clock::time_point before = Clock::now();
@@ -71,7 +71,7 @@ void measure_stages(const Record& record, FrameSize size, int frames, Backend ba
         read.push_back(t2 - t1);
         both.push_back(t2 - t0);
         encode.push_back(t3 - t2);
-        write.push_back(wall_ms(before));
+        write.push_back(wall_ms_since(before));
     }
     row.draw_ms = median(draw);
     row.readback_ms = median(read);
@@ -97,7 +97,7 @@ double frames_per_second(const Record& record, FrameSize size, int frames, Backe
     };
     options.table_progress = [&steps](int, int) { steps.look(); };
     render_sequence(record, options);
-    return 1e3 * static_cast<double>(done - 1) / wall_ms(first);
+    return 1e3 * static_cast<double>(done - 1) / wall_ms_since(first);
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ struct TimedShot {
 /// Calls every function of the list once a round, in a new
 /// random order each, so that no drift of the clock favours one.
 void interleave(const std::vector<std::function<void()>>& list, int rounds, const char* title) {
-    reference::SplitMix64 rng(99);
+    reference::Generator rng(99);
     std::vector<std::size_t> order(list.size());
     std::iota(order.begin(), order.end(), 0u);
     ProgressLine progress(title);

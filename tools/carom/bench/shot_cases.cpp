@@ -10,7 +10,7 @@
 namespace carom::tools {
 namespace {
 
-using reference::SplitMix64;
+using reference::Generator;
 
 constexpr const char* kBreak = R"(
 [table]
@@ -66,7 +66,7 @@ std::vector<std::string> shot_names() {
 }
 
 Scene shot_scene(const std::string& name, std::uint64_t seed) {
-    SplitMix64 rng(seed);
+    Generator rng(seed);
     for (const Shot& shot : kShots) {
         if (name != shot.name) continue;
         std::string text;
@@ -107,7 +107,7 @@ Scene gas_scene(int n, long events, std::uint64_t seed) {
                             {"c2", {0, l}, {w, l}, height},
                             {"c3", {w, l}, {w, 0}, height},
                             {"c4", {w, 0}, {0, 0}, height}};
-    SplitMix64 rng(seed);
+    Generator rng(seed);
     for (int i = 0; i < n; ++i) {
         BallStart ball;
         ball.id = std::to_string(i + 1);
