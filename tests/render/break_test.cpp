@@ -112,22 +112,30 @@ long peak_memory_kb() {
     return -1;
 }
 
-TEST(Break, MemoryStaysUnder300MegabytesAt1080p) {
+// What Mesa itself takes differs by its release by tens of megabytes, so what a sequence needs is counted from there.
+TEST(Break, A1080pSequenceTakesUnder240MegabytesBesideTheDriver) {
 #ifdef CAROM_SANITIZED
     GTEST_SKIP() << "the sanitizer's own memory counts";
 #endif
     const render_test::ScratchFolder folder("memory");
     SequenceOptions options;
     options.pattern = folder.file("%03d.png");
-    options.size = {1920, 1080};
     options.table_samples = 2;
+    options.size = {16, 16};
+    options.frame = 0;
+    ASSERT_EQ(render_sequence(the_break(), options).size(), 1U);  // the driver, its compiler, the shaders
+    const long idle = peak_memory_kb();
+    ASSERT_GT(idle, 0);
+    options.size = {1920, 1080};
+    options.frame.reset();
     options.jobs = 16;
     options.to = 0.6;
     EXPECT_EQ(render_sequence(the_break(), options).size(), 37U);
     const long peak = peak_memory_kb();
-    ASSERT_GT(peak, 0);
-    std::printf("peak memory at 1920x1080 with 16 encoder threads: %ld MB\n", peak / 1024);
-    EXPECT_LT(peak, 300000000 / 1024);
+    std::printf(
+        "peak memory at 1920x1080 with 16 encoder threads: %ld MB, of which %ld MB are an idle renderer's\n",
+        peak / 1024, idle / 1024);
+    EXPECT_LT(peak - idle, 240000000 / 1024);
 }
 
 }  // namespace
