@@ -40,8 +40,8 @@ struct alignas(64) Mover {
     /// meanwhile: it is then not later than the true one.
     Candidate pair;
     Candidate feature;  ///< first contact with the table
-    double refresh =
-        kNever;           ///< then the box is renewed; kNever where an event of the ball's own comes first
+    /// Then the box is renewed; kNever where an event of the ball's own comes first
+    double refresh = kNever;
     double travel = 0.0;  ///< [m] the way that the next box is to cover
     bool straight = false, queued = false;
 };

@@ -24,9 +24,8 @@ class StaticLayer {
               const std::function<void(int done, int total)>& on_pass);
 
     GLuint color() const { return color_; }  ///< RGBA8; alpha: how much of the pixel is cloth
-    GLuint occluders() const {
-        return occluders_;
-    }  ///< RGBA32F: four distances along the view, over the pixel
+    /// RGBA32F: four distances along the view, over the pixel
+    GLuint occluders() const { return occluders_; }
     GLuint framebuffer() const { return color_framebuffer_; }
 
   private:

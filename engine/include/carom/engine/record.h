@@ -32,8 +32,8 @@ struct Segment {
     double duration = 0.0;    ///< until the ball's own next transition [s]; infinite if none
     MotionState state = MotionState::kStationary;
     bool held = false;  ///< in a sustained contact: `a` holds the contact forces too
-    bool ends =
-        true;  ///< its own transition comes at the end of the duration (a held ball may only turn its forces)
+    /// Its own transition comes at the end of the duration (a held ball may only turn its forces)
+    bool ends = true;
     bool operator==(const Segment&) const = default;
 };
 

@@ -70,8 +70,8 @@ struct DrawList {
     std::vector<DrawBall> balls;
     std::vector<DrawLine> lines;
     std::vector<DrawBox> boxes;
-    int table_samples =
-        16;  ///< per pixel of the table; it is drawn anew only when the camera or the table changes
+    /// Per pixel of the table; it is drawn anew only when the camera or the table changes
+    int table_samples = 16;
 };
 
 /// Appends a line of text with its upper left corner at `at`; height of a capital in pixels.

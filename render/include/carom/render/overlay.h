@@ -8,8 +8,8 @@ namespace carom::render {
 struct Overlay {
     bool trails = false;  ///< every ball's way so far, coloured by its motion state
     bool events = false;  ///< a dot where an impact was; a ring shows it for a third of a second
-    bool spin =
-        false;  ///< arrows: the way the top of a ball turns, and an arc for the spin about the vertical
+    /// Arrows: the way the top of a ball turns, and an arc for the spin about the vertical
+    bool spin = false;
     bool ghost = false;   ///< where a moving ball will stand when it next meets another
     bool clock = false;   ///< s of the shot
     bool margin = false;  ///< the frame's cost against its 1 / fps

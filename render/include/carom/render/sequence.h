@@ -36,8 +36,8 @@ struct SequenceOptions {
     std::function<double(long k)> simulate_ms;
     /// Instead of all that: what the bar shows for frame k.
     std::function<double(long k)> frame_cost_ms;
-    int table_samples =
-        16;  ///< per pixel of the table, drawn once per camera; a camera that moves takes at most 4
+    /// Per pixel of the table, drawn once per camera; a camera that moves takes at most 4
+    int table_samples = 16;
     int png_level = 1;  ///< zlib level 0..9
     Backend backend = Backend::kOsmesa;
     /// Threads that encode and write. 1: no thread but the caller's, so that the timings do not disturb each
