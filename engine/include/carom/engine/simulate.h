@@ -13,7 +13,7 @@ namespace carom {
 struct SimulateOptions {
     bool profile = false;         ///< time every event (Record::costs); off costs nothing
     std::optional<double> until;  ///< stop time [s], in addition to the scene's own
-    /// S, of the shot in the caller's clock: kept in Record::start_time, enters no computation
+    /// [s] Of the shot in the caller's clock: kept in Record::start_time, enters no computation
     double start_time = 0.0;
     /// Called with (events so far, simulated time) every so many rounds of the loop, and after a round that
     /// was long by itself (a cluster, a march of many steps, balls held together): for a progress line, and
