@@ -37,7 +37,7 @@ HEADERS = {
     "iterator": r"std::(back_inserter|inserter|istreambuf_iterator|distance|prev|next)\b",
     "limits": r"std::numeric_limits<",
     "map": r"std::(map|multimap)<",
-    "memory": r"std::(unique_ptr|shared_ptr|make_unique|make_shared|weak_ptr)\b",
+    "memory": r"std::(unique_ptr|shared_ptr|make_unique|make_shared|weak_ptr|align)\b",
     "mutex": r"std::(mutex|lock_guard|unique_lock|scoped_lock|once_flag|call_once)\b",
     "numbers": r"std::numbers\b",
     "numeric": r"std::(accumulate|iota|inner_product|gcd)\(",

@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 
 #include "carom/engine/tolerances.h"
 
 namespace carom {
 
 namespace {
+
+constexpr std::size_t kCacheLine = 64;  // [bytes]
 
 // [L/V] The map goes on while a listed pair would touch within this time.
 constexpr double kClusterLookAhead = 2.0;
@@ -70,6 +74,14 @@ kernel::HertzLaw law_of(const ClusterSettings& s) {
     return {1.0 - b, b, p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip};
 }
 
+// The integration reads and writes four numbers at once. From the start of a cache line on, none of these lies across two:
+// where the heap happened to put them elsewhere, the contact phase of a break took a fifth longer.
+double* on_cache_line(std::vector<double>& numbers) {
+    void* first = numbers.data();
+    std::size_t space = numbers.size() * sizeof(double);
+    return static_cast<double*>(std::align(kCacheLine, space - kCacheLine, first, space));
+}
+
 }  // namespace
 
 void ClusterMap::load(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
@@ -84,7 +96,8 @@ void ClusterMap::load(const std::vector<ClusterBall>& balls, const std::vector<C
     const double L = contact_length(V);
     for (const ClusterContact& c : contacts) contacts_.push_back({c.i, c.j, c.n.x(), c.n.y(), -c.gap / L});
     const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
-    numbers_.resize(std::max(numbers_.size(), kernel::contact_phase_numbers(m, n)));
+    numbers_.resize(
+        std::max(numbers_.size(), kernel::contact_phase_numbers(m, n) + kCacheLine / sizeof(double)));
     places_.resize(std::max(places_.size(), kernel::contact_phase_places(n)));
 }
 
@@ -138,7 +151,7 @@ long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<Cl
                                      static_cast<int>(contacts.size()),
                                      motion_.data(),
                                      contacts_.data(),
-                                     numbers_.data(),
+                                     on_cache_line(numbers_),
                                      places_.data()};
     const long steps = settings.integrate(phase, law_of(settings), settings.longest_step, kClusterLookAhead,
                                           kClusterTimeLimit);
