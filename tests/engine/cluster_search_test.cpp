@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "carom/engine/tolerances.h"
-#include "loop/shot.h"
+#include "loop/run.h"
 #include "physics/cluster.h"
 #include "physics/motion.h"
 #include "support/gas.h"
@@ -187,13 +187,13 @@ TEST(ClusterSearch, TheSizeIsThatOfTheBallsThemselves) {
 double looks_per_impact(const Scene& scene) {
     const Plan plan = plan_of(scene);
     const SimulateOptions options;
-    Shot shot(plan, options);
-    const Record record = shot.run<false>(nullptr);
+    Run run(plan, options);
+    const Record record = run.simulate(nullptr);
     const auto impacts = std::count_if(record.events.begin(), record.events.end(), [](const Event& e) {
-        return e.type == EventType::kBallBall || e.type == EventType::kBallCluster;
+        return balls_collide(e.type);
     });
     EXPECT_GT(impacts, 500);
-    return static_cast<double>(shot.cluster_looks()) / static_cast<double>(impacts);
+    return static_cast<double>(run.clusters().looks()) / static_cast<double>(impacts);
 }
 
 TEST(ClusterSearch, WorkPerImpactDoesNotGrowWithTheBalls) {

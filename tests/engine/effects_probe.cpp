@@ -65,7 +65,7 @@ const Case kCases[] = {
          s.balls.mu_sp = 1e-4;
          for (BallStart& b : s.ball) b.spin.z() = 30.0;
      }},
-    {"throw", "carom::Shot::pair_friction", "model inelastic, mu_b = 0.05",
+    {"throw", "carom::pair_friction", "model inelastic, mu_b = 0.05",
      [](Scene& s) {
          s.physics.ball_ball = BallBallModel::kInelastic;
          s.balls.mu_b = 0.05;
@@ -99,13 +99,13 @@ const Case kCases[] = {
          s.balls.f_c = 0.2;
          s.balls.e_c = 0.95;
      }},
-    {"pockets", "carom::time_to_pocket carom::Shot::resolve_pocket",
+    {"pockets", "carom::time_to_pocket carom::pocketed_segment",
      "six pockets at the rails that no centre enters",
      [](Scene& s) {
          for (const double y : {0.0, 0.35, 0.7})
              for (const double x : {0.0, 0.5}) s.table.pockets.push_back({"p", Vec2(x, y), 0.025, 0.08});
      }},
-    {"clusters", "carom::Shot::collect_cluster carom::ClusterMap::compliant", "a third ball at rest",
+    {"clusters", "carom::Clusters::collect carom::ClusterMap::compliant", "a third ball at rest",
      [](Scene& s) {
          s.physics.clusters = ClusterModel::kCompliant;
          add(s, "c", 0.25, 0.33, 0.0, 0.0);
@@ -121,7 +121,7 @@ const Case kCases[] = {
          s.stop.events.reset();
          s.stop.time = 1.0;
      }},
-    {"cushions", "carom::time_to_line carom::Shot::resolve_nose", "the reflecting cushions of the bare scene",
+    {"cushions", "carom::time_to_line carom::detail::cushion_smooth", "the reflecting cushions of the bare scene",
      [](Scene&) {}},
     {"squirt", "carom::effects::squirt", "the cue strikes 0.3 R off centre",
      [](Scene& s) {

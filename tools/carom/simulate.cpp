@@ -138,7 +138,7 @@ std::string profile_report(const Record& record) {
                    "time (s)", "balls", "ns", "steps", "method");
     for (std::size_t i = 0; i < record.costs.size(); ++i) {
         const Event& event = record.events[i];
-        if (event.type != EventType::kBallBall && event.type != EventType::kBallCluster) continue;
+        if (!balls_collide(event.type)) continue;
         const EventCost& cost = record.costs[i];
         fmt::format_to(
             line, "  {:>12.6f}  {:<12}{:>12.0f}{:>8}  {}\n", event.time,

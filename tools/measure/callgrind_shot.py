@@ -22,11 +22,10 @@ import tempfile
 
 # First match counts.
 PARTS = [
-    ("cluster", r"carom::ClusterMap::|collect_cluster|resolve_cluster"),
+    ("cluster", r"carom::Cluster(s|Map)::"),
     ("kernel", r"carom::kernel::"),
-    ("queue", r"EventQueue|Shot::(next|before|closing|place|requeue|changed)"),
-    ("detect", r"Shot::(pair|search_pairs|look_again|redetect|renew|detect_|find_parts|offer|bound|path|swept|held_to|"
-               r"rescan)|BoxSearch|b2|time_to_|time_along|stays_|first_descent|bracketed_root|closing_speed|refine|"
+    ("queue", r"EventQueue|Detector::(next|before|closing|place|requeue|mark_changed|first_of)"),
+    ("detect", r"Detector::|BoxSearch|b2|time_to_|time_along|stays_|first_descent|bracketed_root|closing_speed|refine|"
                r"along_line|brought_near|first_touch|Descent|unit_roots"),
     ("memory", r"^(_int_malloc|_int_free|malloc|free|operator new|operator delete|malloc_consolidate|unlink_chunk|"
                r"_int_realloc|sysmalloc|memcpy|memset|__mem)|_M_realloc"),
@@ -64,7 +63,7 @@ def self_costs(path):
 
 
 def measure(probe, args, folder):
-    command = ["valgrind", "--tool=callgrind", "--toggle-collect=carom::simulate(*", "--dump-before=*carom::Shot::apply<*",
+    command = ["valgrind", "--tool=callgrind", "--toggle-collect=carom::simulate(*", "--dump-before=*carom::Resolver::resolve(*",
                "--compress-strings=no", f"--callgrind-out-file={folder}/out", str(probe)]
     command += ["gas", str(args.balls), str(args.events)] if args.shot in ("gas", "gas compliant") else [args.shot, str(args.seed)]
     env = dict(os.environ)
@@ -97,7 +96,7 @@ def main():
         kinds, dumps = measure(build / "tools" / "measure" / "carom_shot_probe", args, pathlib.Path(folder))
     # One dump before the first round (set-up, first detection), then one a round; the last one holds the end of the run.
     if len(dumps) < len(kinds) + 1:
-        sys.exit(f"callgrind_shot.py: {len(kinds)} rounds but {len(dumps)} dumps; is the loop still called Shot::apply?")
+        sys.exit(f"callgrind_shot.py: {len(kinds)} rounds but {len(dumps)} dumps; is it still Resolver::resolve?")
     dumps = [d for d in dumps if sum(d.values())]
     rows = collections.defaultdict(lambda: [0, collections.Counter()])
     total = collections.Counter()

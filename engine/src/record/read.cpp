@@ -147,27 +147,16 @@ BallTrack read_track(const JsonValue& value, const Table& table) {
 
 /// What an event's b may be: the index of a ball, cushion, jaw or pocket, or -1 for none.
 std::int64_t partners(EventType type, const Record& record) {
-    switch (type) {
-        case EventType::kBallBall:
-        case EventType::kBallCluster:
-        case EventType::kBallBallHold:
-        case EventType::kBallBallRelease:
+    switch (kind(type).partner) {
+        case Partner::kBall:
             return static_cast<std::int64_t>(record.tracks.size());
-        case EventType::kBallCushion:
-        case EventType::kBallCushionHold:
-        case EventType::kBallCushionRelease:
+        case Partner::kCushion:
             return static_cast<std::int64_t>(record.table.cushions.size());
-        case EventType::kBallJaw:
-        case EventType::kBallJawHold:
-        case EventType::kBallJawRelease:
+        case Partner::kJaw:
             return static_cast<std::int64_t>(record.table.jaws.size());
-        case EventType::kBallPocket:
+        case Partner::kPocket:
             return static_cast<std::int64_t>(record.table.pockets.size());
-        case EventType::kCueStrike:
-        case EventType::kSlideRoll:
-        case EventType::kRollSpin:
-        case EventType::kRollStop:
-        case EventType::kSpinStop:
+        case Partner::kNone:
             break;
     }
     return 0;

@@ -14,6 +14,13 @@
 
 namespace carom {
 
+// name() and kind() look a type up by its number.
+static_assert([] {
+    for (int i = 0; i < kEventTypes; ++i)
+        if (static_cast<int>(kEventKinds[i].type) != i) return false;
+    return true;
+}());
+
 const char* name(MotionState state) {
     switch (state) {
         case MotionState::kStationary:
@@ -26,44 +33,6 @@ const char* name(MotionState state) {
             return "rolling";
         case MotionState::kPocketed:
             return "pocketed";
-    }
-    return "unknown";
-}
-
-const char* name(EventType type) {
-    switch (type) {
-        case EventType::kCueStrike:
-            return "cue_strike";
-        case EventType::kBallBall:
-            return "ball_ball";
-        case EventType::kBallCluster:
-            return "ball_cluster";
-        case EventType::kBallCushion:
-            return "ball_cushion";
-        case EventType::kBallJaw:
-            return "ball_jaw";
-        case EventType::kBallPocket:
-            return "ball_pocket";
-        case EventType::kSlideRoll:
-            return "slide_roll";
-        case EventType::kRollSpin:
-            return "roll_spin";
-        case EventType::kRollStop:
-            return "roll_stop";
-        case EventType::kSpinStop:
-            return "spin_stop";
-        case EventType::kBallBallHold:
-            return "ball_ball_hold";
-        case EventType::kBallBallRelease:
-            return "ball_ball_release";
-        case EventType::kBallCushionHold:
-            return "ball_cushion_hold";
-        case EventType::kBallCushionRelease:
-            return "ball_cushion_release";
-        case EventType::kBallJawHold:
-            return "ball_jaw_hold";
-        case EventType::kBallJawRelease:
-            return "ball_jaw_release";
     }
     return "unknown";
 }
@@ -246,25 +215,19 @@ std::string Record::hash() const {
 std::string Record::partner_id(const Event& event) const {
     if (event.b < 0) return "";
     const auto index = static_cast<std::size_t>(event.b);
-    switch (event.type) {
-        case EventType::kBallBall:
-        case EventType::kBallCluster:
-        case EventType::kBallBallHold:
-        case EventType::kBallBallRelease:
+    switch (kind(event.type).partner) {
+        case Partner::kBall:
             return tracks[index].id;
-        case EventType::kBallCushion:
-        case EventType::kBallCushionHold:
-        case EventType::kBallCushionRelease:
+        case Partner::kCushion:
             return table.cushions[index].id;
-        case EventType::kBallJaw:
-        case EventType::kBallJawHold:
-        case EventType::kBallJawRelease:
+        case Partner::kJaw:
             return table.jaws[index].id;
-        case EventType::kBallPocket:
+        case Partner::kPocket:
             return table.pockets[index].id;
-        default:
-            return "";
+        case Partner::kNone:
+            break;
     }
+    return "";
 }
 
 }  // namespace carom

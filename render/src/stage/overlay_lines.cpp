@@ -67,34 +67,23 @@ void add_circle(DrawList& list, const Vec3& center, double radius, double from, 
     for (int i = 0; i < pieces; ++i) list.lines.push_back({point(i), point(i + 1), width, color, layer});
 }
 
-bool is_impact(EventType type) {
-    return type == EventType::kBallBall || type == EventType::kBallCluster ||
-           type == EventType::kBallCushion || type == EventType::kBallJaw || type == EventType::kBallPocket ||
-           type == EventType::kCueStrike;
-}
-
 Rgba event_color(EventType type) {
-    switch (type) {
-        case EventType::kBallCushion:
-        case EventType::kBallJaw:
-            return {0.35F, 0.75F, 1.0F, 1.0F};
-        case EventType::kBallPocket:
-            return {0.75F, 0.45F, 1.0F, 1.0F};
-        case EventType::kCueStrike:
-            return {1.0F, 1.0F, 1.0F, 1.0F};
-        default:
-            return {1.0F, 0.30F, 0.25F, 1.0F};
-    }
+    const EventKind& event = kind(type);
+    if (event.phase == EventPhase::kStrike) return {1.0F, 1.0F, 1.0F, 1.0F};
+    if (event.partner == Partner::kPocket) return {0.75F, 0.45F, 1.0F, 1.0F};
+    if (event.partner == Partner::kBall) return {1.0F, 0.30F, 0.25F, 1.0F};
+    return {0.35F, 0.75F, 1.0F, 1.0F};
 }
 
 void add_events(DrawList& list, const Record& record, double t) {
     for (const Event& event : record.events) {
         if (event.time > t) break;
-        if (!is_impact(event.type) || event.a < 0) continue;
+        const EventPhase phase = kind(event.type).phase;
+        if ((phase != EventPhase::kImpact && phase != EventPhase::kStrike) || event.a < 0) continue;
         const double when = std::nextafter(event.time, -1.0);  // before a pocket takes the ball away
         Vec3 place = record.state_at(event.a, when).position;
         const bool pair =
-            event.b >= 0 && (event.type == EventType::kBallBall || event.type == EventType::kBallCluster);
+            event.b >= 0 && balls_collide(event.type);
         if (pair) place = 0.5 * (place + record.state_at(event.b, when).position);
         place.z() = kOnCloth;
         const Rgba color = event_color(event.type);
@@ -161,7 +150,7 @@ void add_spin(DrawList& list, const Record& record, double t) {
 void add_ghost(DrawList& list, const Record& record, double t) {
     const auto next = std::find_if(record.events.begin(), record.events.end(), [t](const Event& event) {
         return event.time > t &&
-               (event.type == EventType::kBallBall || event.type == EventType::kBallCluster);
+               balls_collide(event.type);
     });
     if (next == record.events.end()) return;
     const auto speed = [&](int ball) {

@@ -16,19 +16,6 @@
 namespace carom::tools {
 namespace {
 
-bool is_contact(EventType type) {
-    switch (type) {
-        case EventType::kBallBall:
-        case EventType::kBallCluster:
-        case EventType::kBallCushion:
-        case EventType::kBallJaw:
-        case EventType::kBallPocket:
-            return true;
-        default:
-            return false;
-    }
-}
-
 /// The ball that moves first: the struck one, else the first that has a velocity; -1 if none moves.
 int first_mover(const Record& record) {
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
@@ -64,11 +51,11 @@ Outcome outcome_of(const Record& record) {
     Outcome outcome;
     const int mover = first_mover(record);
     for (const Event& event : record.events) {
-        if (!is_contact(event.type)) continue;
+        if (kind(event.type).phase != EventPhase::kImpact) continue;
         const std::string a = record.tracks.at(static_cast<std::size_t>(event.a)).id,
                           b = record.partner_id(event);
         outcome.contacts.push_back(fmt::format("{} {} {}", name(event.type), a, b));
-        const bool balls = event.type == EventType::kBallBall || event.type == EventType::kBallCluster;
+        const bool balls = balls_collide(event.type);
         if (balls && outcome.first_contact.empty() && (event.a == mover || event.b == mover))
             outcome.first_contact = event.a == mover ? b : a;
     }

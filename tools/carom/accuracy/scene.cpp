@@ -190,7 +190,7 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     result.contacts = outcome.contacts.size();
     for (const Event& event : truth.events)
         result.ball_hits +=
-            event.type == EventType::kBallBall || event.type == EventType::kBallCluster ? 1U : 0U;
+            balls_collide(event.type) ? 1U : 0U;
     result.agreement = final_error(final_positions(other), end).largest;
     result.outcome_agrees =
         outcome.contacts == other_outcome.contacts && outcome.pockets == other_outcome.pockets;

@@ -31,7 +31,7 @@ struct Segment {
     double spin_decay = 0.0;  ///< |dw_z/dt| [rad/s^2], >= 0; w_z never passes 0
     double duration = 0.0;    ///< until the ball's own next transition [s]; infinite if none
     MotionState state = MotionState::kStationary;
-    bool held = false;  ///< in a sustained contact: `a` holds the contact forces too
+    bool held = false;  ///< in a resting contact: `a` holds the contact forces too
     /// Its own transition comes at the end of the duration (a held ball may only turn its forces)
     bool ends = true;
     bool operator==(const Segment&) const = default;
@@ -48,7 +48,7 @@ enum class EventType : std::uint8_t {
     kRollSpin,
     kRollStop,
     kSpinStop,
-    // Sustained contacts: from a hold to its release the two stay in touch and push each other.
+    // Resting contacts: from a hold to its release the two stay in touch and push each other.
     kBallBallHold,
     kBallBallRelease,
     kBallCushionHold,
@@ -57,7 +57,57 @@ enum class EventType : std::uint8_t {
     kBallJawRelease,
 };
 inline constexpr int kEventTypes = 16;
-const char* name(EventType type);
+
+/// What Event::b is the index of.
+enum class Partner : std::uint8_t { kNone, kBall, kCushion, kJaw, kPocket };
+
+/// What happens to the ball.
+enum class EventPhase : std::uint8_t {
+    kStrike,      ///< the cue hits it
+    kImpact,      ///< it meets another ball, a cushion, a jaw or a pocket
+    kTransition,  ///< it goes over from one state of motion to another by itself
+    kHold,        ///< a resting contact begins
+    kRelease      ///< a resting contact ends
+};
+
+/// All that is known about an event from its type alone.
+struct EventKind {
+    EventType type;
+    const char* name;  ///< in files
+    EventPhase phase;
+    Partner partner = Partner::kNone;
+};
+
+/// One row for every type, in the order of the enumeration.
+inline constexpr EventKind kEventKinds[kEventTypes] = {
+    {EventType::kCueStrike, "cue_strike", EventPhase::kStrike},
+    {EventType::kBallBall, "ball_ball", EventPhase::kImpact, Partner::kBall},
+    {EventType::kBallCluster, "ball_cluster", EventPhase::kImpact, Partner::kBall},
+    {EventType::kBallCushion, "ball_cushion", EventPhase::kImpact, Partner::kCushion},
+    {EventType::kBallJaw, "ball_jaw", EventPhase::kImpact, Partner::kJaw},
+    {EventType::kBallPocket, "ball_pocket", EventPhase::kImpact, Partner::kPocket},
+    {EventType::kSlideRoll, "slide_roll", EventPhase::kTransition},
+    {EventType::kRollSpin, "roll_spin", EventPhase::kTransition},
+    {EventType::kRollStop, "roll_stop", EventPhase::kTransition},
+    {EventType::kSpinStop, "spin_stop", EventPhase::kTransition},
+    {EventType::kBallBallHold, "ball_ball_hold", EventPhase::kHold, Partner::kBall},
+    {EventType::kBallBallRelease, "ball_ball_release", EventPhase::kRelease, Partner::kBall},
+    {EventType::kBallCushionHold, "ball_cushion_hold", EventPhase::kHold, Partner::kCushion},
+    {EventType::kBallCushionRelease, "ball_cushion_release", EventPhase::kRelease, Partner::kCushion},
+    {EventType::kBallJawHold, "ball_jaw_hold", EventPhase::kHold, Partner::kJaw},
+    {EventType::kBallJawRelease, "ball_jaw_release", EventPhase::kRelease, Partner::kJaw},
+};
+
+constexpr const EventKind& kind(EventType type) {
+    return kEventKinds[static_cast<int>(type)];
+}
+constexpr const char* name(EventType type) {
+    return kind(type).name;
+}
+/// Whether balls collide: two of them, or a cluster.
+constexpr bool balls_collide(EventType type) {
+    return kind(type).phase == EventPhase::kImpact && kind(type).partner == Partner::kBall;
+}
 
 struct Event {
     double time = 0.0;  ///< s since the start of the shot

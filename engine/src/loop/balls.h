@@ -1,0 +1,39 @@
+// Where every ball is now. Everything in the loop reads it; Log::begin alone changes a segment.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/record.h"
+
+namespace carom {
+
+class Balls {
+  public:
+    explicit Balls(const Plan& plan) : plan_(plan), segments_(plan.sizes.size()) {}
+
+    int count() const { return static_cast<int>(segments_.size()); }
+    /// The motion that the ball is in.
+    const Segment& segment(int ball) const { return segments_[ball]; }
+    void set(int ball, const Segment& segment) { segments_[ball] = segment; }
+
+    /// [s] since the start of the shot
+    double now() const { return now_; }
+    void advance_to(double time) { now_ = std::max(now_, time); }
+
+    // The state at now(): [m], [m/s], [rad/s].
+    Vec3 position(int ball) const { return position_at(segments_[ball], now_ - segments_[ball].start); }
+    Vec3 velocity(int ball) const { return velocity_at(segments_[ball], now_ - segments_[ball].start); }
+    Vec3 spin(int ball) const { return spin_at(segments_[ball], now_ - segments_[ball].start, radius(ball)); }
+
+    double radius(int ball) const { return plan_.sizes[ball].R; }
+    const MotionParams& motion(int ball) const { return plan_.motion[ball]; }
+
+  private:
+    const Plan& plan_;
+    double now_ = 0.0;
+    std::vector<Segment> segments_;
+};
+
+}  // namespace carom

@@ -1,0 +1,135 @@
+#include "loop/clusters.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+// An order of places that mirrors in the axes and quarter turns keep, up to the order of mirror images among
+// themselves: so do the sums of a cluster, to the last bit.
+bool before_place(const Vec2& p, const Vec2& q) {
+    const auto key = [](const Vec2& a) {
+        const double x = std::abs(a.x()), y = std::abs(a.y());
+        return std::array<double, 4>{std::max(x, y), std::min(x, y), a.y(), a.x()};
+    };
+    return key(p) < key(q);
+}
+
+/// Gap [m] of two balls, the speed [m/s] at which it closes, and the unit vector from the first to the second.
+struct Gap {
+    double gap, closing;
+    Vec2 n;
+};
+
+Gap gap_of(const ClusterBall& p, const ClusterBall& q, double R) {
+    const Vec2 apart = planar(q.r) - planar(p.r);
+    const double distance = length(apart);
+    Gap near{distance - 2.0 * R, 0.0, apart / distance};
+    // Gaps are decided once, here: rounding of the positions counts as touching.
+    if (near.gap <= kTouchUlp * R) near.gap = 0.0;
+    near.closing = near.n.dot(planar(p.v) - planar(q.v));
+    return near;
+}
+
+}  // namespace
+
+Clusters::Clusters(const Plan& plan, const Balls& balls, const Detector& detector)
+    : plan_(plan), balls_(balls), detector_(detector) {}
+
+ClusterBall Clusters::member(int ball) const {
+    return {ball, balls_.position(ball), balls_.velocity(ball), balls_.spin(ball)};
+}
+
+// Breadth first from the pair: every ball that can be reached while the contact lasts (equation 5); then all
+// their contacts. The fastest approach among them sets the scale of the map: a pair may begin to touch very
+// slowly while its neighbours are about to meet at full speed.
+double Clusters::collect(int a, int b, double v_n) {
+    for (;;) {
+        collect_at(a, b, v_n);
+        double fastest = v_n;
+        for (const ClusterContact& c : contacts_) {
+            const ClusterBall &p = members_[c.i], &q = members_[c.j];
+            fastest = std::max(fastest, c.n.dot(planar(p.v) - planar(q.v)));
+        }
+        if (members_.size() < 3 || !(fastest > kClusterFaster * v_n)) return v_n;
+        v_n = fastest;
+    }
+}
+
+// Whoever is no more than `gap` from the ball has a box that overlaps this one: boxes hold where a ball is
+// now, and the share keeps rounding inside.
+Box Clusters::near_box(const ClusterBall& ball, double gap) const {
+    const double x = ball.r.x(), y = ball.r.y();
+    const double half =
+        (balls_.radius(ball.ball) + gap) * (1.0 + kBoxShare) + kBoxShare * (std::abs(x) + std::abs(y));
+    return {x - half, y - half, x + half, y + half};
+}
+
+void Clusters::collect_at(int a, int b, double v_n) {
+    const double R = balls_.radius(a);  // alike, but perhaps not those of [balls]
+    const double time = plan_.clusters == ClusterModel::kCompliant ? contact_time(v_n) : 0.0;
+    const auto reach = [&](const Gap& near) { return time * (std::max(0.0, near.closing) + v_n); };
+    members_.clear();
+    contacts_.clear();
+    members_.push_back(member(a));
+    members_.push_back(member(b));
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+        const ClusterBall here = members_[k];
+        const double most = time * (length(planar(here.v)) + detector_.fastest() + v_n);
+        // In no order; who belongs to the cluster does not depend on it, and the sort below is by place.
+        detector_.balls_near(near_box(here, most), [&](int q) {
+            const bool known = std::any_of(members_.begin(), members_.end(),
+                                           [q](const ClusterBall& m) { return m.ball == q; });
+            if (known) return;
+            ++looks_;
+            const ClusterBall candidate = member(q);
+            const Gap near = gap_of(here, candidate, R);
+            if (near.gap <= reach(near)) members_.push_back(candidate);
+        });
+    }
+    if (members_.size() < 3) return;
+    std::sort(members_.begin(), members_.end(), [](const ClusterBall& p, const ClusterBall& q) {
+        return before_place(planar(p.r), planar(q.r));
+    });
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+        for (std::size_t j = i + 1; j < members_.size(); ++j) {
+            const Gap near = gap_of(members_[i], members_[j], R);
+            if (near.gap <= 2.0 * reach(near))
+                contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap});
+        }
+    }
+    // By place; insertion keeps the order of equals and needs no memory.
+    const auto place = [this](const ClusterContact& c) {
+        return Vec2(planar(members_[c.i].r) + planar(members_[c.j].r));
+    };
+    for (auto here = contacts_.begin(); here != contacts_.end(); ++here) {
+        const auto to = std::upper_bound(contacts_.begin(), here, *here,
+                                         [&place](const ClusterContact& p, const ClusterContact& q) {
+                                             return before_place(place(p), place(q));
+                                         });
+        std::rotate(to, here, here + 1);
+    }
+}
+
+long Clusters::resolve(double v_n, double mu_b) {
+    const BallParams& p = plan_.balls;
+    const double e_b = plan_.ball_ball->reads_friction ? p.e_b : 1.0;
+    if (plan_.clusters == ClusterModel::kRigid) return map_.rigid(members_, contacts_, p.e_b);
+    const ClusterSettings settings{
+        .R = balls_.radius(members_.front().ball),  // alike
+        .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
+        .mu_b = mu_b,
+        .e_b = e_b,
+        .published_cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
+        .epsilon = kClusterEpsilon,
+        .longest_step = mu_b > 0.0 ? kClusterFrictionStep : kClusterStep,
+        .integrate = plan_.contact_phase};
+    const long steps = map_.compliant(members_, contacts_, settings, v_n);
+    // Friction and a wedge can keep balls pressed together without end: then as if they were rigid.
+    return steps < 0 ? map_.rigid(members_, contacts_, p.e_b) : steps;
+}
+
+}  // namespace carom

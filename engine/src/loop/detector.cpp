@@ -1,0 +1,166 @@
+#include "loop/detector.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+// Order of what happens at one and the same time. The end of a cushion counts as the cushion.
+int rank(With with) {
+    return static_cast<int>(std::min(with, With::kCushion));
+}
+
+}  // namespace
+
+// All memory of the search is taken here.
+Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& resting, Costs* costs)
+    : plan_(plan),
+      balls_(balls),
+      resting_(resting),
+      detect_ns_(costs != nullptr ? &costs->event.detect_ns : nullptr),
+      search_ns_(costs != nullptr ? &costs->search_ns : nullptr) {
+    const auto count = static_cast<std::size_t>(balls_.count());
+    key_.assign(count, kNever);
+    mover_.resize(count);
+    changed_.reserve(count);
+    queue_.set_up(balls_.count());
+    ball_boxes_.set_up(plan_.pairs ? balls_.count() : 0, plan_.ball_search);
+    set_up_table();
+}
+
+// Closing speed of a contact at its time: at one instant the deepest closing goes first.
+double Detector::closing(const Candidate& c) const {
+    if (c.contact.with != With::kBall) return 0.0;
+    const Segment &s = balls_.segment(c.contact.ball), &q = balls_.segment(c.contact.other);
+    const Vec3 r = position_at(q, c.time - q.start) - position_at(s, c.time - s.start);
+    const Vec3 v = velocity_at(q, c.time - q.start) - velocity_at(s, c.time - s.start);
+    return -(r.x() * v.x() + r.y() * v.y());
+}
+
+Vec2 Detector::place(const Candidate& c) const {
+    const Segment& s = balls_.segment(c.contact.ball);
+    const Vec2 here = planar(position_at(s, c.time - s.start));
+    const int other = c.contact.other;
+    switch (c.contact.with) {
+        case With::kBall: {
+            const Segment& q = balls_.segment(other);
+            return 0.5 * (here + planar(position_at(q, c.time - q.start)));
+        }
+        case With::kPocket:
+            return plan_.geometry.pockets[other].center;
+        case With::kNose:
+            return plan_.geometry.noses[other].center;
+        case With::kCushion: {
+            const CushionLine& line = plan_.geometry.cushions[other];
+            return line.from + line.direction * line.direction.dot(here - line.from);
+        }
+        case With::kNothing:
+            break;
+    }
+    return here;
+}
+
+// Order of candidates at one instant: kind, then the deeper closing, then the place (x, then y). Never an id.
+bool Detector::before_at_once(const Candidate& x, const Candidate& y) const {
+    const int rank_x = rank(x.contact.with), rank_y = rank(y.contact.with);
+    if (rank_x != rank_y) return rank_x < rank_y;
+    const double closing_x = closing(x), closing_y = closing(y);
+    if (closing_x != closing_y) return closing_x > closing_y;
+    const Vec2 place_x = place(x), place_y = place(y);
+    if (place_x.x() != place_y.x()) return place_x.x() < place_y.x();
+    return place_x.y() < place_y.y();
+}
+
+void Detector::mark_changed(int ball) {
+    Mover& mover = mover_[ball];
+    if (mover.queued) return;
+    mover.queued = true;
+    changed_.push_back(ball);
+}
+
+Candidate Detector::first_of(int ball) const {
+    const Mover& mover = mover_[ball];
+    Candidate first{mover.own, {ball, With::kNothing, -1}};
+    take_first(mover.table, first);
+    take_first(mover.pair, first);
+    return first;
+}
+
+// Finds the places in the queue of the balls whose candidates have changed.
+void Detector::requeue() {
+    for (const int ball : changed_) {
+        Mover& mover = mover_[ball];
+        mover.queued = false;
+        key_[ball] =
+            std::min(std::min(mover.own, mover.table.time), std::min(mover.pair.time, mover.refresh));
+    }
+    const auto earlier = [this](int x, int y) {
+        const double p = key_[x], q = key_[y];
+        return p != q ? p < q : p != kNever && before(first_of(x), first_of(y));
+    };
+    for (const int ball : changed_) queue_.update(ball, earlier);
+    changed_.clear();
+}
+
+// On the way, contacts are searched again for balls whose box has expired or whose partner has changed its motion.
+Candidate Detector::next() {
+    const Stopwatch watch(detect_ns_);
+    for (;;) {
+        const int ball = queue_.first();
+        if (ball < 0 || key_[ball] == kNever) return {};
+        const Candidate c = first_of(ball);
+        const bool expired = mover_[ball].refresh <= c.time;
+        const int partner = c.contact.ball == ball ? c.contact.other : c.contact.ball;
+        const bool stale = c.contact.with == With::kBall && c.stamp != mover_[partner].stamp;
+        if (!expired && !stale) return c;
+        search_again(ball);
+        requeue();
+    }
+}
+
+// A ball's own part after an event that touched it: its transition, the table, its box.
+void Detector::renew(int ball) {
+    const Segment& s = balls_.segment(ball);
+    const double R = balls_.radius(ball);
+    Mover& mover = mover_[ball];
+    mover.surface = R * std::sqrt(s.w.x() * s.w.x() + s.w.y() * s.w.y() + s.w.z() * s.w.z());
+    // A free ball rolls straight ahead; one in a resting contact is pushed aside.
+    mover.straight =
+        (s.state == MotionState::kRolling && !s.held) || s.v.x() * s.a.y() - s.v.y() * s.a.x() == 0.0;
+    mover.travel = plan_.box_travel * R;
+    mover.until = mover.refresh = kNever;
+    mover.round = round_;
+    ++mover.stamp;
+    mover.own = s.start + s.duration;
+    mover.pair = {};
+    if (plan_.clusters == ClusterModel::kCompliant && translates(s.state)) bound_speed(s);
+    search_table(ball);
+    if (plan_.pairs) {
+        if (s.state != MotionState::kPocketed)
+            bound(ball, s.start);
+        else
+            ball_boxes_.remove(ball);
+    }
+    mark_changed(ball);
+}
+
+void Detector::update(std::vector<int>& touched) {
+    const Stopwatch watch(detect_ns_);
+    {
+        const Stopwatch search(search_ns_);
+        if (touched.size() > 1) {  // most events touch one ball
+            std::sort(touched.begin(), touched.end());
+            touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+        }
+        ++round_;
+        for (const int ball : touched) renew(ball);
+        if (plan_.pairs)
+            for (const int ball : touched) search_pairs(ball);
+        touched.clear();
+    }
+    requeue();
+}
+
+}  // namespace carom

@@ -1,0 +1,229 @@
+#include "loop/resolver.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "carom/engine/cushion.h"
+#include "carom/engine/tolerances.h"
+#include "physics/motion.h"
+
+namespace carom {
+
+namespace {
+
+kernel::Ball kernel_ball(const Vec3& r, const Vec3& v, const Vec3& w) {
+    return {{r.x(), r.y(), r.z()}, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()}};
+}
+
+Vec3 vec(const double (&x)[3]) {
+    return {x[0], x[1], x[2]};
+}
+
+}  // namespace
+
+Resolver::Resolver(const Plan& plan, const Balls& balls, Log& log, RestingContacts& resting,
+                   const Detector& detector)
+    : plan_(plan),
+      balls_(balls),
+      log_(log),
+      resting_(resting),
+      clusters_(plan, balls, detector),
+      cost_(log.costs() != nullptr ? &log.costs()->event : nullptr),
+      resolve_ns_(cost_ != nullptr ? &cost_->resolve_ns : nullptr),
+      kernel_ns_(cost_ != nullptr ? &cost_->kernel_ns : nullptr) {}
+
+void Resolver::resolve(const Contact& contact) {
+    const Stopwatch watch(resolve_ns_);
+    switch (contact.with) {
+        case With::kBall:
+            ball_ball(contact.ball, contact.other);
+            break;
+        case With::kCushion:
+        case With::kNose:
+            cushion(contact);
+            break;
+        case With::kPocket:
+            pocket(contact);
+            break;
+        case With::kNothing:
+            transition(contact.ball);
+            break;
+    }
+}
+
+// What a ball does after an impact.
+void Resolver::begin(int ball, const Vec3& r, const Vec3& v, const Vec3& w) {
+    log_.begin(ball, start_segment(balls_.now(), r, v, w, balls_.motion(ball)));
+}
+
+void Resolver::ball_ball(int a, int b) {
+    // Ball 1 is the one further left, then nearer: relabelling the balls changes no bit.
+    const Vec3 ra = balls_.position(a), rb = balls_.position(b);
+    const bool swap = rb.x() < ra.x() || (rb.x() == ra.x() && rb.y() < ra.y());
+    const int one = swap ? b : a, two = swap ? a : b;
+    const Vec3 &r1 = swap ? rb : ra, &r2 = swap ? ra : rb;
+
+    const Approach approach = approach_of(balls_, one, two);
+    if (resting_.try_hold(approach, plan_.balls.e_b)) return;
+    if (plan_.clusters != ClusterModel::kSequential && cluster(a, b, approach.v_n)) return;
+
+    const kernel::ImpactResult result =
+        collide(one, two, kernel_ball(r1, balls_.velocity(one), balls_.spin(one)),
+                kernel_ball(r2, balls_.velocity(two), balls_.spin(two)));
+    resting_.release(one);
+    resting_.release(two);
+    begin(one, r1, vec(result.v1), vec(result.w1));
+    begin(two, r2, vec(result.v2), vec(result.w2));
+    if (result.status == kernel::ImpactStatus::kOk) log_.event(EventType::kBallBall, a, b);
+}
+
+kernel::ImpactResult Resolver::collide(int one, int two, const kernel::Ball& b1, const kernel::Ball& b2) {
+    const BallParams& p = plan_.balls;
+    const BallSize &size1 = plan_.sizes[one], &size2 = plan_.sizes[two];
+    const BallBallModelInfo& model = *plan_.ball_ball;
+    const double mu_s = plan_.cloth_in_impact ? p.mu_s : 0.0;
+    const kernel::ImpactParams params{
+        .R = size1.R,
+        .m = size1.m,
+        .mu_s1 = mu_s,
+        .mu_s2 = mu_s,
+        .mu_b = plan_.friction ? pair_friction(plan_, balls_, one, two) : 0.0,
+        .e_b = model.reads_restitution ? p.e_b : 1.0,
+        .cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished
+                          ? kernel::ClothSlip::kAsPublished
+                          : kernel::ClothSlip::kConsistent};
+    kernel::ImpactResult result;
+    const bool equal = size1 == size2;
+    {
+        const Stopwatch watch(kernel_ns_);
+        if (equal)
+            model.collide(plan_.impact, b1, b2, params, result);
+        else
+            collide_unequal(size1, size2, b1, b2, params, result);
+    }
+    if (cost_ != nullptr) {
+        const bool mathavan = equal && model.model == BallBallModel::kMathavan;
+        cost_->steps = result.steps;
+        cost_->method = !mathavan                       ? model.name
+                        : plan_.impact.march != nullptr ? "march"
+                                                        : kernel::name(result.method);
+    }
+    if (result.steps >= kLongImpact) log_.note_long_round();
+    if (result.status != kernel::ImpactStatus::kOk && result.status != kernel::ImpactStatus::kNotApproaching)
+        log_.fail(fmt::format("the impact of {} and {} could not be computed: {}", log_.id(one), log_.id(two),
+                              kernel::describe(result.status)));
+    return result;
+}
+
+// A slow cluster may hold a contact that is pressed together, behind the one that met first: resting, it drives
+// that one too. Bounced off together they would meet again and again.
+bool Resolver::hold_in_cluster(Pressed when) {
+    const auto segment = [this](const ClusterBall& b) {
+        return start_segment(balls_.now(), b.r, b.v, b.w, balls_.motion(b.ball));
+    };
+    for (const ClusterContact& c : clusters_.contacts()) {
+        const ClusterBall &p = clusters_.balls()[c.i], &q = clusters_.balls()[c.j];
+        if (c.gap > 0.0 || resting_.has({p.ball, With::kBall, q.ball})) continue;
+        Approach approach = approach_of(balls_, p.ball, q.ball);
+        if (when == Pressed::kAfter) approach.a_c = closing_acceleration(approach.n, segment(p), segment(q));
+        if (approach.v_n > 0.0 && resting_.try_hold(approach, plan_.balls.e_b)) return true;
+    }
+    return false;
+}
+
+// True if the impact was a cluster's, or one of its contacts is a resting one now; false leaves it to the pair kernel.
+bool Resolver::cluster(int a, int b, double v_n) {
+    v_n = clusters_.collect(a, b, v_n);
+    if (clusters_.balls().size() < 3) return false;
+    // Balls that close so slowly that friction alone might end their bounce before the contact has ended.
+    const bool slow = holds(v_n, 2.0 * plan_.motion.front().slide, plan_.balls.e_b);
+    if (slow && hold_in_cluster(Pressed::kBefore)) return true;
+    log_.note_long_round();
+    const bool compliant = plan_.clusters == ClusterModel::kCompliant;
+    const bool friction = compliant && plan_.friction && plan_.ball_ball->reads_friction;
+    long steps;
+    {
+        const Stopwatch watch(kernel_ns_);
+        steps = clusters_.resolve(v_n, friction ? pair_friction(plan_, balls_, a, b) : 0.0);
+    }
+    if (cost_ != nullptr) {
+        cost_->steps = steps;
+        cost_->method = name(plan_.clusters);
+    }
+    if (slow && hold_in_cluster(Pressed::kAfter)) return true;
+    const std::vector<ClusterBall>& members = clusters_.balls();
+    for (const ClusterBall& ball : members) resting_.release(ball.ball);
+    for (const ClusterBall& ball : members) begin(ball.ball, ball.r, ball.v, ball.w);
+    log_.cluster(a, b, members);
+    return true;
+}
+
+void Resolver::cushion(const Contact& contact) {
+    const int ball = contact.ball;
+    const Vec3 r = balls_.position(ball);
+    Vec3 v = balls_.velocity(ball), w = balls_.spin(ball);
+    const Vec2 here = planar(r);
+    Vec2 normal;  // into the table
+    double height, curving = 0.0;
+    if (contact.with == With::kNose) {
+        const Nose& nose = plan_.geometry.noses[contact.other];
+        const Vec2 out = here - nose.center;
+        normal = out / length(out);
+        height = nose.height;
+        const double v_t = cross(normal, planar(v));
+        curving = v_t * v_t / (balls_.radius(ball) + nose.radius);
+    } else {
+        const CushionLine& line = plan_.geometry.cushions[contact.other];
+        normal = Vec2(-line.direction.y(), line.direction.x());
+        if (normal.dot(here - line.from) < 0.0) normal = -normal;
+        height = line.height;
+    }
+    const auto pressing = [&](const Vec2& pull) {
+        return -(normal.x() * pull.x() + normal.y() * pull.y()) - curving;
+    };
+    const BallParams& p = plan_.balls;
+    Approach approach{.contact = contact,
+                      .n = -normal,
+                      .v_n = -(normal.x() * v.x() + normal.y() * v.y()),
+                      .a_c = pressing(balls_.segment(ball).a)};
+    if (resting_.try_hold(approach, p.e_c)) return;
+
+    const BallSize& size = plan_.sizes[ball];
+    const bool jaw = is_jaw(contact, plan_.geometry);
+    const CushionModelInfo& model = jaw ? *plan_.jaw : *plan_.cushion;
+    const CushionContact nose{
+        .R = size.R, .m = size.m, .mu_s = p.mu_s, .e_c = p.e_c, .f_c = p.f_c, .height = height};
+    if (!model.resolve(nose, normal, v, w))
+        log_.fail(
+            fmt::format("the cushion model {} found no solution for the impact of ball {}; use another one",
+                        model.name, log_.id(ball)));
+    const MotionParams& motion = balls_.motion(ball);
+    const Segment after = start_segment(balls_.now(), r, v, w, motion);
+    // A ball that rolls in slowly is braked; what brings it back, and ends the bounce, is the spin that it keeps.
+    approach.a_c = pressing(after.a);
+    if (holds(approach.v_n, motion.slide, p.e_c) && resting_.try_hold(approach, p.e_c)) return;
+    if (cost_ != nullptr) cost_->method = model.name;
+    resting_.release(ball);
+    log_.begin(ball, after);
+    log_.event(jaw ? EventType::kBallJaw : EventType::kBallCushion, contact);
+}
+
+void Resolver::pocket(const Contact& contact) {
+    resting_.release(contact.ball);
+    log_.begin(contact.ball, pocketed_segment(balls_.now(), plan_.geometry.pockets[contact.other]));
+    log_.pocketed(contact.ball, contact.other);
+}
+
+void Resolver::transition(int ball) {
+    const Segment& segment = balls_.segment(ball);
+    if (segment.held) {
+        resting_.advance(ball);
+        return;
+    }
+    const Segment after = after_transition(segment, balls_.motion(ball));
+    log_.event(transition_type(segment, after), ball);
+    log_.begin(ball, after);
+}
+
+}  // namespace carom

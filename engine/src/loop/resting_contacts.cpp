@@ -1,0 +1,262 @@
+#include "loop/resting_contacts.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "carom/engine/tolerances.h"
+#include "physics/motion.h"
+
+namespace carom {
+
+namespace {
+
+// [-] A contact that has bounced this often within kEventCapSpan becomes a resting one. A row of 15 elastic balls
+// taken pair by pair needs 30, the last bounces before a contact rests about 100.
+constexpr int kMostBounces = 200;
+
+EventType with_phase(EventPhase phase, const Contact& contact, const Geometry& geometry) {
+    const Partner partner = contact.with == With::kBall ? Partner::kBall
+                            : is_jaw(contact, geometry) ? Partner::kJaw
+                                                        : Partner::kCushion;
+    return std::find_if(std::begin(kEventKinds), std::end(kEventKinds),
+                        [&](const EventKind& k) { return k.phase == phase && k.partner == partner; })
+        ->type;
+}
+
+/// The contact that an event is about: the inverse of Log::event.
+Contact contact_of(const Event& event) {
+    switch (kind(event.type).partner) {
+        case Partner::kBall:
+            return {event.a, With::kBall, event.b};
+        case Partner::kCushion:
+        case Partner::kJaw:
+            return event.detail >= 0 ? Contact{event.a, With::kNose, event.detail}
+                                     : Contact{event.a, With::kCushion, event.b};
+        case Partner::kPocket:
+            return {event.a, With::kPocket, event.b};
+        case Partner::kNone:
+            break;
+    }
+    return {event.a};
+}
+
+bool touches(const RestingContact& c, int ball) {
+    return c.contact.ball == ball || c.contact.partner() == ball;
+}
+
+}  // namespace
+
+RestingContacts::RestingContacts(const Plan& plan, const Balls& balls, Log& log)
+    : plan_(plan), balls_(balls), log_(log) {}
+
+bool RestingContacts::find(const Contact& contact) const {
+    return std::any_of(contacts_.begin(), contacts_.end(),
+                       [&](const RestingContact& c) { return c.contact.same(contact); });
+}
+
+// A contact becomes a resting one if
+//  - a ball that rests on something closes by no more than the rounding of the velocities in its group, or
+//  - the bounce would be over before the Hertz contact itself is (holds()), or
+//  - it has bounced again and again in no time (Zeno behaviour, as in a wedge whose sides take the speed out of
+//    each other): the limit of such a sequence is the resting contact.
+bool RestingContacts::try_hold(const Approach& a, double restitution) {
+    const Contact& c = a.contact;
+    const int partner = c.partner();
+    const bool rests = balls_.segment(c.ball).held || (partner >= 0 && balls_.segment(partner).held);
+    const bool rounding = rests && a.v_n <= rounding_with(c);
+    if (!rounding && !holds(a.v_n, a.a_c, restitution) && !chatters(c)) return false;
+    if (partner >= 0 && !plan_.alike)
+        log_.fail(
+            "two balls meet so slowly that they stay in contact, and there are balls of different size: that "
+            "contact is not modelled; make the balls alike");
+    contacts_.push_back({.contact = c, .n = a.n});
+    log_.event(with_phase(EventPhase::kHold, c, plan_.geometry), c);
+    solve(c.ball, Transitions::kNotYet);
+    return true;
+}
+
+// Read from the log, so that a run that is resumed decides alike.
+bool RestingContacts::chatters(const Contact& contact) const {
+    int bounces = 0;
+    const std::vector<Event>& events = log_.events();
+    for (std::size_t k = events.size(); k-- > 0;) {
+        const Event& e = events[k];
+        if (e.time < balls_.now() - kEventCapSpan) break;
+        const EventPhase phase = kind(e.type).phase;
+        if (phase != EventPhase::kImpact && phase != EventPhase::kHold) continue;
+        if (contact_of(e).same(contact) && ++bounces >= kMostBounces) return true;
+    }
+    return false;
+}
+
+// [m/s] What rounding makes of closing speeds beside the resting contacts that there are.
+double RestingContacts::rounding_with(const Contact& contact) const {
+    double noise = 0.0;
+    const auto add = [&](const Contact& c) {
+        for (const int ball : {c.ball, c.partner()})
+            if (ball >= 0)
+                noise = std::max(
+                    noise, resting_noise(balls_.velocity(ball), balls_.spin(ball), balls_.motion(ball)));
+    };
+    add(contact);
+    for (const RestingContact& c : contacts_) add(c.contact);
+    return noise;
+}
+
+void RestingContacts::end(const RestingContact& c) {
+    log_.event(with_phase(EventPhase::kRelease, c.contact, plan_.geometry), c.contact);
+}
+
+Segment RestingContacts::free_segment(int ball) const {
+    return start_segment(balls_.now(), balls_.position(ball), balls_.velocity(ball), balls_.spin(ball),
+                         balls_.motion(ball));
+}
+
+void RestingContacts::release(int ball) {
+    if (!balls_.segment(ball).held) return;
+    const auto kept = std::stable_partition(contacts_.begin(), contacts_.end(),
+                                            [ball](const RestingContact& c) { return !touches(c, ball); });
+    std::vector<RestingContact> ended(kept, contacts_.end());
+    contacts_.erase(kept, contacts_.end());
+    sort_by_place(ended);
+    for (const RestingContact& c : ended) end(c);
+    // From here the ball's own segment counts as free; the caller replaces it.
+    log_.begin(ball, free_segment(ball));
+    for (const RestingContact& c : ended) {
+        const int partner = c.contact.ball == ball ? c.contact.partner() : c.contact.ball;
+        if (partner >= 0 && balls_.segment(partner).held) solve(partner, Transitions::kNotYet);
+    }
+}
+
+void RestingContacts::advance(int ball) {
+    solve(ball, Transitions::kDue);
+}
+
+bool RestingContacts::has_come_to_transition(const Segment& s) const {
+    return s.held && s.ends && s.start + s.duration <= balls_.now();
+}
+
+// All that is connected to the ball by resting contacts, in its state now; its contacts leave the list.
+RestingGroup RestingContacts::group_of(int ball, Transitions transitions) {
+    std::vector<int> members{ball};
+    const auto is_member = [&](int b) {
+        return std::find(members.begin(), members.end(), b) != members.end();
+    };
+    for (std::size_t k = 0; k < members.size(); ++k) {
+        for (const RestingContact& c : contacts_) {
+            if (!touches(c, members[k])) continue;
+            const int other = c.contact.ball == members[k] ? c.contact.partner() : c.contact.ball;
+            if (other >= 0 && !is_member(other)) members.push_back(other);
+        }
+    }
+    RestingGroup group;
+    for (const int b : members) {
+        RestingBall member{b, balls_.position(b), balls_.velocity(b), balls_.spin(b), {}};
+        const Segment& s = balls_.segment(b);
+        if (transitions == Transitions::kDue && has_come_to_transition(s))
+            end_transition(member, s.state, balls_.radius(b));
+        group.balls.push_back(member);
+    }
+    std::sort(group.balls.begin(), group.balls.end(), [](const RestingBall& p, const RestingBall& q) {
+        return p.r.x() < q.r.x() || (p.r.x() == q.r.x() && p.r.y() < q.r.y());
+    });
+    const auto others =
+        std::stable_partition(contacts_.begin(), contacts_.end(),
+                              [&](const RestingContact& c) { return !is_member(c.contact.ball); });
+    group.contacts.assign(others, contacts_.end());
+    contacts_.erase(others, contacts_.end());
+    for (RestingContact& c : group.contacts) refresh_normal(c);
+    sort_by_place(group.contacts);
+    return group;
+}
+
+// The group of the ball, solved anew from now on.
+void RestingContacts::solve(int ball, Transitions transitions) {
+    log_.note_long_round();
+    RestingGroup group = group_of(ball, transitions);
+    bool any_released = release_past_ends(group);
+    solve_resting(group, {plan_.geometry, plan_.balls, plan_.gravity}, balls_.motion(ball), balls_.now());
+    if (transitions == Transitions::kDue) log_transitions(group);
+    for (const RestingContact& c : group.contacts) {
+        if (c.released) {
+            end(c);
+            any_released = true;
+        } else {
+            contacts_.push_back(c);
+        }
+    }
+    for (const RestingBall& member : group.balls) log_.begin(member.ball, member.segment);
+    if (!any_released) return;
+    // What a release leaves alone is free, or a smaller group of its own.
+    for (const RestingBall& m : group.balls) {
+        const bool still = std::any_of(contacts_.begin(), contacts_.end(),
+                                       [&](const RestingContact& c) { return touches(c, m.ball); });
+        if (!still) log_.begin(m.ball, start_segment(balls_.now(), m.r, m.v, m.w, balls_.motion(m.ball)));
+    }
+}
+
+// What ended, if it did: a ball that the group drives on at once has not stopped, and slips on without an event.
+void RestingContacts::log_transitions(const RestingGroup& group) {
+    for (const RestingBall& member : group.balls) {
+        const Segment& s = balls_.segment(member.ball);
+        if (!has_come_to_transition(s)) continue;
+        const bool goes_on = member.segment.state == s.state ||
+                             (s.state == MotionState::kRolling && translates(member.segment.state));
+        if (!goes_on) log_.event(transition_type(s, member.segment), member.ball);
+    }
+}
+
+// A ball that runs off the end of its cushion leaves it when the clock can no longer tell the time to the end
+// from 0.
+bool RestingContacts::release_past_ends(RestingGroup& group) {
+    return std::erase_if(group.contacts, [this](const RestingContact& c) {
+               if (c.contact.with != With::kCushion) return false;
+               Segment s;
+               s.r = balls_.position(c.contact.ball);
+               s.v = balls_.velocity(c.contact.ball);
+               s.a = balls_.segment(c.contact.ball).a;
+               const double left = time_to_line_end(plan_.geometry.cushions[c.contact.other], s);
+               if (balls_.now() + left > balls_.now()) return false;
+               end(c);
+               return true;
+           }) > 0;
+}
+
+// Contacts in the order of their places on the table: never by id, never by when they began.
+void RestingContacts::sort_by_place(std::vector<RestingContact>& contacts) const {
+    const auto place_of = [this](const RestingContact& c) {
+        return Vec2(planar(balls_.position(c.contact.ball)) + balls_.radius(c.contact.ball) * c.n);
+    };
+    std::sort(contacts.begin(), contacts.end(), [&](const RestingContact& p, const RestingContact& q) {
+        const Vec2 a = place_of(p), b = place_of(q);
+        return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+    });
+}
+
+void RestingContacts::refresh_normal(RestingContact& c) const {
+    const Vec2 here = planar(balls_.position(c.contact.ball));
+    if (c.contact.with == With::kCushion) {
+        const CushionLine& line = plan_.geometry.cushions[c.contact.other];
+        c.n = Vec2(-line.direction.y(), line.direction.x());
+        if (c.n.dot(here - line.from) > 0.0) c.n = -c.n;
+        return;
+    }
+    const Vec2 toward = (c.contact.with == With::kBall ? planar(balls_.position(c.contact.other))
+                                                       : plan_.geometry.noses[c.contact.other].center) -
+                        here;
+    c.n = toward / length(toward);
+}
+
+void RestingContacts::restore(std::span<const Event> events) {
+    for (const Event& e : events) {
+        const EventPhase phase = kind(e.type).phase;
+        const Contact contact = contact_of(e);
+        if (phase == EventPhase::kHold)
+            contacts_.push_back({.contact = contact});
+        else if (phase == EventPhase::kRelease)
+            std::erase_if(contacts_, [&](const RestingContact& c) { return c.contact == contact; });
+    }
+    for (RestingContact& c : contacts_) refresh_normal(c);
+}
+
+}  // namespace carom

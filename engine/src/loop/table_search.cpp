@@ -1,0 +1,102 @@
+// Contacts of balls with the table: straight cushions, round noses, pockets.
+#include <algorithm>
+
+#include "loop/detector.h"
+
+namespace carom {
+
+namespace {
+
+Box around(const Vec2& center, double reach) {
+    return {center.x() - reach, center.y() - reach, center.x() + reach, center.y() + reach};
+}
+
+bool is_inside(const Segment& s, const Pocket& pocket) {
+    return length(Vec2(s.r.x(), s.r.y()) - pocket.center) < pocket.radius;
+}
+
+}  // namespace
+
+void Detector::set_up_table() {
+    const Geometry& g = plan_.geometry;
+    const std::size_t count = g.cushions.size() + g.noses.size() + g.pockets.size();
+    table_boxes_.set_up(static_cast<int>(count), plan_.table_search);
+    parts_.reserve(count);
+    near_.reserve(count);
+    const auto add = [this](With with, std::size_t index, const Box& box) {
+        table_boxes_.place(static_cast<int>(parts_.size()), box);
+        parts_.push_back({-1, with, static_cast<int>(index)});
+    };
+    for (std::size_t i = 0; i < g.cushions.size(); ++i) {
+        const CushionLine& line = g.cushions[i];
+        const Vec2 to = line.from + line.length * line.direction;
+        add(With::kCushion, i,
+            {std::min(line.from.x(), to.x()), std::min(line.from.y(), to.y()),
+             std::max(line.from.x(), to.x()), std::max(line.from.y(), to.y())});
+    }
+    for (std::size_t i = 0; i < g.noses.size(); ++i)
+        add(With::kNose, i, around(g.noses[i].center, g.noses[i].radius));
+    for (std::size_t i = 0; i < g.pockets.size(); ++i)
+        add(With::kPocket, i, around(g.pockets[i].center, g.pockets[i].radius));
+    table_boxes_.settle();
+}
+
+// The parts of the table that the ball's surface can come to during its segment, in their order.
+void Detector::find_parts(int ball) {
+    const Segment& s = balls_.segment(ball);
+    near_.clear();
+    table_boxes_.overlapping(swept(ball, s.start, s.duration), [this](int part) { near_.push_back(part); });
+    if (plan_.table_search == Search::kTree) std::sort(near_.begin(), near_.end());
+}
+
+void Detector::search_table(int ball) {
+    Candidate& first = mover_[ball].table;
+    first = {};
+    const Segment& s = balls_.segment(ball);
+    if (s.state == MotionState::kPocketed || parts_.empty()) return;
+    find_parts(ball);
+    if (!translates(s.state)) {  // a ball that rests inside a pocket's circle falls
+        for (const int part : near_) {
+            const Contact contact = parts_[part].of(ball);
+            if (contact.with == With::kPocket && is_inside(s, plan_.geometry.pockets[contact.other]))
+                first = {s.start, contact};
+        }
+        return;
+    }
+    const Path p = path(ball, s.start);
+    for (const int part : near_) {
+        // What lies beyond the first contact found so far cannot come before it: the window of the rejects.
+        const Contact contact = parts_[part].of(ball);
+        const double t = time_to(contact, p, std::min(p.horizon, span(s.start, first.time)));
+        if (t < kNever) take_first({s.start + t, contact}, first);
+    }
+}
+
+// [s] kNever if the ball stays away from it for the whole window, or touches it already.
+double Detector::time_to(const Contact& contact, const Path& p, double window) const {
+    const double R = balls_.radius(contact.ball);
+    switch (contact.with) {
+        case With::kCushion: {
+            const CushionLine& c = plan_.geometry.cushions[contact.other];
+            if (stays_off_line(p, c.from, c.direction, R, window) || resting_.has(contact)) return kNever;
+            return time_to_line(p, c.from, c.direction, c.length, R);
+        }
+        case With::kNose: {
+            const Nose& n = plan_.geometry.noses[contact.other];
+            const double reach = R + n.radius;
+            if (stays_apart(p.r - n.center, p.v, p.a, reach, window) || resting_.has(contact)) return kNever;
+            return time_to_circle(p, n.center, reach);
+        }
+        case With::kPocket: {
+            const Pocket& k = plan_.geometry.pockets[contact.other];
+            if (stays_apart(p.r - k.center, p.v, p.a, k.radius, window)) return kNever;
+            return time_to_pocket(p, k.center, k.radius);
+        }
+        case With::kBall:
+        case With::kNothing:
+            break;
+    }
+    return kNever;
+}
+
+}  // namespace carom
