@@ -1,9 +1,9 @@
-// What each effect costs: a bare scene, and the same with one effect
-// added. For tools/measure/effects_cost and the callgrind test.
+// What each effect costs, and profiling: a bare scene, and the same with one thing added. For
+// tools/measure/effects_cost and the callgrind test.
 //
-//   effects_probe list             names of the cases, with the effect's own functions and how the case
-//   differs effects_probe run CASE N       N runs of one case; prints the events of one run effects_probe
-//   time CASE        nanoseconds per event, the smallest of many runs
+//   effects_probe list           names of the cases, with the effect's own functions and how the case differs
+//   effects_probe run CASE N     N runs of one case; prints the events of one run
+//   effects_probe time CASE      nanoseconds per event, the smallest of many runs
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -54,6 +54,7 @@ struct Case {
     const char* functions;  // its own, as callgrind names them; separated by blanks
     const char* what;       // for the table
     void (*add)(Scene&);
+    bool profile = false;
 };
 
 const Case kCases[] = {
@@ -121,8 +122,8 @@ const Case kCases[] = {
          s.stop.events.reset();
          s.stop.time = 1.0;
      }},
-    {"cushions", "carom::time_to_line carom::detail::cushion_smooth", "the reflecting cushions of the bare scene",
-     [](Scene&) {}},
+    {"cushions", "carom::time_to_line carom::detail::cushion_smooth",
+     "the reflecting cushions of the bare scene", [](Scene&) {}},
     {"squirt", "carom::effects::squirt", "the cue strikes 0.3 R off centre",
      [](Scene& s) {
          s.ball[0].velocity.setZero();
@@ -134,6 +135,7 @@ const Case kCases[] = {
          cue.height = 0.0;
          s.cue = cue;
      }},
+    {"profile", "std::chrono::_V2::steady_clock::now", "every event timed", [](Scene&) {}, true},
 };
 
 const Case& find(const std::string& name) {
@@ -158,10 +160,14 @@ int main(int argc, char** argv) {
         return 0;
     }
     if (argc < 3) return 2;
-    const Plan p = plan(find(argv[2]));
+    const Case& c = find(argv[2]);
+    const Plan p = plan(c);
+    SimulateOptions options;
+    options.profile = c.profile;
     if (mode == "run") {
         std::size_t events = 0;
-        for (int n = argc > 3 ? std::atoi(argv[3]) : 1; n > 0; --n) events = simulate(p).events.size();
+        for (int n = argc > 3 ? std::atoi(argv[3]) : 1; n > 0; --n)
+            events = simulate(p, options).events.size();
         std::printf("%zu\n", events);
         return 0;
     }
@@ -169,7 +175,7 @@ int main(int argc, char** argv) {
     std::size_t events = 1;
     for (int n = 0; n < 300; ++n) {
         const auto start = std::chrono::steady_clock::now();
-        events = simulate(p).events.size();
+        events = simulate(p, options).events.size();
         const double ns =
             std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count();
         if (ns < best) best = ns;

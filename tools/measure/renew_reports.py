@@ -2,7 +2,7 @@
 """Measures everything that docs/accuracy.md and docs/margin.md show, anew: their figures, and the tables between the marks
 <!-- begin NAME --> and <!-- end NAME -->. Best on a machine with nothing else to do.
 
-    cmake --build --preset release --target carom_program carom_detectors profile_probe profile_probe_without
+    cmake --build --preset release --target carom_program carom_detectors
     tools/measure/renew_reports.py [--quick] [--only NAME ...]
 
 Takes about a quarter of an hour; --quick takes about three minutes and measures less. Needs python3-matplotlib.
@@ -124,13 +124,9 @@ class Renewal:
             text += "\n"
         return text
 
-    def off(self):
-        out = self.call(ROOT / "tools/measure/profile_cost", self.build, status=(0, 1, 77))
-        return "```\n" + (out or "valgrind is not installed\n") + "```\n"
-
 
 PLAN = {"docs/accuracy.md": ("machine", "kernel", "break", "throw", "experiments", "detectors"),
-        "docs/margin.md": ("machine", "margin", "sweep", "off")}
+        "docs/margin.md": ("machine", "margin", "sweep")}
 
 
 def main():
