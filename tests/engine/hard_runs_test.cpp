@@ -174,7 +174,7 @@ TEST(HardRuns, PermutedIdsBitwise) {
     }
 }
 
-// H39: stopped, written, read and taken up again: the same bits; also in the middle of sustained contacts.
+// H39: stopped, written, read and taken up again: the same bits; also in the middle of resting contacts.
 TEST(HardRuns, Restart) {
     std::vector<std::pair<std::string, Scene>> scenes;
     for (const ClusterModel model : {ClusterModel::kCompliant, ClusterModel::kSequential})

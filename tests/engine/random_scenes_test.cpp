@@ -222,7 +222,7 @@ TEST(RandomSceneRegressions, SlipsThatEnd) {
 }
 
 // CAROM_RANDOM_SCENES=FROM:COUNT runs these seeds instead of the tests and prints a line for each that fails
-// or takes long; for whoever changes sustained contacts. FROM:COUNT:other draws the other family of scenes.
+// or takes long; for whoever changes resting contacts. FROM:COUNT:other draws the other family of scenes.
 // It judges no time. The exit status is 0, or 2 where the text is not of this form.
 int scan(const char* wanted) {
     unsigned long long from = 0, count = 0;

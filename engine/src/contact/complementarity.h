@@ -1,5 +1,5 @@
-// Dense linear complementarity problems of a few dozen unknowns: the contact forces, and the impulses of a
-// capture, of a group of balls in sustained contact.
+// Dense linear complementarity problems of a few dozen unknowns: the forces in a group of resting contacts, and the
+// impulses that take the closing speeds out of it.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace carom {
 
-/// [-] Part of itself by which each contact of a held group yields, to share the load of contacts that are
-/// more than the group needs.
+/// [-] Compliance of each contact of a group, as a part of its mobility: contacts that are more than the group needs
+/// share the load.
 inline constexpr double kContactSoftness = 1e-12;
 
 /// z >= 0, w = A z + q >= 0, z . w = 0; where `free`, z has either sign and w = 0 instead.

@@ -232,7 +232,7 @@ double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, d
         else
             t = first_descent_quadratic(h0, h1, h2, ball.horizon);
         if (t < best && t <= ball.horizon && h1 + t * h2 < -noise && foot_inside(t)) best = t;
-        // A ball held to the nose at the end comes round it and onto the cushion: closing when the foot point enters.
+        // A ball that rests on the nose at the end comes round it and onto the cushion: closing when the foot point enters.
         const double enter = time_to_enter(dot(direction, offset), dot(direction, ball.v),
                                            dot(direction, ball.a), line_length, ball.horizon);
         if (enter == kNever) continue;

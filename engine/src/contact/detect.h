@@ -67,12 +67,12 @@ inline double least(double c, double b, double a, double T) {
 inline bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reach, double window) {
     if (!(window >= 0.0)) return true;
     const double far = reach * (1.0 + kApartShare);
-    const double d2 = r.dot(r);
-    const double towards = least(d2, r.dot(v), 0.5 * r.dot(a), window);
+    const double d2 = dot(r, r);
+    const double towards = least(d2, dot(r, v), 0.5 * dot(r, a), window);
     if (towards > 0.0 && towards * towards > far * far * d2) return true;
     const double side = cross(r, v), bend = 0.5 * cross(a, v);
     const double across = side < 0.0 ? least(-side, 0.0, -bend, window) : least(side, 0.0, bend, window);
-    return across > 0.0 && across * across > far * far * v.dot(v);
+    return across > 0.0 && across * across > far * far * dot(v, v);
 }
 
 /// The same for a straight line, from either side.

@@ -168,7 +168,7 @@ bool use_midpoint_directions(Group& g) {
         const Vec2 middle = x + 0.5 * duration * dx;
         const double size = length(middle);
         // Near its end the direction may turn over: then the one at the start stays.
-        if (!(size > 0.0) || middle.dot(x) <= 0.0) continue;
+        if (!(size > 0.0) || dot(middle, x) <= 0.0) continue;
         b.direction = middle / size;
         turned = true;
     }

@@ -10,14 +10,14 @@ Approach approach_of(const Balls& balls, int one, int two) {
     return {.contact = {one, With::kBall, two},
             .n = n,
             .v_n = n.x() * v.x() + n.y() * v.y(),
-            .a_c = n.dot(balls.segment(one).a - balls.segment(two).a) -
+            .a_c = dot(n, balls.segment(one).a - balls.segment(two).a) -
                    v_t * v_t / contact_distance(balls.radius(one), balls.radius(two))};
 }
 
 double closing_acceleration(const Vec2& n, const Segment& one, const Segment& two) {
     const double v_t = cross(n, Vec2(one.v.x() - two.v.x(), one.v.y() - two.v.y()));
     const Vec3 apart = two.r - one.r;
-    return n.dot(one.a - two.a) - v_t * v_t / length(Vec2(apart.x(), apart.y()));
+    return dot(n, one.a - two.a) - v_t * v_t / length(Vec2(apart.x(), apart.y()));
 }
 
 double pair_friction(const Plan& plan, const Balls& balls, int one, int two) {

@@ -30,7 +30,7 @@ Gap gap_of(const ClusterBall& p, const ClusterBall& q, double R) {
     Gap near{distance - 2.0 * R, 0.0, apart / distance};
     // Gaps are decided once, here: rounding of the positions counts as touching.
     if (near.gap <= kTouchUlp * R) near.gap = 0.0;
-    near.closing = near.n.dot(planar(p.v) - planar(q.v));
+    near.closing = dot(near.n, planar(p.v) - planar(q.v));
     return near;
 }
 
@@ -52,7 +52,7 @@ double Clusters::collect(int a, int b, double v_n) {
         double fastest = v_n;
         for (const ClusterContact& c : contacts_) {
             const ClusterBall &p = members_[c.i], &q = members_[c.j];
-            fastest = std::max(fastest, c.n.dot(planar(p.v) - planar(q.v)));
+            fastest = std::max(fastest, dot(c.n, planar(p.v) - planar(q.v)));
         }
         if (members_.size() < 3 || !(fastest > kClusterFaster * v_n)) return v_n;
         v_n = fastest;

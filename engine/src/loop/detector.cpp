@@ -54,7 +54,7 @@ Vec2 Detector::place(const Candidate& c) const {
             return plan_.geometry.noses[other].center;
         case With::kCushion: {
             const CushionLine& line = plan_.geometry.cushions[other];
-            return line.from + line.direction * line.direction.dot(here - line.from);
+            return line.from + line.direction * dot(line.direction, here - line.from);
         }
         case With::kNothing:
             break;

@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "carom/engine/cushion.h"
-#include "carom/engine/tolerances.h"
 #include "physics/motion.h"
 
 namespace carom {
 
 namespace {
+
+// [-] An impact of more steps is long work by itself, about 20 us: the caller is told of progress.
+constexpr int kLongImpact = 1000;
 
 kernel::Ball kernel_ball(const Vec3& r, const Vec3& v, const Vec3& w) {
     return {{r.x(), r.y(), r.z()}, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()}};
@@ -176,7 +178,7 @@ void Resolver::cushion(const Contact& contact) {
     } else {
         const CushionLine& line = plan_.geometry.cushions[contact.other];
         normal = Vec2(-line.direction.y(), line.direction.x());
-        if (normal.dot(here - line.from) < 0.0) normal = -normal;
+        if (dot(normal, here - line.from) < 0.0) normal = -normal;
         height = line.height;
     }
     const auto pressing = [&](const Vec2& pull) {

@@ -238,7 +238,7 @@ void RestingContacts::refresh_normal(RestingContact& c) const {
     if (c.contact.with == With::kCushion) {
         const CushionLine& line = plan_.geometry.cushions[c.contact.other];
         c.n = Vec2(-line.direction.y(), line.direction.x());
-        if (c.n.dot(here - line.from) > 0.0) c.n = -c.n;
+        if (dot(c.n, here - line.from) > 0.0) c.n = -c.n;
         return;
     }
     const Vec2 toward = (c.contact.with == With::kBall ? planar(balls_.position(c.contact.other))

@@ -168,20 +168,20 @@ long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<Cl
 
 long ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                        double e_b) {
-    std::vector<Vec2> v;
-    v.reserve(balls.size());
-    for (const ClusterBall& b : balls) v.push_back(Vec2(b.v.x(), b.v.y()));
-    std::vector<double> impulse(contacts.size(), 0.0);
+    std::vector<Vec2>& v = velocity_;
+    v.clear();
+    for (const ClusterBall& b : balls) v.push_back(planar(b.v));
+    std::vector<double>& impulse = impulse_;
+    impulse.assign(contacts.size(), 0.0);
     double scale = 0.0;
     for (const Vec2& x : v) scale = std::max(scale, x.norm());
     long sweeps = 0;
     for (; sweeps < kRigidSweeps; ++sweeps) {
         double change = 0.0;
         for (std::size_t c = 0; c < contacts.size(); ++c) {
-            const auto i = static_cast<std::size_t>(contacts[c].i),
-                       j = static_cast<std::size_t>(contacts[c].j);
+            const int i = contacts[c].i, j = contacts[c].j;
             const Vec2& n = contacts[c].n;
-            const double closing = (v[i] - v[j]).dot(n);
+            const double closing = dot(v[i] - v[j], n);
             const double next = std::max(0.0, impulse[c] + 0.5 * closing);
             const double J = next - impulse[c];
             impulse[c] = next;

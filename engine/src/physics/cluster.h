@@ -78,6 +78,9 @@ class ClusterMap {
     std::vector<kernel::HertzContact> contacts_;
     std::vector<double> numbers_;
     std::vector<int> places_;
+    // Of rigid(): per ball [m/s], per contact.
+    std::vector<Vec2> velocity_;
+    std::vector<double> impulse_;
 };
 
 }  // namespace carom

@@ -122,7 +122,7 @@ class Checker {
             // A ball may cross a cushion's line only where the cushion is not.
             for (const CushionLine& line : plan_.geometry.cushions) {
                 const Vec2 offset = r - line.from;
-                const double foot = line.direction.dot(offset);
+                const double foot = dot(line.direction, offset);
                 const double gap = std::abs(cross(line.direction, offset)) - R(i);
                 if (foot >= 0.0 && foot <= line.length && gap < -kTouchTolerance)
                     report("U3",

@@ -16,7 +16,7 @@ struct SimulateOptions {
     /// [s] Of the shot in the caller's clock: kept in Record::start_time, enters no computation
     double start_time = 0.0;
     /// Called with (events so far, simulated time) every so many rounds of the loop, and after a round that
-    /// was long by itself (a cluster, a march of many steps, balls held together): for a progress line, and
+    /// was long by itself (a cluster, a march of many steps, resting contacts): for a progress line, and
     /// to end the run by an exception of one's own. A round is an event or nearly so; of a run with fewer it
     /// is not called at all.
     std::function<void(std::size_t, double)> progress;

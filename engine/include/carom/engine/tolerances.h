@@ -18,15 +18,12 @@ inline constexpr double kRollingUlp = 8.0;
 inline constexpr double kEventCapSpan = 1e-6;
 inline constexpr int kEventCap = 10000;
 
-/// [-] Steps from which on an impact is long work by itself, about 20 us: the caller is told of progress.
-inline constexpr int kLongImpact = 1000;
-
 /// [m] Depth at which a pocketed ball comes to rest below the cloth; drawing only. pooltool 0.6.0's value.
 inline constexpr double kPocketDepth = 0.08;
 
 /// Below which approach a bounce is no bounce: one that would end before the contact itself has, 2 e v / a <
 /// t_c(v), with the Hertz contact time t_c = 2.6 (m / k)^0.4 v^-0.2 of two phenolic balls (E = 5.84 GPa, nu =
-/// 0.34: k/m = 3.094e9 m^-0.5 s^-2). Such a contact is held instead. About 1.5e-3 m/s at a = 2 m/s^2.
+/// 0.34: k/m = 3.094e9 m^-0.5 s^-2). Such a contact becomes a resting one instead. About 1.5e-3 m/s at a = 2 m/s^2.
 inline constexpr double kContactTimeFactor = 2.6;
 inline constexpr double kContactStiffness = 3.094e9;  ///< [m^-0.5 s^-2] k/m
 

@@ -1,4 +1,4 @@
-// Groups of held balls: one small scene for each class of failure that the random scenes brought, and the
+// Groups of balls in resting contacts: one small scene for each class of failure that the random scenes brought, and the
 // solver of their forces.
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ Scene on_box() {
 
 // A ball at rest between a cushion and one that pushes it there and passes along: it leans on the cushion and
 // stays, instead of starting, stopping and letting go again and again.
-TEST(HeldGroups, SqueezedAgainstACushionStaysAtRest) {
+TEST(RestingGroups, SqueezedAgainstACushionStaysAtRest) {
     Scene scene = on_box();
     const double R = scene.balls.R;
     add_ball(scene, "squeezed", 1.0 - R, 1.0);
@@ -36,7 +36,7 @@ TEST(HeldGroups, SqueezedAgainstACushionStaysAtRest) {
 }
 
 // A ball pressed into the narrow wedge between a cushion and a ball, whose normals are nearly opposite.
-TEST(HeldGroups, WedgeOfNearlyOppositeNormals) {
+TEST(RestingGroups, WedgeOfNearlyOppositeNormals) {
     for (const double tilt : {0.3, 0.03, 1e-3, 1e-5}) {
         Scene scene = on_box();
         const double R = scene.balls.R;
@@ -52,7 +52,7 @@ TEST(HeldGroups, WedgeOfNearlyOppositeNormals) {
 
 // The capture has to converge in such a wedge: swept contact
 // by contact, the ball got 5.6e-12 m deep into the cushion.
-TEST(HeldGroups, WedgeOfACushionAndASlowBall) {
+TEST(RestingGroups, WedgeOfACushionAndASlowBall) {
     Scene scene = empty_scene();
     scene.table = make_table("seven_foot");
     scene.balls.mu_s = scene.balls.mu_r = 0.05;
@@ -66,7 +66,7 @@ TEST(HeldGroups, WedgeOfACushionAndASlowBall) {
 }
 
 // Five balls that lean on each other, one with slow spin: they stopped and bounced again and again.
-TEST(HeldGroups, SlowGroupComesToRest) {
+TEST(RestingGroups, SlowGroupComesToRest) {
     Scene scene = on_box();
     scene.balls.mu_s = 0.05;
     scene.balls.mu_b = 0.0;
@@ -84,7 +84,7 @@ TEST(HeldGroups, SlowGroupComesToRest) {
 
 // A line driven by spin, obliquely, against a cushion: the directions of its forces turn all the way. Every
 // 2 ms took more than 10 000 segments.
-TEST(HeldGroups, LongLineTakesFewIntervals) {
+TEST(RestingGroups, LongLineTakesFewIntervals) {
     Scene scene = on_box();
     scene.balls.mu_s = 0.05;
     const double R = scene.balls.R;
@@ -99,7 +99,7 @@ TEST(HeldGroups, LongLineTakesFewIntervals) {
 
 // Plastic cushion: a ball driven into the wedge before another bounces each time the cushion has taken its
 // speed again. The row has no end (it met the cap on events); its limit is the capture.
-TEST(HeldGroups, RowOfBouncesInNoTimeEnds) {
+TEST(RestingGroups, RowOfBouncesInNoTimeEnds) {
     Scene scene = empty_scene();
     scene.table = make_table("seven_foot");
     scene.balls.mu_s = 0.6;
@@ -119,7 +119,7 @@ TEST(HeldGroups, RowOfBouncesInNoTimeEnds) {
 
 // A pair begins to touch at 1e-12 m/s while a third ball is about to arrive at 1 m/s: the map of the cluster
 // is scaled by the fast one. Scaled by the slow one it blew up.
-TEST(HeldGroups, SlowTouchNextToAFastApproach) {
+TEST(RestingGroups, SlowTouchNextToAFastApproach) {
     Scene scene = empty_scene();
     const double R = scene.balls.R;
     add_ball(scene, "a", 0.0, 0.0, 1e-12, 0.0, rolling_spin(1e-12, 0.0, R));
@@ -131,7 +131,7 @@ TEST(HeldGroups, SlowTouchNextToAFastApproach) {
 }
 
 // A contact that rounding closes is held without an impact, and one without force stays without events.
-TEST(HeldGroups, BallsThatRestTogetherStayTogether) {
+TEST(RestingGroups, BallsThatRestTogetherStayTogether) {
     Scene scene = on_box();
     const double R = scene.balls.R;
     for (int i = 0; i < 4; ++i)
@@ -145,7 +145,7 @@ TEST(HeldGroups, BallsThatRestTogetherStayTogether) {
 }
 
 // Two cushions and a corner: into both at once, with and without spin, every restitution.
-TEST(HeldGroups, CornerComesToRest) {
+TEST(RestingGroups, CornerComesToRest) {
     for (const double e_c : {0.0, 0.5, 0.85, 1.0}) {
         for (const double spin : {0.0, 100.0}) {
             Scene scene = on_box();
@@ -160,7 +160,7 @@ TEST(HeldGroups, CornerComesToRest) {
 
 // A ball climbs with its spin into the wedge between a cushion and a ball that another one holds (seed 8145):
 // the forces are 1e5 times what drives it. What the softness left of them pressed it 1.3e-12 m deep.
-TEST(HeldGroups, WedgeWithGreatForcesDoesNotCreep) {
+TEST(RestingGroups, WedgeWithGreatForcesDoesNotCreep) {
     Scene scene = on_box();
     scene.balls.mu_r = 0.005;
     scene.balls.mu_b = 0.0;

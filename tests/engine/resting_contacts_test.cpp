@@ -1,4 +1,4 @@
-// Sustained contacts: H4, H5, H7 to H9 of docs/hard_cases.md with the numbers of the design notes (clusters,
+// Resting contacts: H4, H5, H7 to H9 of docs/hard_cases.md with the numbers of the design notes (clusters,
 // sections 7 and 9).
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ struct Push {
 };
 
 // H7: a ball with 100 rad/s of topspin at rest behind n touching balls, mu_r = 0.
-TEST(Sustained, TopspinPushesALine) {
+TEST(RestingContacts, TopspinPushesALine) {
     const Push table[] = {{1, 0.0, 0.81750000, 0.499345, 0.408214, 0.101920},
                           {2, 0.0, 0.51631579, 0.527086, 0.272143, 0.071721},
                           {3, 0.0, 0.37730769, 0.540957, 0.204107, 0.055207},
@@ -52,7 +52,7 @@ TEST(Sustained, TopspinPushesALine) {
 }
 
 // H5: spin into the cushion from rest: held until the slip is gone, after R w / (2.5 mu_s g).
-TEST(Sustained, SpinIntoACushion) {
+TEST(RestingContacts, SpinIntoACushion) {
     Scene scene = empty_scene();
     scene.table = box(1.0, 2.0, 0.036576);
     const double R = scene.balls.R;
@@ -67,7 +67,7 @@ TEST(Sustained, SpinIntoACushion) {
 }
 
 // H5, oblique: 1 m/s along the cushion and 50 rad/s into it. Reference values of the notes: 0.328069 s, v_y = 5/7.
-TEST(Sustained, ObliqueSpinIntoACushion) {
+TEST(RestingContacts, ObliqueSpinIntoACushion) {
     Scene scene = empty_scene();
     scene.table = box(1.0, 20.0, 0.036576);
     const double R = scene.balls.R;
@@ -82,7 +82,7 @@ TEST(Sustained, ObliqueSpinIntoACushion) {
 }
 
 // H4: at the cushion exactly, moving into it: an immediate rebound.
-TEST(Sustained, BallAtTheCushionRebounds) {
+TEST(RestingContacts, BallAtTheCushionRebounds) {
     for (const double offset : {0.0, -1e-12, 1e-12, 1e-9}) {
         Scene scene = empty_scene();
         scene.table = box(1.0, 2.0, 0.036576);
@@ -100,7 +100,7 @@ TEST(Sustained, BallAtTheCushionRebounds) {
 }
 
 // H8: two balls rolling side by side, touching: no event between them.
-TEST(Sustained, RollingSideBySide) {
+TEST(RestingContacts, RollingSideBySide) {
     for (const bool behind : {false, true}) {
         Scene scene = empty_scene();
         const double R = scene.balls.R;
@@ -118,7 +118,7 @@ TEST(Sustained, RollingSideBySide) {
 }
 
 // H9: exactly at 2 R, receding or at rest: no event; one ulp inside and closing: now.
-TEST(Sustained, TouchingPairs) {
+TEST(RestingContacts, TouchingPairs) {
     const double R = pool_balls().R;
     Scene rest = empty_scene();
     add_ball(rest, "a", 0.0, 0.0);
