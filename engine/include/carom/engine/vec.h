@@ -15,7 +15,7 @@ inline Vec2 planar(const Vec3& a) {
 }
 
 inline double dot(const Vec2& a, const Vec2& b) {
-    return a.x() * b.x() + a.y() * b.y();
+    return a.dot(b);
 }
 
 /// Length of a planar vector; no overflow, no underflow, no libm.
