@@ -21,11 +21,11 @@ void Detector::set_up_table() {
     const Geometry& g = plan_.geometry;
     const std::size_t count = g.cushions.size() + g.noses.size() + g.pockets.size();
     table_boxes_.set_up(static_cast<int>(count), plan_.table_search);
-    parts_.resize(count);
+    parts_.reserve(count);
     near_.reserve(count);
-    auto add = [this, part = 0](With with, std::size_t index, const Box& box) mutable {
-        table_boxes_.place(part, box);
-        parts_[part++] = {-1, with, static_cast<int>(index)};
+    const auto add = [this](With with, std::size_t index, const Box& box) {
+        table_boxes_.place(static_cast<int>(parts_.size()), box);
+        parts_.push_back({-1, with, static_cast<int>(index)});
     };
     for (std::size_t i = 0; i < g.cushions.size(); ++i) {
         const CushionLine& line = g.cushions[i];
