@@ -18,7 +18,10 @@ constexpr std::size_t kRoom = 256;
 }  // namespace
 
 Log::Log(const Plan& plan, const SimulateOptions& options, Balls& balls)
-    : options_(options), balls_(balls), geometry_(plan.geometry) {
+    : options_(options),
+      balls_(balls),
+      geometry_(plan.geometry),
+      has_clusters_(plan.clusters != ClusterModel::kSequential) {
     const Scene& scene = plan.scene;
     record_.table = scene.table;
     record_.balls = plan.balls;
@@ -38,11 +41,11 @@ Log::Log(const Plan& plan, const SimulateOptions& options, Balls& balls)
 }
 
 void Log::reserve() {
-    const std::size_t segments = static_cast<std::size_t>(balls_.count()) + kRoom;
-    segments_.reserve(segments);
-    segment_ball_.reserve(segments);
-    cluster_ball_.reserve(kRoom);
-    cluster_end_.reserve(kRoom);
+    segments_.reserve(static_cast<std::size_t>(balls_.count()) + kRoom);
+    if (has_clusters_) {
+        cluster_ball_.reserve(kRoom);
+        cluster_end_.reserve(kRoom);
+    }
     record_.events.reserve(record_.events.size() + kRoom);
 }
 
@@ -128,10 +131,9 @@ void Log::fail(const std::string& why) const {
 Record Log::finish(StopReason why) {
     std::vector<std::size_t> count(record_.tracks.size());
     for (std::size_t i = 0; i < count.size(); ++i) count[i] = record_.tracks[i].segments.size();
-    for (const int ball : segment_ball_) ++count[ball];
+    for (const BallSegment& s : segments_) ++count[s.ball];
     for (std::size_t i = 0; i < count.size(); ++i) record_.tracks[i].segments.reserve(count[i]);
-    for (std::size_t k = 0; k < segments_.size(); ++k)
-        record_.tracks[segment_ball_[k]].segments.push_back(segments_[k]);
+    for (const BallSegment& s : segments_) record_.tracks[s.ball].segments.push_back(s.segment);
     auto begin = cluster_ball_.begin();
     for (const std::size_t end : cluster_end_) {
         const auto to = cluster_ball_.begin() + static_cast<std::ptrdiff_t>(end);

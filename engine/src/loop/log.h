@@ -28,8 +28,7 @@ class Log {
     /// The ball moves like this from now on.
     void begin(int ball, const Segment& segment) {
         balls_.set(ball, segment);
-        segments_.push_back(segment);
-        segment_ball_.push_back(ball);
+        segments_.push_back({segment, ball});
         touched_.push_back(ball);
     }
     void event(EventType type, int ball, int partner = -1, int detail = -1) {
@@ -74,6 +73,10 @@ class Log {
     Record finish(StopReason why);
 
   private:
+    struct BallSegment {
+        Segment segment;
+        int ball;
+    };
     void reserve();
     bool is_crowded() const {
         const std::vector<Event>& e = record_.events;
@@ -86,10 +89,10 @@ class Log {
     const SimulateOptions& options_;
     Balls& balls_;
     const Geometry& geometry_;
+    bool has_clusters_;
     Record record_;
     // Segments and clusters of this run, in the order in which they came; finish() deals them out.
-    std::vector<Segment> segments_;
-    std::vector<int> segment_ball_;
+    std::vector<BallSegment> segments_;
     std::vector<int> cluster_ball_;
     std::vector<std::size_t> cluster_end_;
     std::vector<int> touched_;
