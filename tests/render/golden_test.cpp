@@ -18,6 +18,7 @@
 #include "carom/render/png.h"
 #include "carom/render/renderer.h"
 #include "render/hand_made.h"
+#include "support/read_png.h"
 
 namespace carom::render {
 namespace {
@@ -162,7 +163,7 @@ void compare(const Image& image, const std::string& name) {
         save(image, path);
         GTEST_SKIP() << "renewed " << path << ", and nothing compared; run again without CAROM_UPDATE_GOLDEN";
     }
-    const Image golden = read_png(path);
+    const Image golden = render_test::read_png(path);
     ASSERT_EQ(golden.size, image.size);
     Image difference = image;
     double sum = 0.0;

@@ -12,6 +12,7 @@
 #include "carom/render/png.h"
 #include "carom/render/sequence.h"
 #include "render/hand_made.h"
+#include "support/read_png.h"
 
 namespace carom::render {
 namespace {
@@ -54,8 +55,8 @@ TEST(Pipeline, ThreadsChangeNothingInTheFrames) {
         EXPECT_GT(timing.write_ms, 0.0);
     }
     for (long k = 0; k < static_cast<long>(count); ++k) {
-        EXPECT_TRUE(same_pixels(read_png(frame_path(folder.file("a%02d.png"), k)),
-                                read_png(frame_path(options.pattern, k))))
+        EXPECT_TRUE(same_pixels(render_test::read_png(frame_path(folder.file("a%02d.png"), k)),
+                                render_test::read_png(frame_path(options.pattern, k))))
             << k;
     }
     EXPECT_EQ(folder.entries(), 2 * count);
@@ -66,7 +67,7 @@ TEST(Pipeline, ResumeDoesOnlyWhatIsMissing) {
     const Record record = rolling_ball();
     SequenceOptions options = options_for(folder.file("%02d.png"));
     render_sequence(record, options);
-    const Image fifth = read_png(folder.file("05.png"));
+    const Image fifth = render_test::read_png(folder.file("05.png"));
     std::filesystem::remove(folder.file("05.png"));
     std::ofstream(folder.file("07.png")) << "cut off";
     SequenceOptions small = options_for(folder.file("09.png"));
@@ -87,7 +88,7 @@ TEST(Pipeline, ResumeDoesOnlyWhatIsMissing) {
     EXPECT_EQ(timings[1].frame, 7);
     EXPECT_EQ(timings[2].frame, 9);
     EXPECT_EQ(progress, (std::vector<long>{29, 30, 31}));
-    EXPECT_TRUE(same_pixels(read_png(folder.file("05.png")), fifth));
+    EXPECT_TRUE(same_pixels(render_test::read_png(folder.file("05.png")), fifth));
     EXPECT_EQ(std::filesystem::last_write_time(folder.file("06.png")), before);
     EXPECT_TRUE(render_sequence(record, options).empty());
 }
@@ -103,7 +104,7 @@ TEST(Pipeline, RawFramesComeInOrderWithTheSamePixels) {
     render_sequence(record, options);
     ASSERT_EQ(frames.size(), 31U);
     for (std::size_t k = 0; k < frames.size(); ++k) {
-        const Image image = read_png(frame_path(folder.file("%02d.png"), static_cast<long>(k)));
+        const Image image = render_test::read_png(frame_path(folder.file("%02d.png"), static_cast<long>(k)));
         ASSERT_EQ(frames[k].size(), 3U * 160 * 90);
         std::size_t differ = 0;
         for (std::size_t i = 0; i < frames[k].size(); ++i)
@@ -139,7 +140,7 @@ TEST(Pipeline, ProgressMayStopTheRun) {
     EXPECT_THROW(render_sequence(rolling_ball(), options), std::runtime_error);
     // What is there is whole.
     for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
-        EXPECT_EQ(read_png(entry.path().string()).size, options.size);
+        EXPECT_EQ(render_test::read_png(entry.path().string()).size, options.size);
     }
     EXPECT_LE(folder.entries(), 8U);
 }
@@ -159,7 +160,7 @@ TEST(Sheet, ShowsTheShotRowByRow) {
     SequenceOptions options = options_for("");
     options.size = {482, 362};
     render_sheet(record, options, 3, 4, folder.file("sheet.png"));
-    const Image sheet = read_png(folder.file("sheet.png"));
+    const Image sheet = render_test::read_png(folder.file("sheet.png"));
     EXPECT_EQ(sheet.size, options.size);
     // 3 x 4 pictures of 159 x 89 with 2 pixels between them; the middle of each is cloth, and first and last differ.
     for (int row = 0; row < 4; ++row) {

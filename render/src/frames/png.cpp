@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <csetjmp>
 #include <cstdio>
-#include <cstring>
 
 #include "carom/render/error.h"
 
@@ -53,23 +51,6 @@ bool encode_rows(png_structp png, png_infop info, const Image& image, int level)
     return true;
 }
 
-bool decode_rows(png_structp png, png_infop info, std::FILE* file, Image& image) {
-    if (setjmp(png_jmpbuf(png))) return false;
-    png_init_io(png, file);
-    png_read_info(png, info);
-    png_set_expand(png);
-    png_set_strip_16(png);
-    png_set_gray_to_rgb(png);
-    png_set_strip_alpha(png);
-    png_set_filler(png, 0xFF, PNG_FILLER_AFTER);
-    png_read_update_info(png, info);
-    const png_uint_32 width = png_get_image_width(png, info), height = png_get_image_height(png, info);
-    image.resize({static_cast<int>(width), static_cast<int>(height)});
-    for (png_uint_32 y = 0; y < height; ++y)
-        png_read_row(png, image.rgbx.data() + std::size_t{4} * y * width, nullptr);
-    return true;
-}
-
 }  // namespace
 
 void encode_png(const Image& image, int level, std::vector<std::uint8_t>& bytes) {
@@ -86,20 +67,6 @@ void encode_png(const Image& image, int level, std::vector<std::uint8_t>& bytes)
     const bool good = encode_rows(png, info, image, level);
     png_destroy_write_struct(&png, &info);
     if (!good) throw RenderError(std::string("libpng cannot encode the frame: ") + failure.text.data());
-}
-
-Image read_png(const std::string& path) {
-    std::FILE* file = std::fopen(path.c_str(), "rb");
-    if (file == nullptr) throw RenderError(path + ": " + std::strerror(errno));
-    Failure failure;
-    Image image;
-    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &failure, keep_error, ignore_warning);
-    png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
-    const bool good = info != nullptr && decode_rows(png, info, file, image);
-    png_destroy_read_struct(&png, &info, nullptr);
-    std::fclose(file);
-    if (!good) throw RenderError(path + ": not a readable PNG file: " + failure.text.data());
-    return image;
 }
 
 }  // namespace carom::render

@@ -21,8 +21,6 @@ class Context {
     /// Makes the context current on the calling thread. @throws RenderError
     virtual void make_current() = 0;
 
-    /// Releases it from the calling thread.
-    virtual void release() = 0;
 
     /// How to find the functions of this context.
     virtual Lookup lookup() const = 0;

@@ -94,7 +94,6 @@ class EglContext final : public Context {
             throw RenderError("eglMakeCurrent without a surface failed; use --gl osmesa");
         }
     }
-    void release() override { egl().make_current(display(), nullptr, nullptr, nullptr); }
     Lookup lookup() const override { return &lookup_egl; }
 
   private:

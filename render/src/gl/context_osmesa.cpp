@@ -70,7 +70,6 @@ class OsmesaContext final : public Context {
             throw RenderError("OSMesaMakeCurrent failed; use --gl egl");
         }
     }
-    void release() override { osmesa().make_current(nullptr, nullptr, 0, 0, 0); }
     Lookup lookup() const override { return &lookup_osmesa; }
 
   private:

@@ -102,7 +102,6 @@ class Stage {
 
     DrawList at(double t, std::optional<FrameCost> cost = std::nullopt) const;
     const std::shared_ptr<const TableMesh>& table() const { return table_; }
-    bool camera_moves() const { return camera_.moves(); }
 
   private:
     const Record& record_;

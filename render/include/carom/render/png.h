@@ -13,9 +13,6 @@ namespace carom::render {
 /// zlib, 0..9. `bytes` is overwritten, its memory reused. @throws RenderError
 void encode_png(const Image& image, int level, std::vector<std::uint8_t>& bytes);
 
-/// Reads any PNG file; a fourth channel is dropped. @throws RenderError naming the file
-Image read_png(const std::string& path);
-
 /// Writes to a temporary name beside `path` and renames. On failure nothing is left. @throws RenderError
 /// naming the file
 void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes);
