@@ -15,7 +15,7 @@
 // sigma = +1 as published, -1 consistent. Ball 2 (index 1) is pressed where z < 0.
 #pragma once
 
-#include "ladder/driver.h"
+#include "ladder/step_loops.h"
 
 namespace carom::kernel {
 namespace {

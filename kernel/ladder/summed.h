@@ -8,11 +8,13 @@
 
 #include "ladder/reduced.h"
 #include "ladder/sum_tables.h"
-#include "ladder/vector8.h"
 #include "loop_marks.h"
+#include "simd.h"
 
 namespace carom::kernel {
 namespace {
+
+using Eight = Pack<8>;
 
 constexpr int kMostSweeps = 24;
 // Change of a node per sweep, and highest modes of the rates, both relative to the approach speed.
@@ -123,9 +125,9 @@ class SummedMarch {
     }
 
     // The slack of every block size at once; >= 0 where smooth.
-    static Vector8 slack(const Path& p, Vector8 K) {
-        const Vector8 a = p.a + K * p.da, b = p.b + K * p.db;
-        return square_root(p.a * p.a + p.b * p.b) + square_root8(a * a + b * b) -
+    static Eight slack(const Path& p, Eight K) {
+        const Eight a = p.a + K * p.da, b = p.b + K * p.db;
+        return square_root(p.a * p.a + p.b * p.b) + square_root(a * a + b * b) -
                K * (p.needed * square_root(p.da * p.da + p.db * p.db));
     }
 
@@ -142,54 +144,54 @@ class SummedMarch {
                                 kLargestBlock * mu_s * f.t);
         alignas(64) constexpr double kSizes[kNodes] = {16, 32, 64, 128, 256, 512, 1024, 1024};
         alignas(64) double of_slip[kNodes], of_cloth[kNodes];
-        const Vector8 slip_slack = slack(slip, load8(kSizes)), cloth_slack = slack(cloth, load8(kSizes));
-        store8(of_slip, slip_slack);
-        store8(of_cloth, cloth_slack);
+        const Eight slip_slack = slack(slip, load<8>(kSizes)), cloth_slack = slack(cloth, load<8>(kSizes));
+        store(of_slip, slip_slack);
+        store(of_cloth, cloth_slack);
         while (level >= 0 && !(of_slip[level] >= 0.0 && of_cloth[level] >= 0.0)) --level;
         return level;
     }
 
     struct Rates {
-        Vector8 xi, t, q_x, q_y;
+        Eight xi, t, q_x, q_y;
     };
 
     // y is near 1/sqrt(square): e = 1 - square y^2, and the series of (1 - e)^(-1/2). 35/128 e^4 is left, for
     // the next sweep.
-    static Vector8 refined(Vector8 y, Vector8 e) { return y + (y * e) * (0.5 + e * (0.375 + e * 0.3125)); }
+    static Eight refined(Eight y, Eight e) { return y + (y * e) * (0.5 + e * (0.375 + e * 0.3125)); }
 
     // C and U: reciprocal lengths of the sweep before, then of this one.
-    Rates rates(Vector8 x, Vector8 z, Vector8 a, Vector8 b, double mu_s, Vector8& C, Vector8& U) const {
-        const Vector8 c2 = x * x + z * z, u2 = a * a + b * b;
-        const Vector8 e_c = 1.0 - c2 * (C * C), e_u = 1.0 - u2 * (U * U);
-        if (all_below8(e_c * e_c + e_u * e_u, 0.01)) [[likely]] {
+    Rates rates(Eight x, Eight z, Eight a, Eight b, double mu_s, Eight& C, Eight& U) const {
+        const Eight c2 = x * x + z * z, u2 = a * a + b * b;
+        const Eight e_c = 1.0 - c2 * (C * C), e_u = 1.0 - u2 * (U * U);
+        if (all_below(e_c * e_c + e_u * e_u, 0.01)) [[likely]] {
             C = refined(C, e_c);
             U = refined(U, e_u);
         } else {
-            C = 1.0 / square_root8(c2);
-            U = 1.0 / square_root8(u2);
+            C = 1.0 / square_root(c2);
+            U = 1.0 / square_root(u2);
         }
-        const Vector8 A = k.mu_h * C;
-        const Vector8 t = A * z;
-        const Vector8 B = t * (mu_s * U);
+        const Eight A = k.mu_h * C;
+        const Eight t = A * z;
+        const Eight B = t * (mu_s * U);
         return {A * x, t, B * a, B * b};
     }
 
     // start + the columns weighted by F.
-    static Vector8 combined(const double (&columns)[kNodes][kNodes], Vector8 start, Vector8 F) {
+    static Eight combined(const double (&columns)[kNodes][kNodes], Eight start, Eight F) {
         // Through memory: loads broadcast for nothing, lanes moved in registers do not.
         alignas(64) double at_node[kNodes];
-        store8(at_node, F);
-        Vector8 even = start + at_node[0] * load8(columns[0]), odd = at_node[1] * load8(columns[1]);
+        store(at_node, F);
+        Eight even = start + at_node[0] * load<8>(columns[0]), odd = at_node[1] * load<8>(columns[1]);
 #pragma GCC unroll 8
         for (int l = 2; l < kNodes; l += 2) {
-            even = even + at_node[l] * load8(columns[l]);
-            odd = odd + at_node[l + 1] * load8(columns[l + 1]);
+            even = even + at_node[l] * load<8>(columns[l]);
+            odd = odd + at_node[l + 1] * load<8>(columns[l + 1]);
         }
         return even + odd;
     }
 
-    static double total(const double* weights, Vector8 F) {
-        return sum8(load8(weights) * F);
+    static double total(const double* weights, Eight F) {
+        return sum(load<8>(weights) * F);
     }
 
     bool block(const SumTable& table, const FirstStep& first) {
@@ -200,13 +202,13 @@ class SummedMarch {
         const double mu_s = first.cloth ? k.mu_s[pressed] : 0.0, z0 = first.turns ? first.size : 0.0;
         // Where the cloth does nothing its slip must only not be zero.
         const double a0 = first.cloth ? r.Ux[pressed] : 1e3 * scale, b0 = first.cloth ? r.Uy[pressed] : 0.0;
-        const Vector8 at = load8(table.at), push = k.h * at;
+        const Eight at = load<8>(table.at), push = k.h * at;
         // First guess: the rates of the first step throughout.
-        Vector8 x = r.x + at * (first.q_x - 7.0 * first.xi);
-        Vector8 z = z0 + at * (2.5 * first.q_y - 5.0 * first.t);
-        Vector8 a = a0 + at * (first.xi - kKappa * first.q_x);
-        Vector8 b = b0 + push - at * ((2.5 * kSign) * first.t + kKappa * first.q_y);
-        Vector8 C = all8(first.C), U = all8(first.cloth ? first.U : 1.0 / a0);
+        Eight x = r.x + at * (first.q_x - 7.0 * first.xi);
+        Eight z = z0 + at * (2.5 * first.q_y - 5.0 * first.t);
+        Eight a = a0 + at * (first.xi - kKappa * first.q_x);
+        Eight b = b0 + push - at * ((2.5 * kSign) * first.t + kKappa * first.q_y);
+        Eight C = broadcast<8>(first.C), U = broadcast<8>(first.cloth ? first.U : 1.0 / a0);
         // Below the second no sweep gets, of rounding.
         const double settled =
             kSweepTolerance * scale + kSweepRounding * (absolute(r.x) + z0 + absolute(a0) + absolute(b0));
@@ -214,12 +216,12 @@ class SummedMarch {
         for (int sweep = 1;; ++sweep) {
             CAROM_LOOP_BEGIN("summed sweep");
             const Rates now = rates(x, z, a, b, mu_s, C, U);
-            const Vector8 next_x = combined(table.sums, all8(r.x), now.q_x - 7.0 * now.xi);
-            const Vector8 next_z = combined(table.sums, all8(z0), 2.5 * now.q_y - 5.0 * now.t);
-            const Vector8 next_a = combined(table.sums, all8(a0), now.xi - kKappa * now.q_x);
-            const Vector8 next_b = combined(table.sums, b0 + push, (-2.5 * kSign) * now.t - kKappa * now.q_y);
-            const double change = sum8(absolute8(next_x - x) + absolute8(next_z - z) + absolute8(next_a - a) +
-                                       absolute8(next_b - b));
+            const Eight next_x = combined(table.sums, broadcast<8>(r.x), now.q_x - 7.0 * now.xi);
+            const Eight next_z = combined(table.sums, broadcast<8>(z0), 2.5 * now.q_y - 5.0 * now.t);
+            const Eight next_a = combined(table.sums, broadcast<8>(a0), now.xi - kKappa * now.q_x);
+            const Eight next_b = combined(table.sums, b0 + push, (-2.5 * kSign) * now.t - kKappa * now.q_y);
+            const double change = sum(absolute(next_x - x) + absolute(next_z - z) + absolute(next_a - a) +
+                                      absolute(next_b - b));
             x = next_x;
             z = next_z;
             a = next_a;
@@ -238,14 +240,14 @@ class SummedMarch {
         }
         if (!resolved(table, f, 1.0)) return false;
         // A side that flips within the block shows at a node or at its end.
-        if (!all_below8(-1.0 * z, 0x1p-1074)) return false;
+        if (!all_below(-1.0 * z, 0x1p-1074)) return false;
         if (z0 + total(table.total, 2.5 * f.q_y - 5.0 * f.t) < 0.0) return false;
         return advance(table, f, pressed);
     }
 
     bool resolved(const SumTable& table, const Rates& f, double slack) const {
         // One mixture of the four stands for all: uneven weights, so that no symmetry cancels.
-        const Vector8 F = (f.xi + 0.7 * f.t) + (1.3 * f.q_x - 0.6 * f.q_y);
+        const Eight F = (f.xi + 0.7 * f.t) + (1.3 * f.q_x - 0.6 * f.q_y);
         const double missing = absolute(total(table.mode7, F)) + 0.1 * absolute(total(table.mode6, F));
         return missing * table.steps <= slack * kModeTolerance * scale;
     }
@@ -259,7 +261,7 @@ class SummedMarch {
         const bool crosses = stop.compressing && v_end > 0.0;
         if (!crosses && (stop.compressing || stop.W + h * V < stop.W_f)) {
             stop.W += stop.compressing ? -h * V : h * V;
-            take(f, load8(table.total), K, pressed);
+            take(f, load<8>(table.total), K, pressed);
             steps += static_cast<long>(K);
             return true;
         }
@@ -311,8 +313,8 @@ class SummedMarch {
         for (int i = 1; i < kNodes; ++i) powers[i] = powers[i - 1] * theta;
         const double highest = powers[kNodes - 1] * theta;
         for (int l = 0; l < kNodes; ++l)
-            weight[l] = total(table.once_low[l], load8(powers)) + highest * table.once_high[0][l];
-        const Vector8 weights = load8(weight);
+            weight[l] = total(table.once_low[l], load<8>(powers)) + highest * table.once_high[0][l];
+        const Eight weights = load<8>(weight);
         take(f, weights, last, pressed);
         steps += static_cast<long>(last);
         return true;
@@ -321,11 +323,11 @@ class SummedMarch {
     // v_n and the sum of (v(m) + v(m+1)) / 2 over the steps of a block, at any t.
     class Profile {
       public:
-        Profile(const SumTable& t, Vector8 q_y, double start, double step) : table(t), v0(start), h(step) {
-            const Vector8 once_low = combined(table.once_low, all8(0.0), q_y);
-            const Vector8 twice_low = combined(table.twice_low, all8(0.0), q_y);
-            store8(once, once_low);
-            store8(twice, twice_low);
+        Profile(const SumTable& t, Eight q_y, double start, double step) : table(t), v0(start), h(step) {
+            const Eight once_low = combined(table.once_low, broadcast<8>(0.0), q_y);
+            const Eight twice_low = combined(table.twice_low, broadcast<8>(0.0), q_y);
+            store(once, once_low);
+            store(twice, twice_low);
             once[kNodes] = total(table.once_high[0], q_y);
             twice[kNodes] = total(table.twice_high[0], q_y);
             twice[kNodes + 1] = total(table.twice_high[1], q_y);
@@ -355,10 +357,10 @@ class SummedMarch {
         return reached(t) ? t : -1.0;
     }
 
-    void take(const Rates& f, Vector8 weights, double count, int pressed) {
+    void take(const Rates& f, Eight weights, double count, int pressed) {
         constexpr double kKappa = 1.0 - 2.5 * kSign;
-        const double xi = sum8(weights * f.xi), t = sum8(weights * f.t);
-        const double q_x = sum8(weights * f.q_x), q_y = sum8(weights * f.q_y), p = count * k.h;
+        const double xi = sum(weights * f.xi), t = sum(weights * f.t);
+        const double q_x = sum(weights * f.q_x), q_y = sum(weights * f.q_y), p = count * k.h;
         const int other = 1 - pressed;
         const double size = absolute(r.z) - 5.0 * t + 2.5 * q_y;
         r.x += q_x - 7.0 * xi;

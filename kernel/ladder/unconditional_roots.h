@@ -2,7 +2,7 @@
 // before anything is asked, so that the roots of the cloth do not wait for the side.
 #pragma once
 
-#include "ladder/driver.h"
+#include "ladder/step_loops.h"
 
 namespace carom::kernel {
 namespace {
