@@ -1,7 +1,7 @@
-// Section 3.8 and past it: independent impacts in the lanes of a vector of W lanes, which fills a register. U vectors are
-// interleaved, so that the latency of one is hidden behind the others. The step is that of reduced.h, with the slip (a, b)
-// of the pressed ball and (c, d) of the other; a lane whose vertical slip changes its sign swaps them. Lanes share nothing:
-// each result depends on its own impact alone.
+// Section 3.8 and past it: independent impacts in the lanes of a vector of W lanes, which fills a register. U vectors
+// are interleaved, so that the latency of one is hidden behind the others. The step is that of reduced.h, with the
+// slip (a, b) of the pressed ball and (c, d) of the other; a lane whose vertical slip changes its sign swaps them.
+// Lanes share nothing: each result depends on its own impact alone.
 #pragma once
 
 #include "ladder/reduced.h"
@@ -103,8 +103,8 @@ struct LaneExactRoots {
     }
 };
 
-// The approximate instruction and two Newton steps. Lanes whose square does not fit into a float, or is zero, take square
-// root and division.
+// The approximate instruction and two Newton steps. Lanes whose square does not fit into a float, or is zero, take
+// square root and division.
 struct LaneRsqrtRoots {
     template <int W, class A, class S, class V>
     static void take(S& s, V c2, V u2, V& c, V& u) {
@@ -125,8 +125,8 @@ struct LaneRsqrtRoots {
 };
 
 // No root at all: the reciprocal length is carried from step to step, extrapolated quadratically and corrected by the
-// series of (1 - e)^(-1/2). A lane whose e is above 1e-4 (at the start, near stick, after a change of side) takes square
-// root and division. The error that remains, 35/128 e^4, is below an ulp.
+// series of (1 - e)^(-1/2). A lane whose e is above 1e-4 (at the start, near stick, after a change of side) takes
+// square root and division. The error that remains, 35/128 e^4, is below an ulp.
 struct LaneCarriedRoots {
     template <int W, class A, class S, class V>
     static void take(S& s, V c2, V u2, V& c, V& u) {

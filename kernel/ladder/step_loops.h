@@ -1,5 +1,5 @@
-// What the kernel variants of the ladder share: constants, and loops with the published stop test. A variant holds only
-// what differs: a step, or a loop of its own.
+// What the kernel variants of the ladder share: constants, and loops with the published stop test. A variant holds
+// only what differs: a step, or a loop of its own.
 #pragma once
 
 #include "carom/kernel/march.h"

@@ -1,9 +1,9 @@
-// Past the march: its result without its steps. The Euler march is the sequence y(m+1) = y(m) + h f(y(m));
-// over a block of K steps the rates are a smooth function of m, so a polynomial through eight nodes holds
-// them all, and their sums over consecutive m are exact (sum_tables.h). The nodes are found by fixed-point
-// sweeps, eight lanes at once. It is the Euler sequence that is summed, not the continuous impact: step
-// count, last step and discretisation error are the march's own. Where rates are not smooth (a side that
-// flips, a slip near zero, a ball that starts rolling) exact steps are taken.
+// Past the march: its result without its steps. The explicit Euler march is the sequence y(m+1) = y(m) + h f(y(m)).
+// Over a block of K steps the rates are a smooth function of m: a polynomial through eight nodes represents them all,
+// and its sums over consecutive m are exact (sum_tables.h). The values at the nodes are found by fixed-point sweeps,
+// eight lanes at once. What is summed is the Euler sequence, not the continuous impact: step count, last step and
+// discretisation error are those of the march. Where the rates are not smooth (a change of the pressed side, a slip
+// near zero, a ball that starts rolling) exact steps are taken.
 #pragma once
 
 #include "ladder/reduced.h"
@@ -16,16 +16,15 @@ namespace {
 
 using Eight = Pack<8>;
 
-constexpr int kMostSweeps = 24;
-// Change of a node per sweep, and highest modes of the rates, both relative to the approach speed.
+constexpr int kMostBlockSweeps = 24;
+// Largest change of a node in the last sweep, and largest highest modes of the rates, both relative to the approach
+// speed.
 constexpr double kSweepTolerance = 5e-13, kModeTolerance = 2e-10;
-
-// What the modes may exceed that by after two sweeps: a block that will not do ends there.
+// After two sweeps the modes may exceed kModeTolerance by this factor; a block in which they are larger is given up.
 constexpr double kEarlySlack = 10.0;
-// Rounding of a sweep, summed over the nodes, relative to the slips.
+// Rounding error of a sweep, summed over the nodes, relative to the slips.
 constexpr double kSweepRounding = 4e-15;
-
-// How far the poles are kept, relative to the estimate.
+// Distance of the poles that a block keeps, relative to the estimate that the tolerance asks for.
 constexpr double kPoleMargin = 0.35;
 
 template <int kSign>
@@ -34,7 +33,7 @@ class SummedMarch {
     SummedMarch(const Reduced& start, const ReducedConstants& constants)
         : r(start), k(constants), scale(absolute(start.v_n)) {}
 
-    // The steps done, or -1. After `most_exact` exact steps it gives up, and `chatters` is set.
+    // Returns the number of steps, or -1. After `most_exact` exact steps it gives up and sets `chatters`.
     long run(long most_exact) {
         long patience = 1;
         while (stop.goes_on(r.v_n)) {
@@ -42,7 +41,7 @@ class SummedMarch {
             const FirstStep first = first_step();
             int level = widest(first);
             while (level >= 0 && !block(kSumTables[level], first)) --level;
-            // Exact steps, more of them the longer nothing smooth comes.
+            // Exact steps: more of them, the longer no block is smooth.
             if (level >= 0) {
                 patience = 1;
                 continue;
@@ -67,7 +66,8 @@ class SummedMarch {
     StopTest stop;
     long steps = 0;
 
-    // The reciprocal lengths and the rates at the state reached; `cloth`: that of the pressed ball takes part.
+    // The reciprocal lengths C and U and the rates at the present state. `cloth`: there is friction between the
+    // pressed ball and the cloth.
     struct FirstStep {
         int pressed;
         bool slips, turns, cloth, rolls;
@@ -80,7 +80,7 @@ class SummedMarch {
         f.size = absolute(r.z);
         const double c = square_root(r.x * r.x + r.z * r.z), mu_s = k.mu_s[f.pressed];
         const double a = r.Ux[f.pressed], b = r.Uy[f.pressed], u = square_root(a * a + b * b);
-        // A pressed ball that rolls: its slip gets a direction with the next step.
+        // The pressed ball rolls: its slip gets a direction in the next step.
         f.rolls = mu_s > 0.0 && !(u > k.u_floor);
         f.slips = !(c < kSlipCutoff);
         f.turns = f.slips && !(f.size < kSlipCutoff);
@@ -99,10 +99,10 @@ class SummedMarch {
         return f;
     }
 
-    // How smooth the direction of a vector is along a block of K steps from (a, b) at (da, db) a step: it has
-    // poles where the length vanishes, at complex t. With the path taken as straight these lie on the ellipse
-    // around the block of which the sum of half axes is rho, and modes fall as rho^-n. `amplitude` is what
-    // the direction can do to a result.
+    // How smooth the direction of a vector is along a block of K steps, from (a, b) with (da, db) a step. The
+    // direction has poles where the length vanishes, at complex t. If the path is taken as straight, they lie on the
+    // ellipse around the block whose half axes have the sum rho, and the modes fall as rho^-n. `amplitude` is the
+    // largest effect of the direction on a result.
     struct Path {
         double a, b, da, db, needed;  // needed: (rho + 1/rho) / 2
     };
@@ -115,7 +115,8 @@ class SummedMarch {
         return {a, b, da, db, 0.5 * (rho + 1.0 / rho)};
     }
 
-    // To a tenth, which is enough here: the exponent divided, the fraction taken as it falls.
+    // With an error of a tenth, which is enough here: the bits of a double, divided by 8, are close to those of the
+    // root.
     static double eighth_root(double x) {
         long bits;
         __builtin_memcpy(&bits, &x, sizeof x);
@@ -124,14 +125,14 @@ class SummedMarch {
         return x;
     }
 
-    // The slack of every block size at once; >= 0 where smooth.
+    // The slack of every block size at once: >= 0 where the direction is smooth enough.
     static Eight slack(const Path& p, Eight K) {
         const Eight a = p.a + K * p.da, b = p.b + K * p.db;
         return square_root(p.a * p.a + p.b * p.b) + square_root(a * a + b * b) -
                K * (p.needed * square_root(p.da * p.da + p.db * p.db));
     }
 
-    // The widest block that promises to be resolved; -1 if none does.
+    // The widest block that eight nodes probably resolve; -1 if there is none.
     int widest(const FirstStep& f) const {
         constexpr double kKappa = 1.0 - 2.5 * kSign;
         if (f.rolls) return -1;
@@ -155,11 +156,11 @@ class SummedMarch {
         Eight xi, t, q_x, q_y;
     };
 
-    // y is near 1/sqrt(square): e = 1 - square y^2, and the series of (1 - e)^(-1/2). 35/128 e^4 is left, for
-    // the next sweep.
+    // y is close to 1/sqrt(square), with e = 1 - square y^2; corrected by the series of (1 - e)^(-1/2). The error
+    // 35/128 e^4 is left to the next sweep.
     static Eight refined(Eight y, Eight e) { return y + (y * e) * (0.5 + e * (0.375 + e * 0.3125)); }
 
-    // C and U: reciprocal lengths of the sweep before, then of this one.
+    // C and U are the reciprocal lengths of the sweep before on entry and of this sweep on return.
     Rates rates(Eight x, Eight z, Eight a, Eight b, double mu_s, Eight& C, Eight& U) const {
         const Eight c2 = x * x + z * z, u2 = a * a + b * b;
         const Eight e_c = 1.0 - c2 * (C * C), e_u = 1.0 - u2 * (U * U);
@@ -176,9 +177,9 @@ class SummedMarch {
         return {A * x, t, B * a, B * b};
     }
 
-    // start + the columns weighted by F.
+    // start plus the columns weighted by F.
     static Eight combined(const double (&columns)[kNodes][kNodes], Eight start, Eight F) {
-        // Through memory: loads broadcast for nothing, lanes moved in registers do not.
+        // Through memory: a load broadcasts a number at no cost, a move between lanes of registers does not.
         alignas(64) double at_node[kNodes];
         store(at_node, F);
         Eight even = start + at_node[0] * load<8>(columns[0]), odd = at_node[1] * load<8>(columns[1]);
@@ -200,16 +201,16 @@ class SummedMarch {
         Rates f{};
         if (!first.slips) return advance(table, f, pressed);
         const double mu_s = first.cloth ? k.mu_s[pressed] : 0.0, z0 = first.turns ? first.size : 0.0;
-        // Where the cloth does nothing its slip must only not be zero.
+        // Without friction of the cloth its slip may be any number but zero.
         const double a0 = first.cloth ? r.Ux[pressed] : 1e3 * scale, b0 = first.cloth ? r.Uy[pressed] : 0.0;
         const Eight at = load<8>(table.at), push = k.h * at;
-        // First guess: the rates of the first step throughout.
+        // First guess: the rates of the first step at all nodes.
         Eight x = r.x + at * (first.q_x - 7.0 * first.xi);
         Eight z = z0 + at * (2.5 * first.q_y - 5.0 * first.t);
         Eight a = a0 + at * (first.xi - kKappa * first.q_x);
         Eight b = b0 + push - at * ((2.5 * kSign) * first.t + kKappa * first.q_y);
         Eight C = broadcast<8>(first.C), U = broadcast<8>(first.cloth ? first.U : 1.0 / a0);
-        // Below the second no sweep gets, of rounding.
+        // The second term is the rounding error, below which no sweep comes.
         const double settled =
             kSweepTolerance * scale + kSweepRounding * (absolute(r.x) + z0 + absolute(a0) + absolute(b0));
         double change_before = scale;
@@ -227,7 +228,7 @@ class SummedMarch {
             a = next_a;
             b = next_b;
             CAROM_LOOP_END("summed sweep");
-            // Sweeps converge ever faster: the next would change less than this by the same factor at least.
+            // Sweeps converge faster and faster: the next change would be smaller by at least the same factor.
             const double left =
                 sweep > 2 && change < change_before ? change * change / change_before : change;
             if (left <= settled) {
@@ -236,23 +237,23 @@ class SummedMarch {
             }
             change_before = change;
             if (sweep == 2 && !resolved(table, now, kEarlySlack)) return false;
-            if (!(sweep < kMostSweeps)) return false;
+            if (!(sweep < kMostBlockSweeps)) return false;
         }
         if (!resolved(table, f, 1.0)) return false;
-        // A side that flips within the block shows at a node or at its end.
+        // A change of the pressed side within the block shows at a node or at the end of the block.
         if (!all_below(-1.0 * z, 0x1p-1074)) return false;
         if (z0 + total(table.total, 2.5 * f.q_y - 5.0 * f.t) < 0.0) return false;
         return advance(table, f, pressed);
     }
 
     bool resolved(const SumTable& table, const Rates& f, double slack) const {
-        // One mixture of the four stands for all: uneven weights, so that no symmetry cancels.
+        // One mixture of the four rates represents them all; its weights are uneven, so that no symmetry cancels.
         const Eight F = (f.xi + 0.7 * f.t) + (1.3 * f.q_x - 0.6 * f.q_y);
         const double missing = absolute(total(table.mode7, F)) + 0.1 * absolute(total(table.mode6, F));
         return missing * table.steps <= slack * kModeTolerance * scale;
     }
 
-    // Takes the block, or as much of it as the march needs.
+    // Advances by the block, or by as many of its steps as the march needs.
     bool advance(const SumTable& table, const Rates& f, int pressed) {
         const double K = table.steps, h = k.h, v0 = r.v_n;
         const double Q = total(table.total, f.q_y), v_end = v0 + 2.0 * h * K - Q;
@@ -268,7 +269,7 @@ class SummedMarch {
         const Profile at(table, f.q_y, v0, h);
         double from = 0.0, v_from = v0, V_from = 0.0;
         if (stop.compressing) {
-            // The first step after which v_n > 0: a secant, as v grows almost evenly, and one correction.
+            // The first step after which v_n > 0: a secant, because v grows almost linearly, and one correction.
             const double slope = (v_end - v0) / K;
             double t = -v0 / slope;
             t -= at.v(t) / slope;
@@ -289,7 +290,7 @@ class SummedMarch {
         }
         double last = K;
         if (stop.W + h * (V - V_from) >= stop.W_f) {
-            // The first step with the work asked for: v taken as even, and one Newton step.
+            // The first step with the work to reach: v is taken as linear, and one Newton step follows.
             const double missing = (stop.W_f - stop.W) / h, growth = (v_end - v_from) / (K - from + 1e-300);
             const double root = square_root(v_from * v_from + 2.0 * growth * missing);
             double t = from + 2.0 * missing / (root + v_from);
@@ -306,7 +307,7 @@ class SummedMarch {
         } else {
             stop.W += h * (V - V_from);
         }
-        // What each node's rate adds to the sum at `last`.
+        // The share of the rate of each node in the sum at `last`.
         const double theta = table.theta0 + table.theta_step * last;
         alignas(64) double powers[kNodes], weight[kNodes];
         powers[0] = 1.0;
@@ -343,12 +344,12 @@ class SummedMarch {
         double theta(double t) const { return table.theta0 + table.theta_step * t; }
     };
 
-    // t cut to a whole number of 1 .. K.
+    // t rounded down to a whole number in 1 .. K.
     static double whole(double t, double K) {
         return t > 1.0 ? (t < K ? static_cast<double>(static_cast<long>(t)) : K) : 1.0;
     }
 
-    // The first whole t in 1 .. K at which `reached` holds, near the guess; -1 if none is.
+    // The first whole t in 1 .. K at which `reached` holds, searched from the guess; -1 if there is none.
     template <class Reached>
     static double first_whole(double guess, double K, Reached reached) {
         double t = whole(guess, K);
@@ -357,6 +358,7 @@ class SummedMarch {
         return reached(t) ? t : -1.0;
     }
 
+    // Adds the weighted sums of the rates over `count` steps to the state.
     void take(const Rates& f, Eight weights, double count, int pressed) {
         constexpr double kKappa = 1.0 - 2.5 * kSign;
         const double xi = sum(weights * f.xi), t = sum(weights * f.t);
@@ -380,7 +382,7 @@ struct Summed {
         return march<kSign>(s, p, n, kMarchStepLimit * static_cast<long>(n), chatters);
     }
 
-    // Gives up after `most_exact` exact steps and says so; the state is then as it came.
+    // After `most_exact` exact steps it gives up, sets `chatters` and leaves the state as it was.
     template <int kSign>
     static long march(FrameState& s, const ImpactParams& p, int n, long most_exact, bool& chatters) {
         const ReducedConstants k = reduced_constants<kSign>(s, p, n);

@@ -1,8 +1,8 @@
-// A batch, impact by impact by the summed march. Where rounding decides the result (glancing impacts, chatter near stick)
-// the arithmetic of the published march takes over, eight lanes at once and with the same bits. A result depends on its
-// own impact alone and has the same bits on every instruction set; it has the step count of the published march, or one
-// beside it where the last step sits on a rounding tie, and differs from it by at most about 1e-10 of the approach speed
-// at N up to 1000 (docs/kernel.md).
+// A batch, impact by impact by the summed march. Where rounding decides the result (glancing impacts, chatter near
+// stick) the arithmetic of the published march takes over, eight lanes at once and with the same bits. A result
+// depends on its own impact alone and has the same bits on every instruction set; it has the step count of the
+// published march, or one beside it where the last step sits on a rounding tie, and differs from it by at most about
+// 1e-10 of the approach speed at N up to 1000 (docs/kernel.md).
 #pragma once
 
 #include "ladder/batch_arrays.h"
@@ -12,10 +12,10 @@
 namespace carom::kernel {
 namespace {
 
-// Speed of a ball or of its surface, in approach speeds, above which the published arithmetic is kept. The baseline rounds
-// each velocity by up to half an ulp a step, often to one side: in all by up to 2^-53 N of the fastest speed, which from
-// here on is 1.1e-10 of the approach speed at N = 1000 (measured: 0.76e-10). No other order of the sums could follow it
-// more closely. Beyond N = 1000 the difference grows with N.
+// Speed of a ball or of its surface, in approach speeds, above which the published arithmetic is kept. The baseline
+// rounds each velocity by up to half an ulp a step, often to one side: in all by up to 2^-53 N of the fastest speed,
+// which from here on is 1.1e-10 of the approach speed at N = 1000 (measured: 0.76e-10). No other order of the sums
+// could follow it more closely. Beyond N = 1000 the difference grows with N.
 constexpr double kFastestSurface = 1000.0;
 // Exact steps after which an impact counts as chattering (near stick, where rounding may decide the sign of a slip).
 constexpr long kChatter = 40;

@@ -22,8 +22,8 @@ const Entry& entry(Isa isa) {
     return kEntries[static_cast<int>(isa)];
 }
 
-// By feature, because clang 14 does not know the names of the levels. What is not asked for here comes with these on every
-// processor.
+// By feature, because clang 14 does not know the names of the levels. What is not asked for here comes with these on
+// every processor.
 bool has_v3() {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
            __builtin_cpu_supports("bmi2");

@@ -17,11 +17,11 @@ struct Frame {
     double yx, yy;  // the horizontal unit vector y in table coordinates; x is (yy, -yx)
 };
 
-// Largest difference of the heights of the centres, as a share of their distance: the impact is planar. It leaves room
-// for the rounding of heights that are meant to be equal.
+// Largest difference of the heights of the centres, as a share of their distance: the impact is planar. It leaves
+// room for the rounding of heights that are meant to be equal.
 constexpr double kHeightTolerance = 1e-9;
-// Smallest approach speed [m/s], and smallest share of the sum of all speeds: below it the square of the approach speed
-// underflows in the work integral, and the balls count as not approaching (hard case H30).
+// Smallest approach speed [m/s], and smallest share of the sum of all speeds: below it the square of the approach
+// speed underflows in the work integral, and the balls count as not approaching (hard case H30).
 constexpr double kSlowestApproach = 1e-150;
 
 inline bool finite(const double (&a)[3]) {
@@ -32,10 +32,10 @@ inline bool finite(const Ball& ball) {
     return finite(ball.r) && finite(ball.v) && finite(ball.w);
 }
 
-// A cloth slip [m/s] up to this floor is rounding noise of the v and R w of a rolling ball. It has no direction, and the
-// step takes no cloth friction, as at a slip of exactly zero. The floor exists for the consistent sign only: there
-// rolling balls meet u = 0 as a rule, and two correct marches would otherwise differ by the friction of a whole step.
-// The published code has no such floor.
+// A cloth slip [m/s] up to this floor is rounding noise of the v and R w of a rolling ball. It has no direction, and
+// the step takes no cloth friction, as at a slip of exactly zero. The floor exists for the consistent sign only:
+// there rolling balls meet u = 0 as a rule, and two correct marches would otherwise differ by the friction of a whole
+// step. The published code has no such floor.
 inline double cloth_slip_floor(const FrameState& s, double R, int sign) {
     if (sign > 0) return 0.0;
     const double v = absolute(s.v1x) + absolute(s.v1y) + absolute(s.v2x) + absolute(s.v2y);

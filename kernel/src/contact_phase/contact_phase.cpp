@@ -1,9 +1,10 @@
 // The contact phase, four contacts at a time. Built once per instruction set.
 //
-// An evaluation of the right-hand side gathers the motions of the balls of four contacts, computes their forces in lanes,
-// and adds the forces to the balls, one contact after the other in the order of the list. A lane computes what a scalar
-// program would compute, and every sum has one written order. Only contacts that overlap at that stage take part. Memory
-// is laid out for whole registers: the velocity and the horizontal spin of a ball are one row of four numbers.
+// An evaluation of the right-hand side gathers the motions of the balls of four contacts, computes their forces in
+// lanes, and adds the forces to the balls, one contact after the other in the order of the list. A lane computes what
+// a scalar program would compute, and every sum has one written order. Only contacts that overlap at that stage take
+// part. Memory is laid out for whole registers: the velocity and the horizontal spin of a ball are one row of four
+// numbers.
 #include "carom/kernel/contact_phase.h"
 #include "kernel_set.h"
 #include "numbers.h"
@@ -23,10 +24,10 @@ constexpr int kRow = 8;
 constexpr int kPlace[kPerBall] = {0, 2, 1, 3, 5};    // of v_x, v_y, R w_x, R w_y, R w_z in a row
 constexpr int kLift = 4, kTurn = 5, kStiffness = 7;  // of other numbers in a row: see Work
 
-// Stability of the step. The regularised friction is stiff: with k = mu_b F / |s|, friction over slip, the friction of one
-// contact makes its slip decay at the rate 7 k, and by the theorem of Gershgorin no rate of all contacts together exceeds
-// 7 times the largest sum of k over a ball (the cloth under the ball counts half). Runge-Kutta steps are stable up to 2.78
-// over that rate. A step takes at most kStableShare over the largest sum.
+// Stability of the step. The regularised friction is stiff: with k = mu_b F / |s|, friction over slip, the friction
+// of one contact makes its slip decay at the rate 7 k, and by the theorem of Gershgorin no rate of all contacts
+// together exceeds 7 times the largest sum of k over a ball (the cloth under the ball counts half). Runge-Kutta steps
+// are stable up to 2.78 over that rate. A step takes at most kStableShare over the largest sum.
 constexpr double kStableShare = 2.0 / 7.0;
 // Where a slip is still above epsilon, steps of that length would jump over the transition into stick. There k counts
 // kResolve times, but no more than its value in stick, mu_b F / epsilon.
@@ -39,10 +40,12 @@ CAROM_INLINE int padded(int n) {
 struct Work {
     int balls, contacts;
     int rows, lanes;  // sizes of the arrays per ball and per contact
-    // The state, its stages and their slopes; of each ball a row (v_x, R w_x, v_y, R w_y | -, R w_z, -, -). In a slope the
-    // fifth number (kLift) is the sum of the vertical forces, the eighth (kStiffness) minus the sum of friction over slip.
+    // The state, its stages and their slopes; of each ball a row (v_x, R w_x, v_y, R w_y | -, R w_z, -, -). In a
+    // slope the fifth number (kLift) is the sum of the vertical forces, the eighth (kStiffness) minus the sum of
+    // friction over slip.
     double *y, *y_stage, *dy[kStages];
-    // Of each contact: overlap, its stages and their slopes, normal, and the largest overlap since the contact opened.
+    // Of each contact: overlap, its stages and their slopes, normal, and the largest overlap since the contact
+    // opened.
     double *d, *d_stage, *rate[kStages], *nx, *ny, *memory;
     int *i, *j;  // where the rows of the two balls begin
     // The list of contacts that overlap, in their order: number, rows, normal.
@@ -252,8 +255,8 @@ CAROM_INLINE double stable_step(const Work& w, const double* dy, double longest)
     return kStableShare < longest * -least ? kStableShare / -least : longest;
 }
 
-// One Runge-Kutta step; returns its length. At entry rate[0] belongs to the state; at exit d_stage is the overlap before
-// the step.
+// One Runge-Kutta step; returns its length. At entry rate[0] belongs to the state; at exit d_stage is the overlap
+// before the step.
 CAROM_INLINE double step(Work& w, const Law& law, double longest) {
     forces(w, law, w.y, w.d, w.dy[0]);
     const double h = stable_step(w, w.dy[0], longest);
@@ -270,8 +273,8 @@ CAROM_INLINE double step(Work& w, const Law& law, double longest) {
     return h;
 }
 
-// The largest overlap inside a step in which the overlap stopped growing, from the cubic Hermite interpolant. Without it
-// the energy of each contact has an error of order h^2.
+// The largest overlap inside a step in which the overlap stopped growing, from the cubic Hermite interpolant. Without
+// it the energy of each contact has an error of order h^2.
 CAROM_INLINE double peak(double before, double after, double m0, double m1) {
     // d(s) = d0 + m0 s + (3 rise - 2 m0 - m1) s^2 + (m0 + m1 - 2 rise) s^3; its slope falls from m0 > 0 to m1 < 0.
     const double rise = after - before, q2 = 3.0 * rise - 2.0 * m0 - m1, q3 = m0 + m1 - 2.0 * rise;

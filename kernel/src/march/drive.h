@@ -1,5 +1,5 @@
-// A march from table coordinates and back. Its loop differs from one kernel variant to the next; what stands around the
-// loop does not: validation, projection into the contact frame, back-projection.
+// A march from table coordinates and back. Its loop differs from one kernel variant to the next; what stands around
+// the loop does not: validation, projection into the contact frame, back-projection.
 #pragma once
 
 #include "frame.h"

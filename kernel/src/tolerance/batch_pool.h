@@ -10,8 +10,8 @@ namespace {
 // Impacts that are solved in one go.
 constexpr int kPool = 128;
 
-// From this tolerance on, lanes solve stretches of 4 nodes faster than stretches of 8: they are shorter, but a sweep of 8
-// nodes costs more than twice as much and its values do not fit into the registers.
+// From this tolerance on, lanes solve stretches of 4 nodes faster than stretches of 8: they are shorter, but a sweep
+// of 8 nodes costs more than twice as much and its values do not fit into the registers.
 constexpr double kLooseWide = 1e-7;
 
 // Impacts in their canonical form, and their results.

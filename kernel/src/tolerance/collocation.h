@@ -1,8 +1,8 @@
 // Gauss collocation of the impact over one stretch of the normal impulse, solved by Picard sweeps.
 //
-// All quantities are per unit mass and scaled by the approach speed (docs/kernel_tolerance.md). s = (x, z) is the slip
-// between the balls, z >= 0; u = (a, b) is the slip of the active ball, which is pressed on the cloth; p is the normal
-// impulse; v is the normal velocity, -1 at the start. The forces are
+// All quantities are per unit mass and scaled by the approach speed (docs/kernel_tolerance.md). s = (x, z) is the
+// slip between the balls, z >= 0; u = (a, b) is the slip of the active ball, which is pressed on the cloth; p is the
+// normal impulse; v is the normal velocity, -1 at the start. The forces are
 //
 //     xi = mu_b x/|s|   zeta = mu_b z/|s|   g_a = mu_s zeta a/|u|   g_b = mu_s zeta b/|u|
 //
@@ -136,8 +136,8 @@ CAROM_INLINE double late_share(const Lanes<N>& f) {
     return dot<N>(Gauss<N>::weights, late);
 }
 
-// The impulse at which the stretch ends, by quadrature of the cloth force g_b. Compression ends where v = 0, restitution
-// where the work of the normal impulse is e_b^2 times that of compression.
+// The impulse at which the stretch ends, by quadrature of the cloth force g_b. Compression ends where v = 0,
+// restitution where the work of the normal impulse is e_b^2 times that of compression.
 template <int N, End kEnd>
 CAROM_INLINE void find_end(const Model& m, const State& start, const Lanes<N>& g_b, const EndRows<N>& rows,
                            Stretch& stretch) {
@@ -164,8 +164,8 @@ struct Nodes {
     Lanes<N> xi, zeta, g_a, g_b;  // the forces
 };
 
-// Forces at the nodes. The reciprocal roots are computed afresh (kExact), or those of the sweep before are corrected by
-// one cubic Newton step. Returns the squares of their relative errors before the correction.
+// Forces at the nodes. The reciprocal roots are computed afresh (kExact), or those of the sweep before are corrected
+// by one cubic Newton step. Returns the squares of their relative errors before the correction.
 template <int N, bool kExact>
 CAROM_INLINE Pack<4> forces(const Model& m, Nodes<N>& n) {
     Pack<4> worst{};

@@ -1,4 +1,5 @@
-// Which method solves an impact, and the stretches of an impact that no single collocation solves. Legend: collocation.h.
+// Which method solves an impact, and the stretches of an impact that no single collocation solves. Legend:
+// collocation.h.
 #pragma once
 
 #include "carom/kernel/tolerance.h"
@@ -10,8 +11,8 @@ namespace {
 // Most stretches of one impact; only degenerate input comes near it.
 constexpr int kMostStretches = 2000;
 
-// The error of one collocation of 4 nodes is at most kSizeS mu_b rho_s^-6 + kSizeU mu_b mu_s rho_u^-5, and of one of 8
-// nodes kSizeS mu_b rho_s^-12 + kSizeU/2 mu_b mu_s rho_u^-10, with a margin of 4 or more: fitted to random impacts.
+// The error of one collocation of 4 nodes is at most kSizeS mu_b rho_s^-6 + kSizeU mu_b mu_s rho_u^-5, and of one of
+// 8 nodes kSizeS mu_b rho_s^-12 + kSizeU/2 mu_b mu_s rho_u^-10, with a margin of 4 or more: fitted to random impacts.
 constexpr double kSizeS = 1.0, kSizeU = 1.2;
 
 // From this tolerance on, stretches of 4 nodes are hardly shorter than stretches of 8 and cost less.
@@ -67,8 +68,8 @@ CAROM_INLINE void finish_frictionless(double v, double work_left, bool compressi
     if (work_left > 0.0) total.p += 2.0 * work_left / (v + square_root(v * v + 4.0 * work_left));
 }
 
-// The rest of an impact whose slip has nearly vanished. The slip ends while the cloth slip keeps its direction; where the
-// impulse that is left is too small to end it, the friction impulses are reduced in proportion.
+// The rest of an impact whose slip has nearly vanished. The slip ends while the cloth slip keeps its direction; where
+// the impulse that is left is too small to end it, the friction impulses are reduced in proportion.
 inline void finish_stuck(const Model& m, State at, double left, Impulses& total, double& v) {
     const double s = square_root(at.x * at.x + at.z * at.z), u = square_root(at.a * at.a + at.b * at.b);
     const double ga = u > 0.0 ? m.mu_s * (at.a / u) : 0.0, gb = u > 0.0 ? m.mu_s * (at.b / u) : 0.0;
@@ -134,8 +135,8 @@ CAROM_INLINE bool resolved(const Model& m, const Stretch& stretch, double tolera
                9.0 * (tolerance * tolerance) * (m.mu_b * m.mu_s);
 }
 
-// An impact that is solved in stretches, each so short that |s| and |u| keep a share of their size over it. `plan` chooses
-// the next stretch; `advance` accepts or rejects the result of its collocation.
+// An impact that is solved in stretches, each so short that |s| and |u| keep a share of their size over it. `plan`
+// chooses the next stretch; `advance` accepts or rejects the result of its collocation.
 struct Adaptive {
     Model m;
     double tolerance, S, shortest;
@@ -301,8 +302,8 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
     }
     const double guess = 0.5 * (1.0 + m.e_b);
     const Rates r = rates(m, start);
-    // How far away the singularities are: stick lies straight ahead, the zero of the cloth slip beside its nearly straight
-    // path.
+    // How far away the singularities are: stick lies straight ahead, the zero of the cloth slip beside its nearly
+    // straight path.
     const double rho_s = ellipse(4.0 * r.s / (r.fall * guess) - 2.0);
     double rho_u = 1e30;
     if (!problem.from_rest) {

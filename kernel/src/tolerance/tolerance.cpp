@@ -1,8 +1,8 @@
 // Impacts by tolerance, single and in batches. Built once per instruction set.
 //
 // A batch solves its easy impacts in lanes as they come, by one collocation of 4 nodes. Impacts that need 8 nodes are
-// gathered until they fill a register; those that need stretches are gathered too, and each lane starts the next one as
-// soon as it has finished one. Special cases are left to the single kernel.
+// gathered until they fill a register; those that need stretches are gathered too, and each lane starts the next one
+// as soon as it has finished one. Special cases are left to the single kernel.
 #include "kernel_set.h"
 #include "tolerance/batch_lanes.h"
 #include "tolerance/batch_pool.h"

@@ -1,8 +1,8 @@
 // One collocation of many impacts at once: each lane is an impact, and the nodes are elements of arrays. Legend:
 // collocation.h.
 //
-// A lane reads only its own numbers and keeps the impulses of the sweep at which it converged itself. Its bits therefore
-// depend neither on the width of the registers nor on the impacts in the other lanes.
+// A lane reads only its own numbers and keeps the impulses of the sweep at which it converged itself. Its bits
+// therefore depend neither on the width of the registers nor on the impacts in the other lanes.
 #pragma once
 
 #include "tolerance/collocation.h"
@@ -47,8 +47,8 @@ CAROM_INLINE Wide wide_dot(const double* row, int stride, const Wide (&f)[N]) {
     return even + odd;
 }
 
-// Integrals from 0 to every node, for the even and the odd part of f: half the sum and half the difference of mirrored
-// columns. The nodes lie symmetrically, so that each part needs only half a table.
+// Integrals from 0 to every node, for the even and the odd part of f: half the sum and half the difference of
+// mirrored columns. The nodes lie symmetrically, so that each part needs only half a table.
 struct Mirrored8 {
     double even[4][4], odd[4][4];
     constexpr Mirrored8() : even{}, odd{} {
@@ -86,8 +86,8 @@ CAROM_INLINE void wide_integrals(Wide start, Wide h, const Wide (&f)[N], Wide (&
 
 enum class Roots : unsigned char { kFresh, kCarried, kMixed };
 
-// As forces(). The reciprocal roots are computed afresh (kFresh), or those of the sweep before are corrected (kCarried);
-// kMixed: afresh in the lanes of `exact`.
+// As forces(). The reciprocal roots are computed afresh (kFresh), or those of the sweep before are corrected
+// (kCarried); kMixed: afresh in the lanes of `exact`.
 template <int N, Roots kRoots>
 CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exact = WideMask{}) {
     Wide worst = {};
