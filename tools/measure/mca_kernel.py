@@ -32,7 +32,13 @@ void probe(const ImpactBatch& b, int n, const ImpactBatchResult& r) noexcept {{
     BatchMarch<{arguments}, -1>(b, n, r).run();
 }} }}
 """
-PLAIN = SINGLE.format(header="march/loop.h", loop="PublishedMarch")
+PLAIN = """#include "march/drive.h"
+#include "march/loop.h"
+namespace carom::kernel {
+void probe(const Ball& a, const Ball& b, const ImpactParams& p, int n, ImpactResult& out) noexcept {
+    drive<PublishedMarch>(a, b, p, n, out);
+} }
+"""
 SHORTEST = 15  # instructions; the shortest whole body, of the packed march, has 17
 # name, source, level, steps of one impact that one pass of the loop does
 LOOPS = [
