@@ -96,11 +96,10 @@ inline void run_stretches(int count, double tolerance, ClothSlip cloth_slip, Har
                                   lane(result.t.g_a, i), lane(result.t.g_b, i)};
             add_stretch(run.m, add, at, total);
             run.sweeps += static_cast<int>(lane(result.t.sweeps, i));
-            const bool going =
-                advance(run, lane(result.t.converged, i) != 0, at, total, lane(result.done, i));
-            ++run.stretches;
-            if (going) continue;
-            --run.stretches;
+            if (advance(run, lane(result.t.converged, i) != 0, at, total, lane(result.done, i))) {
+                ++run.stretches;
+                continue;
+            }
             finish(run);
             keep_result(run, impact[i], pool);
             impact[i] = -1;
