@@ -55,13 +55,24 @@ function(carom_count_lines target)
   endif()
 endfunction()
 
-# Compiles SOURCE for one x86-64 level (v3, v4), or as everything else is (scalar). Such files include no Eigen and no std templates with code: a weak symbol
-# built for the higher level could win at link time and crash an older machine.
-function(carom_compile_for_level source level)
-  if(level STREQUAL scalar)
-    return()
-  endif()
-  set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-march=x86-64-${level}")
+# Compiles the sources behind TARGET once for every instruction set, with the options of TARGET and in the namespace that
+# CAROM_ISA_NAMESPACE names (scalar is plain x86-64), and adds the objects to TARGET. Such sources include no Eigen and no
+# std templates with code: a weak symbol built for a higher instruction set could win at link time and stop the program on
+# an older processor.
+function(carom_per_instruction_set target)
+  foreach(isa scalar v3 v4)
+    set(objects ${target}_${isa})
+    add_library(${objects} OBJECT EXCLUDE_FROM_ALL ${ARGN})
+    set_target_properties(${objects} PROPERTIES
+      POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+    target_compile_definitions(${objects} PRIVATE CAROM_ISA_NAMESPACE=${isa})
+    target_include_directories(${objects} PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
+    # Vectors wider than a register are halved, and none crosses a call: warnings about the ABI of wide vectors are idle.
+    target_compile_options(${objects} PRIVATE
+      $<TARGET_PROPERTY:${target},COMPILE_OPTIONS> -Wno-psabi $<$<NOT:$<STREQUAL:${isa},scalar>>:-march=x86-64-${isa}>)
+    target_link_libraries(${objects} PRIVATE carom_flags)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
+  endforeach()
 endfunction()
 
 # What every library of the project is: hidden symbols, so that a program that embeds it shows none of ours, and headers

@@ -52,10 +52,10 @@ def flags_of(command):
 
 
 def compiled_flags(build):
-    """Flags by source. A source of several targets is checked as the first of them compiles it."""
-    flags = {}
+    """Flags by source, of each target that compiles it."""
+    flags = collections.defaultdict(list)
     for entry in json.loads((build / "compile_commands.json").read_text()):
-        flags.setdefault(pathlib.Path(entry["file"]).resolve(), flags_of(entry["command"]))
+        flags[pathlib.Path(entry["file"]).resolve()].append(flags_of(entry["command"]))
     return flags
 
 
@@ -63,10 +63,9 @@ def companies_of(files, flags):
     """Files that can go together: they mean the same to the compiler, lie in one top folder, and one at most has an entry."""
     companies, with_entry = collections.defaultdict(list), set()
     for file in files:
-        company = flags[file].meaning, file.relative_to(ROOT).parts[0]
+        company = flags[file][0].meaning, file.relative_to(ROOT).parts[0]
         entry = bool(ENTRY.search(file.read_text()))
-        # The kernel's sources include little, and name things as it suits each of them.
-        if company[1] == "kernel" or entry and company in with_entry:
+        if entry and company in with_entry:
             companies[file].append(file)
             continue
         companies[company].append(file)
@@ -76,14 +75,16 @@ def companies_of(files, flags):
 
 
 def groups_of(files, flags):
-    """Groups of at most GROUP_SIZE files, of even size."""
-    groups = []
-    for company in companies_of(files, flags):
+    """Groups of at most GROUP_SIZE files, of even size. A source of several targets is checked as the first of them compiles it.
+    Sources of the kernel are checked alone, because they include little and may clash, and once for every instruction set."""
+    kernel = [file for file in files if file.is_relative_to(ROOT / "kernel")]
+    groups = [Group(each, [file]) for file in kernel for each in flags[file]]
+    for company in companies_of([file for file in files if file not in kernel], flags):
         count = -(-len(company) // GROUP_SIZE)
         for part in range(count):
             some = company[part * len(company) // count:(part + 1) * len(company) // count]
-            includes = dict.fromkeys(include for file in some for include in flags[file].includes)
-            groups.append(Group(Flags(flags[some[0]].meaning, tuple(includes)), some))
+            includes = dict.fromkeys(include for file in some for include in flags[file][0].includes)
+            groups.append(Group(Flags(flags[some[0]][0].meaning, tuple(includes)), some))
     return groups
 
 
@@ -167,10 +168,11 @@ def main():
         print("lint: no target compiles " + ", ".join(unknown) +
               "; name .cpp files (headers are checked with the sources that include them)", file=sys.stderr)
         return 2
-    tidy = Tidy((arguments.build / "tidy").resolve(), len(files))
     # The longest first, so that no processor is idle at the end: by size, which is near enough.
     groups = sorted(groups_of(files, flags), key=lambda group: -sum(file.stat().st_size for file in group.files))
-    print(f"lint: clang-tidy; files: {len(files)}, runs: {len(groups)}", flush=True)
+    count = sum(len(group.files) for group in groups)
+    tidy = Tidy((arguments.build / "tidy").resolve(), count)
+    print(f"lint: clang-tidy; files: {count}, runs: {len(groups)}", flush=True)
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         list(pool.map(tidy.check, groups))
     if tidy.failed:

@@ -52,9 +52,9 @@ void need(std::initializer_list<const void*> pointers) {
 }
 
 kernel::Isa chosen_isa() {
-    kernel::Isa isa{};
-    if (kernel::isa_from_environment(isa) == kernel::IsaChoice::kOk) return isa;
-    throw BadArgument("CAROM_ISA in the environment is no instruction set that can be run here; unset it");
+    const auto [isa, problem] = kernel::isa_from_environment();
+    if (*problem != '\0') throw BadArgument(problem);
+    return isa;
 }
 
 }  // namespace carom::c

@@ -1,4 +1,4 @@
-// One impact out of the arrays of a batch, and its result into them.
+// Reads one impact from the arrays of a batch, and writes its result into them.
 #pragma once
 
 #include "carom/kernel/batch.h"

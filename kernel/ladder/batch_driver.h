@@ -1,6 +1,6 @@
-// Takes a batch through lanes: fills W * U lanes, marches them without asking as long as none can end, then
-// step by step, and takes out each lane when it ends. Lanes left behind by the others finish alone, so that
-// one long impact holds none up.
+// Marches a batch in lanes: W * U lanes are filled and marched without a stop test as long as none of them can end,
+// then step by step, and each lane is taken out when it ends. Lanes that take far longer than the others finish
+// alone, so that one long impact does not delay the rest.
 #pragma once
 
 #include "ladder/batch_arrays.h"
@@ -23,7 +23,7 @@ class BatchMarch {
     }
 
   private:
-    using V = typename LaneVector<W>::Type;
+    using V = Pack<W>;
     struct Group {
         Lanes<W> lanes[U];
         LaneRecord records[W * U];
@@ -33,8 +33,8 @@ class BatchMarch {
     const ImpactBatch& batch;
     const int n;
     const ImpactBatchResult& result;
-    // Impacts that will stick, or nearly, leave the fast path of the roots for the rest of their march; they
-    // share vectors with each other and not with the rest.
+    // Impacts that will stick, or nearly stick, need the slow path of the roots from there on. They share vectors
+    // with each other and not with other impacts.
     Group groups[2] = {};
 
     static Lanes<W>& lanes_of(Group& g, int i) { return g.lanes[i / W]; }
@@ -66,7 +66,8 @@ class BatchMarch {
         return s.sum_v[i % W] + 0.5 * (s.v_n[i % W] - g.records[i].start.v_n);
     }
 
-    // Steps that lane i cannot end or change stage within. v_n grows by at most (2 + mu_s mu_b) h a step.
+    // Number of steps within which lane i cannot end or change from compression to restitution. In a step v_n grows
+    // by at most (2 + mu_s mu_b) h.
     long safe_steps(Group& g, int i) {
         const LaneRecord& r = g.records[i];
         const double v = lanes_of(g, i).v_n[i % W], h = r.k.h;
@@ -75,7 +76,7 @@ class BatchMarch {
         double steps = -v / growth;
         if (!r.compressing) {
             const double missing = r.W_f - r.W - (work_sum(g, i) - r.V_cross);
-            // missing = v s + growth s^2 / 2
+            // The solution s of missing = v s + growth s^2 / 2.
             steps = missing > 0.0 ? (square_root(v * v + 2.0 * growth * missing) - v) / growth : 0.0;
         }
         return steps < 3.0 ? 0 : steps < 1e9 ? static_cast<long>(steps) - 2 : 1000000000L;
@@ -116,7 +117,7 @@ class BatchMarch {
         g = Group{};
     }
 
-    // Kept in registers over the run: the group is copied in and out.
+    // The group is copied in and out, so that it stays in registers over the steps.
     void advance(Group& g, long steps) {
         Lanes<W> s[U];
         for (int u = 0; u < U; ++u) s[u] = g.lanes[u];
@@ -129,7 +130,7 @@ class BatchMarch {
         for (int u = 0; u < U; ++u) g.lanes[u] = s[u];
     }
 
-    // The published stop test on lane i after a step; true when it has ended and been taken out.
+    // The published stop test on lane i after a step. Returns true if the lane has ended and has been taken out.
     bool ends(Group& g, int i, double sum_before, double v_before, long done) {
         LaneRecord& r = g.records[i];
         const double v = lanes_of(g, i).v_n[i % W];

@@ -1,8 +1,8 @@
-// Section 3.3: the baseline's branches with hints. Slip is
-// the rule; no slip, and a cloth slip of zero, the exception.
+// Section 3.3: the branches of the baseline with hints. Slip is the rule; no slip, and a cloth slip of zero, are the
+// exceptions.
 #pragma once
 
-#include "ladder/driver.h"
+#include "ladder/step_loops.h"
 
 namespace carom::kernel {
 namespace {

@@ -1,8 +1,8 @@
-// Section 3.3: other order of the branches: which ball is pressed down is asked first, by the sign of the
-// vertical slip, and the exceptions (no slip at all) last.
+// Section 3.3: another order of the branches. The first branch decides which ball is pressed on the cloth, by the
+// sign of the vertical slip; the exceptions (no slip at all) come last.
 #pragma once
 
-#include "ladder/driver.h"
+#include "ladder/step_loops.h"
 
 namespace carom::kernel {
 namespace {

@@ -1,12 +1,12 @@
-// Past the paper: every step done, and no root in the way of it. The state is two pairs, A = [x, a] and
-// B = [|z|, b], so that A A + B B is both squares at once; T = [1/c, 1/u] / sqrt(2), so that f = 1/2 - |.|^2
-// T^2 is the relative error of T.
+// Past the paper: every step is done, and no step waits for a root. The state is two pairs, A = [x, a] and B = [|z|,
+// b], so that A A + B B is both squares at once; T = [1/c, 1/u] / sqrt(2), so that f = 1/2 - |.|^2 T^2 is the
+// relative error of T.
 //
-// The root of a step is extrapolated from the corrected roots of earlier steps and used as it is. What it was
-// wrong by, T f, corrects the history, and is added to the root of the step kLag later: no step waits for its
-// own correction, and none is lost but those of the last steps of a run. So the chain from step to step is two
-// sums and a product; the roots run beside it. The error is asked once in kBlock steps; a block in which it is
-// too large is done again by slow steps: the series, or sqrt and division (starts, near u = 0 or c = 0).
+// The root of a step is extrapolated from the corrected roots of earlier steps and used as it is. Its error T f
+// corrects the history, and is added to the root of the step kLag later: no step waits for its own correction, and
+// only the corrections of the last steps of a run are lost. The chain from step to step is therefore two sums and a
+// product; the roots are computed beside it. The error is tested once in kBlock steps. A block in which it is too
+// large is repeated by slow steps: by the series, or by square root and division (at the start, near u = 0 or c = 0).
 #pragma once
 
 #include "ladder/stretches.h"
@@ -16,9 +16,9 @@ namespace {
 
 struct DecoupledMarch {
     static constexpr int kLag = 2, kBlock = 3;
-    static constexpr double kFastError = 5e-7;    // |f| in a block; 3/2 f^2 is dropped
-    static constexpr double kEnterError = 5e-8;   // of the slow steps, for the next block to be tried
-    static constexpr double kSeriesError = 5e-4;  // |f| up to which the series holds: 63/8 f^5 are left
+    static constexpr double kFastError = 5e-7;    // largest |f| in a block; 3/2 f^2 is neglected
+    static constexpr double kEnterError = 5e-8;   // largest |f| of a slow step after which a block is tried
+    static constexpr double kSeriesError = 5e-4;  // largest |f| for the series, whose error is 63/8 f^5
     static constexpr double kRootHalf = 0.70710678118654752440;
 
     struct State {
@@ -63,7 +63,7 @@ struct DecoupledMarch {
         s.R[0] = R;
     }
 
-    // What the steps of a fast run carry beside the state.
+    // What the fast steps carry beside the state.
     struct Ahead {
         __m128d estimate[kLag], used[kLag];
     };
@@ -91,11 +91,11 @@ struct DecoupledMarch {
     static bool within(__m128d T, __m128d f, double bound) {
         const __m128d size = _mm_andnot_pd(_mm_set1_pd(-0.0), f);
         const __m128d small = _mm_cmp_pd(size, _mm_set1_pd(bound), _CMP_LT_OQ);
-        // A negative T may have the right square.
+        // A negative T may have the right square too.
         return _mm_movemask_pd(_mm_and_pd(small, _mm_cmp_pd(T, _mm_setzero_pd(), _CMP_GT_OQ))) == 3;
     }
 
-    // A step with its own roots. True if the next may be tried fast.
+    // A step with its own roots. Returns true if the next steps may be fast.
     static bool slow_step(State& s, const Factors& k, double c_floor, double u_floor) {
         const __m128d T = one_ahead(s.R), square = squares(s);
         const __m128d f = _mm_fnmadd_pd(square, _mm_mul_pd(T, T), _mm_set1_pd(0.5));
@@ -124,7 +124,7 @@ struct DecoupledMarch {
         const double c_floor = kSlipCutoff * kSlipCutoff * (1.0 - 0x1p-52), u_floor = c.u_floor * c.u_floor;
         const __m128d zero = _mm_setzero_pd();
         State s{_mm_set_pd(in.a, in.x), _mm_set_pd(in.b, in.z), zero, {zero, zero, zero, zero, zero}};
-        // No history gives f = 1/2: the first steps take the exact roots.
+        // Without a history f is 1/2, and the first steps take the exact roots.
         for (long m = 0; m < count;) {
             bool smooth = false;
             for (; m < count && !smooth; ++m) smooth = slow_step(s, k, c_floor, u_floor);

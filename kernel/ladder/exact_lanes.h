@@ -1,20 +1,23 @@
-// The published march on eight impacts at once, expression by expression: a lane gives the baseline's bits.
-// For impacts whose result the baseline's own rounding decides.
+// The published march on eight impacts at once, expression by expression: each lane has the bits of the baseline. It
+// is meant for impacts whose result is decided by the rounding of the baseline.
 #pragma once
 
-#include "ladder/vector8.h"
 #include "march/loop.h"
+#include "simd.h"
 
 namespace carom::kernel {
 namespace {
 
+using Eight = Pack<8>;
+using EightMask = Mask<8>;
+
 class ExactLanes {
   public:
-    // Marches the first `count` of up to eight states; steps[i] as of march_loop, which takes over a lane
-    // that is far longer than the rest.
+    // Marches `count` states, at most eight. steps[i] is as of march_loop(), which finishes a lane that takes far
+    // longer than the others.
     template <int kSign>
     static void march(FrameState* const* states, const ImpactParams* params, int count, int n, long* steps) {
-        // Idle lanes repeat the last.
+        // Idle lanes repeat the last state.
         double rows[kRows][8], start[11][8];
         for (int i = 0; i < 8; ++i) {
             const int j = i < count ? i : count - 1;
@@ -36,23 +39,27 @@ class ExactLanes {
                                        s.v2y, s.w2x, s.w2y, s.w2z, s.v2y - s.v1y};
             for (int k = 0; k < 11; ++k) start[k][i] = values[k];
         }
-        Lanes s{load8(start[0]),  load8(start[1]), load8(start[2]), load8(start[3]),      load8(start[4]),
-                load8(start[5]),  load8(start[6]), load8(start[7]), load8(start[8]),      load8(start[9]),
-                load8(start[10]), all8(0.0),       all8(0.0),       all8(0.0) < all8(1.0)};
+        Lanes s{load<8>(start[0]),  load<8>(start[1]),
+                load<8>(start[2]),  load<8>(start[3]),
+                load<8>(start[4]),  load<8>(start[5]),
+                load<8>(start[6]),  load<8>(start[7]),
+                load<8>(start[8]),  load<8>(start[9]),
+                load<8>(start[10]), broadcast<8>(0.0),
+                broadcast<8>(0.0),  broadcast<8>(0.0) < broadcast<8>(1.0)};
         Constants c;
-        for (int k = 0; k < kRows; ++k) c.row[k] = load8(rows[k]);
+        for (int k = 0; k < kRows; ++k) c.row[k] = load<8>(rows[k]);
         int waiting = (1 << count) - 1;
         for (int i = 0; i < count; ++i) steps[i] = 0;
         const long patience = static_cast<long>(n) + n / 8 + 64;
         for (long m = 1; m <= patience && waiting != 0; ++m) {
             step<kSign>(s, c);
-            const int ended = waiting & ~bits8(goes_on(s));
+            const int ended = waiting & ~bits(goes_on(s));
             if (ended == 0) [[likely]]
                 continue;
             double end[10][8];
-            const Vector8* const values[10] = {&s.v1x, &s.v1y, &s.w1x, &s.w1y, &s.w1z,
-                                               &s.v2x, &s.v2y, &s.w2x, &s.w2y, &s.w2z};
-            for (int k = 0; k < 10; ++k) store8(end[k], *values[k]);
+            const Eight* const values[10] = {&s.v1x, &s.v1y, &s.w1x, &s.w1y, &s.w1z,
+                                             &s.v2x, &s.v2y, &s.w2x, &s.w2y, &s.w2z};
+            for (int k = 0; k < 10; ++k) store(end[k], *values[k]);
             for (int i = 0; i < count; ++i) {
                 if ((ended >> i & 1) == 0) continue;
                 *states[i] = {end[0][i], end[1][i], end[2][i], end[3][i], end[4][i],
@@ -68,38 +75,40 @@ class ExactLanes {
   private:
     enum { kR, kM, kDP, kHalfDP, kFriction, kMu2, kMu1, kC, kFloor, kWorkRatio, kRows };
     struct Constants {
-        Vector8 row[kRows];
+        Eight row[kRows];
     };
     struct Lanes {
-        Vector8 v1x, v1y, w1x, w1y, w1z, v2x, v2y, w2x, w2y, w2z, v_n, W, W_f;
-        Mask8 compressing;
+        Eight v1x, v1y, w1x, w1y, w1z, v2x, v2y, w2x, w2y, w2z, v_n, W, W_f;
+        EightMask compressing;
     };
 
-    static Mask8 goes_on(const Lanes& s) { return (s.v_n < all8(0.0)) | s.compressing | (s.W < s.W_f); }
+    static EightMask goes_on(const Lanes& s) {
+        return (s.v_n < broadcast<8>(0.0)) | s.compressing | (s.W < s.W_f);
+    }
 
-    // march_loop's, with masks for its branches.
+    // The step of march_loop(), with masks for its branches.
     template <int kSign>
     static void step(Lanes& s, const Constants& c) {
-        const Vector8 R = c.row[kR], m = c.row[kM], dP = c.row[kDP], C = c.row[kC], zero = all8(0.0);
-        const Vector8 c_x = s.v1x - s.v2x - R * (s.w1z + s.w2z), c_z = R * (s.w1x + s.w2x);
-        const Vector8 slip = square_root8(c_x * c_x + c_z * c_z);
-        const Mask8 slips = !(slip < all8(kPublishedSlipCutoff));
-        const Mask8 turns = slips & !(absolute8(c_z) < all8(kPublishedSlipCutoff));
-        const Vector8 dP1 = select8(slips, c.row[kFriction] * c_x / slip, zero);
-        const Vector8 dP2 = select8(turns, c.row[kFriction] * c_z / slip, zero);
-        // As dP2 > 0, and known before any root.
-        const Mask8 second = c_z < zero;
-        const Vector8 spin_y = R * select8(second, s.w2y, s.w1y), spin_x = R * select8(second, s.w2x, s.w1x);
-        const Vector8 v_x = select8(second, s.v2x, s.v1x), v_y = select8(second, s.v2y, s.v1y);
-        const Vector8 u_x = kSign > 0 ? v_x + spin_y : v_x - spin_y,
-                      u_y = kSign > 0 ? v_y - spin_x : v_y + spin_x;
-        const Vector8 u = square_root8(u_x * u_x + u_y * u_y);
-        const Vector8 mu = select8(second, c.row[kMu2], c.row[kMu1]);
-        const Mask8 cloth = turns & (c.row[kFloor] < u);
-        const Vector8 dQx = select8(cloth, mu * (u_x / u) * dP2, zero),
-                      dQy = select8(cloth, mu * (u_y / u) * dP2, zero);
-        const Vector8 dPix = select8(second, zero, dQx), dPiy = select8(second, zero, dQy);
-        const Vector8 dPjx = select8(second, dQx, zero), dPjy = select8(second, dQy, zero);
+        const Eight R = c.row[kR], m = c.row[kM], dP = c.row[kDP], C = c.row[kC], zero = broadcast<8>(0.0);
+        const Eight c_x = s.v1x - s.v2x - R * (s.w1z + s.w2z), c_z = R * (s.w1x + s.w2x);
+        const Eight slip = square_root(c_x * c_x + c_z * c_z);
+        const EightMask slips = ~(slip < broadcast<8>(kSlipCutoff));
+        const EightMask turns = slips & ~(absolute(c_z) < broadcast<8>(kSlipCutoff));
+        const Eight dP1 = select(slips, c.row[kFriction] * c_x / slip, zero);
+        const Eight dP2 = select(turns, c.row[kFriction] * c_z / slip, zero);
+        // The same as dP2 > 0, but known before any root.
+        const EightMask second = c_z < zero;
+        const Eight spin_y = R * select(second, s.w2y, s.w1y), spin_x = R * select(second, s.w2x, s.w1x);
+        const Eight v_x = select(second, s.v2x, s.v1x), v_y = select(second, s.v2y, s.v1y);
+        const Eight u_x = kSign > 0 ? v_x + spin_y : v_x - spin_y,
+                    u_y = kSign > 0 ? v_y - spin_x : v_y + spin_x;
+        const Eight u = square_root(u_x * u_x + u_y * u_y);
+        const Eight mu = select(second, c.row[kMu2], c.row[kMu1]);
+        const EightMask cloth = turns & (c.row[kFloor] < u);
+        const Eight dQx = select(cloth, mu * (u_x / u) * dP2, zero),
+                    dQy = select(cloth, mu * (u_y / u) * dP2, zero);
+        const Eight dPix = select(second, zero, dQx), dPiy = select(second, zero, dQy);
+        const Eight dPjx = select(second, dQx, zero), dPjy = select(second, dQy, zero);
         s.v1x = s.v1x + (dP1 + dPix) / m;
         s.v1y = s.v1y + (dPiy - dP) / m;
         s.v2x = s.v2x + (dPjx - dP1) / m;
@@ -110,12 +119,12 @@ class ExactLanes {
         s.w2x = s.w2x + C * (dP2 + dPjy);
         s.w2y = s.w2y - C * dPjx;
         s.w2z = s.w2z - C * dP1;
-        const Vector8 before = s.v_n;
+        const Eight before = s.v_n;
         s.v_n = s.v2y - s.v1y;
-        s.W = s.W + c.row[kHalfDP] * absolute8(before + s.v_n);
-        const Mask8 crosses = s.compressing & (zero < s.v_n);
-        s.W_f = select8(crosses, c.row[kWorkRatio] * s.W, s.W_f);
-        s.compressing = s.compressing & !crosses;
+        s.W = s.W + c.row[kHalfDP] * absolute(before + s.v_n);
+        const EightMask crosses = s.compressing & (zero < s.v_n);
+        s.W_f = select(crosses, c.row[kWorkRatio] * s.W, s.W_f);
+        s.compressing = s.compressing & ~crosses;
     }
 };
 

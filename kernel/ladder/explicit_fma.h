@@ -1,4 +1,4 @@
-// Section 3.4: fused multiply-add where the step has a product and a sum. Needs FMA in hardware.
+// Section 3.4: fused multiply-add where the step has a product and a sum. The processor must have FMA.
 #pragma once
 
 #include "ladder/precomputed.h"

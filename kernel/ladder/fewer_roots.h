@@ -1,8 +1,8 @@
-// Section 3.2: fewer square roots. The cutoff is tested on the square, and a slip whose friction is zero
-// takes no root.
+// Section 3.2: fewer square roots. The cutoff is tested on the square of the slip, and no root is taken of a slip
+// whose friction is zero.
 #pragma once
 
-#include "ladder/driver.h"
+#include "ladder/step_loops.h"
 
 namespace carom::kernel {
 namespace {

@@ -1,8 +1,8 @@
-// The baseline's step with reciprocal lengths from a root policy instead of sqrt and division.
+// The step of the baseline with reciprocal lengths from the policy Root instead of square root and division.
 #pragma once
 
-#include "ladder/driver.h"
 #include "ladder/roots.h"
+#include "ladder/step_loops.h"
 
 namespace carom::kernel {
 namespace {

@@ -1,123 +1,25 @@
-// Section 3.8 and past it: independent impacts in the lanes of a vector. W lanes, U vectors interleaved, so
-// that the latency of one hides behind the other. The step is that of reduced.h with the pressed ball's slip
-// (a, b) and the other's (c, d); a lane whose vertical slip changes sign swaps them. Lanes share nothing:
-// each result depends on its own impact alone.
+// Section 3.8 and past it: independent impacts in the lanes of a vector of W lanes, which fills a register. U vectors
+// are interleaved, so that the latency of one is hidden behind the others. The step is that of reduced.h, with the
+// slip (a, b) of the pressed ball and (c, d) of the other; a lane whose vertical slip changes its sign swaps them.
+// Lanes share nothing: each result depends on its own impact alone.
 #pragma once
 
-#include "ladder/lane_vectors.h"
 #include "ladder/reduced.h"
+#include "simd.h"
 
 namespace carom::kernel {
 namespace {
 
-// One group of W lanes in flight.
-template <int W>
-struct Lanes {
-    using V = typename LaneVector<W>::Type;
-    using Mask = typename LaneVector<W>::Mask;
-    V x, size, a, b, c, d, v_n, sum_v;  // sum_v: of v_n over the steps done, for the work
-    V h, h2, mu_h, floor2;              // h2 = 2 h; of a lane that is done all constants are 0: nothing moves
-    V mu_hs, mu_other;                  // mu_b h times mu_s of the pressed and of the other ball
-    Mask pressed2;                      // all bits where ball 2 is pressed
-    V c_root, c_before, c_first, u_root, u_before,
-        u_first;  // carried reciprocal lengths of the last three steps
-};
-
-template <int W, class Roots, class Arithmetic, int kSign>
-inline void lane_step(Lanes<W>& s) {
-    using V = typename LaneVector<W>::Type;
-    using Mask = typename LaneVector<W>::Mask;
-    using A = Arithmetic;
-    constexpr double kKappa = 1.0 - 2.5 * kSign;
-    const V zero{};
-    const V c2 = A::madd(s.x, s.x, s.size * s.size), u2 = A::madd(s.a, s.a, s.b * s.b);
-    // Everything that needs no root comes first, so that after the roots only two operations are in the way
-    // of the next step.
-    const V x1 = s.mu_h * s.x, t1 = s.mu_h * s.size, q1 = s.mu_hs * s.size, a1 = q1 * s.a, b1 = q1 * s.b;
-    const V b_pushed = s.b + s.h, d_pushed = s.d + s.h, v_pushed = s.v_n + s.h2;
-    V C, U;  // 1/c and 1/u; 0 where the published cutoff, or the floor, says that there is no direction
-    Roots::template take<W, A>(s, c2, u2, C, U);
-    const V CU = C * U;
-    s.sum_v += s.v_n;
-    s.x = A::madd(CU, a1, A::nmadd(C, 7.0 * x1, s.x));
-    s.size = A::madd(CU, 2.5 * b1, A::nmadd(C, 5.0 * t1, s.size));
-    s.a = A::nmadd(CU, kKappa * a1, A::madd(C, x1, s.a));
-    s.b = A::nmadd(CU, kKappa * b1, A::nmadd(C, (2.5 * kSign) * t1, b_pushed));
-    s.c = A::madd(C, x1, s.c);
-    s.d = A::madd(C, (2.5 * kSign) * t1, d_pushed);
-    s.v_n = A::nmadd(CU, b1, v_pushed);
-    if (any_below<W>(s.size, zero)) [[unlikely]] {
-        const Mask flips = s.size < zero;
-        const V a = s.a, b = s.b, mu = s.mu_hs;
-        s.a = flips ? s.c : s.a;
-        s.b = flips ? s.d : s.b;
-        s.c = flips ? a : s.c;
-        s.d = flips ? b : s.d;
-        s.mu_hs = flips ? s.mu_other : s.mu_hs;
-        s.mu_other = flips ? mu : s.mu_other;
-        s.size = flips ? -s.size : s.size;
-        s.pressed2 ^= flips;
-    }
+// 12 bits from rsqrtps, or 14 from AVX-512.
+CAROM_INLINE Pack<4> approximate_rsqrt(Pack<4> v) {
+#if defined(__AVX512VL__)
+    return (Pack<4>)_mm256_rsqrt14_pd((__m256d)v);
+#else
+    return (Pack<4>)_mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps((__m256d)v)));
+#endif
 }
 
-// sqrt and division, as the baseline.
-struct LaneExactRoots {
-    template <int W, class A, class S, class V>
-    static void take(S& s, V c2, V u2, V& c, V& u) {
-        c = keep_lanes<W>(c2 >= kSlipCutoff * kSlipCutoff, 1.0 / root<W>(c2));
-        u = keep_lanes<W>(u2 > s.floor2, 1.0 / root<W>(u2));
-    }
-};
-
-// Approximate instruction and refinement; squares that it cannot hold, and zero, go to sqrt and division,
-// lane by lane.
-struct LaneRsqrtRoots {
-    template <int W, class A, class S, class V>
-    static void take(S& s, V c2, V u2, V& c, V& u) {
-        c = keep_lanes<W>(c2 >= kSlipCutoff * kSlipCutoff, refined<W>(c2));
-        u = keep_lanes<W>(u2 > s.floor2, refined<W>(u2));
-    }
-    template <int W, class V>
-    static V refined(V square) {
-        V y = approximate_rsqrt<W>(square);
-        const V half = 0.5 * square;
-        y = y * (1.5 - half * y * y);
-        y = y * (1.5 - half * y * y);
-        const auto fits = (square > 1e-30) & (square < 1e30);
-        if (any<W>(~fits)) [[unlikely]]
-            return fits ? y : 1.0 / root<W>(square);
-        return y;
-    }
-};
-
-// No root at all: the reciprocal length is carried from step to step, extrapolated quadratically and
-// corrected by the series of (1 - e)^(-1/2). Where e is above 1e-4 (starts, near stick, after a flip) the
-// lane takes sqrt and division. What remains is 35/128 e^4, below an ulp.
-struct LaneCarriedRoots {
-    template <int W, class A, class S, class V>
-    static void take(S& s, V c2, V u2, V& c, V& u) {
-        V e_c, e_u;
-        c = carried<W, A>(c2, s.c_root, s.c_before, s.c_first, e_c);
-        u = carried<W, A>(u2, s.u_root, s.u_before, s.u_first, e_u);
-        if (!all_below<W>(A::madd(e_c, e_c, e_u * e_u), all<W>(1e-8))) [[unlikely]] {
-            c = e_c * e_c < 1e-8 ? c : keep_lanes<W>(c2 >= kSlipCutoff * kSlipCutoff, 1.0 / root<W>(c2));
-            u = e_u * e_u < 1e-8 ? u : keep_lanes<W>(u2 > s.floor2, 1.0 / root<W>(u2));
-        }
-        s.c_root = c;
-        s.u_root = u;
-    }
-    // From the last three: 3 (last - before) + first.
-    template <int W, class A, class V>
-    static V carried(V square, V last, V& before, V& first, V& e) {
-        const V seed = A::madd(all<W>(3.0), last - before, first);
-        first = before;
-        before = last;
-        e = A::nmadd(square * seed, seed, all<W>(1.0));
-        const V series = A::madd(A::madd(all<W>(0.3125), e, all<W>(0.375)), e, all<W>(0.5));
-        return A::madd(seed * e, series, seed);
-    }
-};
-
+// madd is a b + c, nmadd is c - a b.
 struct SeparateArithmetic {
     template <class V>
     static V madd(V a, V b, V c) {
@@ -129,6 +31,128 @@ struct SeparateArithmetic {
     }
 };
 
+struct FusedArithmetic {
+    static Pack<4> madd(Pack<4> a, Pack<4> b, Pack<4> c) {
+        return (Pack<4>)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
+    }
+    static Pack<4> nmadd(Pack<4> a, Pack<4> b, Pack<4> c) {
+        return (Pack<4>)_mm256_fnmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
+    }
+#if defined(__AVX512F__)
+    static Pack<8> madd(Pack<8> a, Pack<8> b, Pack<8> c) {
+        return (Pack<8>)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+    }
+    static Pack<8> nmadd(Pack<8> a, Pack<8> b, Pack<8> c) {
+        return (Pack<8>)_mm512_fnmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+    }
+#endif
+};
+
+// W impacts on their way.
+template <int W>
+struct Lanes {
+    using V = Pack<W>;
+    V x, size, a, b, c, d, v_n, sum_v;  // sum_v: the sum of v_n over the steps, for the work
+    V h, h2, mu_h, floor2;              // h2 = 2 h; a lane that has ended has zeros here: nothing moves
+    V mu_hs, mu_other;                  // mu_b h times mu_s of the pressed and of the other ball
+    Mask<W> pressed2;                   // all bits where ball 2 is pressed
+    V c_root, c_before, c_first, u_root, u_before, u_first;  // reciprocal lengths of the last three steps
+};
+
+template <int W, class Roots, class Arithmetic, int kSign>
+inline void lane_step(Lanes<W>& s) {
+    using V = Pack<W>;
+    using A = Arithmetic;
+    constexpr double kKappa = 1.0 - 2.5 * kSign;
+    const V zero{};
+    const V c2 = A::madd(s.x, s.x, s.size * s.size), u2 = A::madd(s.a, s.a, s.b * s.b);
+    // Everything that needs no root comes first: then only two operations lie between the roots and the next step.
+    const V x1 = s.mu_h * s.x, t1 = s.mu_h * s.size, q1 = s.mu_hs * s.size, a1 = q1 * s.a, b1 = q1 * s.b;
+    const V b_pushed = s.b + s.h, d_pushed = s.d + s.h, v_pushed = s.v_n + s.h2;
+    V C, U;  // 1/c and 1/u; 0 where the slip has no direction: below the published cutoff, or below the floor
+    Roots::template take<W, A>(s, c2, u2, C, U);
+    const V CU = C * U;
+    s.sum_v += s.v_n;
+    s.x = A::madd(CU, a1, A::nmadd(C, 7.0 * x1, s.x));
+    s.size = A::madd(CU, 2.5 * b1, A::nmadd(C, 5.0 * t1, s.size));
+    s.a = A::nmadd(CU, kKappa * a1, A::madd(C, x1, s.a));
+    s.b = A::nmadd(CU, kKappa * b1, A::nmadd(C, (2.5 * kSign) * t1, b_pushed));
+    s.c = A::madd(C, x1, s.c);
+    s.d = A::madd(C, (2.5 * kSign) * t1, d_pushed);
+    s.v_n = A::nmadd(CU, b1, v_pushed);
+    if (bits_less(s.size, zero) != 0) [[unlikely]] {
+        const Mask<W> flips = s.size < zero;
+        const V a = s.a, b = s.b, mu = s.mu_hs;
+        s.a = select(flips, s.c, s.a);
+        s.b = select(flips, s.d, s.b);
+        s.c = select(flips, a, s.c);
+        s.d = select(flips, b, s.d);
+        s.mu_hs = select(flips, s.mu_other, s.mu_hs);
+        s.mu_other = select(flips, mu, s.mu_other);
+        s.size = select(flips, -s.size, s.size);
+        s.pressed2 ^= flips;
+    }
+}
+
+// Square root and division, as in the baseline.
+struct LaneExactRoots {
+    template <int W, class A, class S, class V>
+    static void take(S& s, V c2, V u2, V& c, V& u) {
+        c = select(c2 >= kSlipCutoff * kSlipCutoff, 1.0 / square_root(c2), V{});
+        u = select(u2 > s.floor2, 1.0 / square_root(u2), V{});
+    }
+};
+
+// The approximate instruction and two Newton steps. Lanes whose square does not fit into a float, or is zero, take
+// square root and division.
+struct LaneRsqrtRoots {
+    template <int W, class A, class S, class V>
+    static void take(S& s, V c2, V u2, V& c, V& u) {
+        c = select(c2 >= kSlipCutoff * kSlipCutoff, refined(c2), V{});
+        u = select(u2 > s.floor2, refined(u2), V{});
+    }
+    template <class V>
+    static V refined(V square) {
+        V y = approximate_rsqrt(square);
+        const V half = 0.5 * square;
+        y = y * (1.5 - half * y * y);
+        y = y * (1.5 - half * y * y);
+        const auto fits = (square > 1e-30) & (square < 1e30);
+        if (any(~fits)) [[unlikely]]
+            return select(fits, y, 1.0 / square_root(square));
+        return y;
+    }
+};
+
+// No root at all: the reciprocal length is carried from step to step, extrapolated quadratically and corrected by the
+// series of (1 - e)^(-1/2). A lane whose e is above 1e-4 (at the start, near stick, after a change of side) takes
+// square root and division. The error that remains, 35/128 e^4, is below an ulp.
+struct LaneCarriedRoots {
+    template <int W, class A, class S, class V>
+    static void take(S& s, V c2, V u2, V& c, V& u) {
+        V e_c, e_u;
+        c = carried<W, A>(c2, s.c_root, s.c_before, s.c_first, e_c);
+        u = carried<W, A>(u2, s.u_root, s.u_before, s.u_first, e_u);
+        if (!all_below(A::madd(e_c, e_c, e_u * e_u), 1e-8)) [[unlikely]] {
+            c = select(e_c * e_c < 1e-8, c,
+                       select(c2 >= kSlipCutoff * kSlipCutoff, 1.0 / square_root(c2), V{}));
+            u = select(e_u * e_u < 1e-8, u, select(u2 > s.floor2, 1.0 / square_root(u2), V{}));
+        }
+        s.c_root = c;
+        s.u_root = u;
+    }
+    // The extrapolation from the last three values is 3 (last - before) + first.
+    template <int W, class A, class V>
+    static V carried(V square, V last, V& before, V& first, V& e) {
+        const V seed = A::madd(broadcast<W>(3.0), last - before, first);
+        first = before;
+        before = last;
+        e = A::nmadd(square * seed, seed, broadcast<W>(1.0));
+        const V series = A::madd(A::madd(broadcast<W>(0.3125), e, broadcast<W>(0.375)), e, broadcast<W>(0.5));
+        return A::madd(seed * e, series, seed);
+    }
+};
+
 // What a lane needs beside its vectors.
 struct LaneRecord {
     Ball ball1, ball2;
@@ -137,8 +161,8 @@ struct LaneRecord {
     FrameState state;
     Reduced start;
     ReducedConstants k;
-    double V_cross, W,
-        W_f;  // in units of W/h: sum of (v(m) + v(m+1)) / 2 at the end of compression, work, target
+    // In units of W/h: the sum of (v(m) + v(m+1)) / 2 at the end of compression, the work, and the work to reach.
+    double V_cross, W, W_f;
     long steps, index;
     bool active, compressing;
 };

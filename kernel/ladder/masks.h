@@ -1,7 +1,7 @@
-// Section 3.3: no branches. Conditions become bit masks that clear what does not apply.
+// Section 3.3: no branches. A condition becomes a bit mask, which clears the numbers that do not apply.
 #pragma once
 
-#include "ladder/driver.h"
+#include "ladder/step_loops.h"
 
 namespace carom::kernel {
 namespace {

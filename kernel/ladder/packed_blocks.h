@@ -1,10 +1,10 @@
-// Section 3.5: register relief. The five components of both balls travel as pairs (ball 1, ball 2) in xmm
-// registers, in scoped blocks, so that fewer values are alive at once.
+// Section 3.5: fewer registers. The five components of both balls are pairs (ball 1, ball 2) in xmm registers, in
+// scoped blocks, so that fewer values are alive at once.
 #pragma once
 
 #include <immintrin.h>
 
-#include "ladder/driver.h"
+#include "ladder/step_loops.h"
 
 namespace carom::kernel {
 namespace {
@@ -22,7 +22,7 @@ struct PackedBlocks {
     static long loop(FrameState& s, const ImpactParams& p, int n) {
         const Constants k = constants<kSign>(s, p, n);
         const double h = k.dP / k.m;
-        // (ball 1, ball 2); spins as R w.
+        // Pairs (ball 1, ball 2); spins are R w.
         __m128d v_x = _mm_set_pd(s.v2x, s.v1x), v_y = _mm_set_pd(s.v2y, s.v1y);
         __m128d w_x = _mm_set_pd(k.R * s.w2x, k.R * s.w1x), w_y = _mm_set_pd(k.R * s.w2y, k.R * s.w1y);
         __m128d w_z = _mm_set_pd(k.R * s.w2z, k.R * s.w1z);

@@ -1,15 +1,16 @@
-// Past the paper: one impact, every step done, its reduced state in one register. S = [x, a, |z|, b], where (a,
-// b) is the cloth slip of the pressed ball. R = [1/c, 1/u, 1/c, 1/u] is what limits the march. How it is had:
+// Past the paper: one impact, every step done, its reduced state in one register: S = [x, a, |z|, b], where (a, b) is
+// the cloth slip of the pressed ball. The reciprocal lengths R = [1/c, 1/u, 1/c, 1/u] limit the speed. They are
+// computed
 //
-//   kExact      sqrt and division
-//   kSeed       extrapolated linearly, then corrected by a series before it is used
-//   kOneAhead   extrapolated from the last five; used at once, and the step corrected late, by terms linear
-//               in the error e
-//   kTwoAhead   the same, but from values one step older, so that the extrapolation too is off the critical
+//   kExact      by square root and division
+//   kSeed       by linear extrapolation, and corrected by a series before they are used
+//   kOneAhead   by extrapolation from the last five; they are used at once, and the step is corrected late, by terms that
+//               are linear in the error e
+//   kTwoAhead   in the same way from values that are one step older, so that the extrapolation, too, is off the critical
 //               path
 //
-// A step whose e is too large for its form falls back to the series, or to sqrt and division (starts, near u
-// = 0 or c = 0).
+// A step whose e is too large for its form takes the series, or square root and division (at the start, near u = 0 or
+// c = 0).
 #pragma once
 
 #include "ladder/stretches.h"
@@ -19,8 +20,8 @@ namespace {
 
 enum class RootForm { kExact, kSeed, kOneAhead, kTwoAhead };
 
-constexpr double kLateError = 2e-8;    // 3/8 e^2 is dropped by the late correction
-constexpr double kSeriesError = 1e-3;  // 63/256 e^5 by the series
+constexpr double kLateError = 2e-8;    // largest e for the late correction, which neglects 3/8 e^2
+constexpr double kSeriesError = 1e-3;  // largest e for the series, which neglects 63/256 e^5
 
 inline __m256d swapped_halves(__m256d a) {
     return _mm256_permute2f128_pd(a, a, 1);
@@ -33,7 +34,7 @@ inline bool all_within(__m256d e, double bound) {
 
 template <RootForm kForm>
 struct PackedMarch {
-    // 1/c and 1/u by sqrt and division; 0 where there is no direction.
+    // 1/c and 1/u by square root and division; 0 where the slip has no direction.
     static __m256d exact_roots(__m256d S, double u_floor) {
         const __m256d squares = _mm256_mul_pd(S, S), sum = _mm256_add_pd(squares, swapped_halves(squares));
         const double f = u_floor * u_floor, c = kSlipCutoff * kSlipCutoff * (1.0 - 0x1p-52);
@@ -51,7 +52,7 @@ struct PackedMarch {
     template <int kSign>
     static void march(Stretch& stretch, const StretchConstants& k, long count) {
         constexpr double kKappa = 1.0 - 2.5 * kSign;
-        // What xi and t, and what q, do to the state.
+        // The effect of xi and t, and of q, on the state.
         const __m256d by_friction =
             _mm256_mul_pd(_mm256_set1_pd(k.mu_h), _mm256_set_pd(-2.5 * kSign, -5.0, 1.0, -7.0));
         const __m256d by_cloth = _mm256_set_pd(-kKappa, 2.5, -kKappa, 1.0);
@@ -60,8 +61,8 @@ struct PackedMarch {
         const __m256d push = _mm256_set_pd(k.h, 0.0, 0.0, 0.0), mu = _mm256_set1_pd(k.mu_hs);
         const __m256d half = _mm256_set1_pd(0.5);
         __m256d S = _mm256_set_pd(stretch.b, stretch.z, stretch.a, stretch.x), sum_S = _mm256_setzero_pd();
-        // R of the last steps, the newest first. Zero, as at the
-        // start, gives e = 1: the first steps take the exact roots.
+        // R of the last steps, the newest first. At the start they are zero, which gives e = 1: the first steps take
+        // the exact roots.
         __m256d R1 = _mm256_setzero_pd(), R2 = R1, R3 = R1, R4 = R1, R5 = R1, R6 = R1;
         for (long m = 0; m < count; ++m) {
             CAROM_LOOP_BEGIN("packed march");
@@ -86,13 +87,13 @@ struct PackedMarch {
                     T = _mm256_fmadd_pd(_mm256_set1_pd(-40.0), R3, T);
                     T = _mm256_fmadd_pd(_mm256_set1_pd(15.0), R2, T);
                 }
-                // e = 1 - |.|^2 T^2. Both copies of a root must see the same bits: a difference between them
-                // would not be corrected, and extrapolation would let it grow. Hence a sum that is symmetric
-                // in the halves.
+                // e = 1 - |.|^2 T^2. Both copies of a root must have the same bits: a difference between them would
+                // not be corrected, and extrapolation would let it grow. Therefore the sum is symmetric in the
+                // halves.
                 const __m256d ST = _mm256_mul_pd(S, T), rest = _mm256_fnmadd_pd(ST, ST, half);
                 const __m256d e = _mm256_add_pd(rest, swapped_halves(rest));
                 if constexpr (kForm != RootForm::kSeed) {
-                    // The step with T for R, then what R - T = T e / 2 changes in it.
+                    // The step with T in place of R, and then the change of it by R - T = T e / 2.
                     const __m256d xxzz = _mm256_movedup_pd(ST), aabb = _mm256_permute_pd(ST, 0b1111);
                     const __m256d q =
                         _mm256_mul_pd(_mm256_mul_pd(mu, _mm256_permute4x64_pd(ST, 0b10101010)), aabb);

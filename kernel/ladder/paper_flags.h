@@ -1,8 +1,8 @@
-// Section 4: the paper's compiler flags. The loop is built in a file of its own (paper_flags.cpp) with -Ofast
-// -march=znver3; validation and frame stay outside, where NaN still exists.
+// Section 4: the compiler flags of the paper. The loop is built in a file of its own (paper_flags.cpp) with -Ofast
+// -march=znver3; validation and projection stay outside, because -Ofast assumes that there is no NaN.
 #pragma once
 
-#include "ladder/driver.h"
+#include "ladder/step_loops.h"
 
 namespace carom::kernel {
 

@@ -1,7 +1,8 @@
-// Section 3.4: precomputation. Spins are carried as R w, impulses per unit mass, and every product of constants once.
+// Section 3.4: precomputation. Spins are carried as R w and impulses per unit mass, and every product of constants is
+// computed once.
 #pragma once
 
-#include "ladder/driver.h"
+#include "ladder/step_loops.h"
 
 namespace carom::kernel {
 namespace {

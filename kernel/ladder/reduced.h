@@ -1,10 +1,9 @@
-// Past the paper: the reduced state. Ten velocities follow from six numbers and the impulse, because every
-// change is a sum of five: Xi (horizontal friction), T (vertical friction), Q (two of the cloth) and p
-// (normal), all per unit mass.
+// Past the paper: the reduced state. The ten velocities follow from six numbers and the normal impulse, because every
+// change is a sum of five impulses per unit mass: Xi (horizontal friction), T (vertical friction), Q (two of the
+// cloth) and p (normal).
 //
 //   x = v1x - v2x - R (w1z + w2z), z = R (w1x + w2x)     slip between the balls
-//   U[1] = u2, U[0] = -u1                                cloth slips, mirrored so that both sides read the
-//   same
+//   U[1] = u2, U[0] = -u1                                cloth slips; -u1, so that both sides have the same equations
 //
 // With c = |(x, z)|, A = mu_b h / c, xi = A x, t = A |z| and the pressed ball's q = mu_s t U / |U| one step is
 //
@@ -15,7 +14,7 @@
 // sigma = +1 as published, -1 consistent. Ball 2 (index 1) is pressed where z < 0.
 #pragma once
 
-#include "ladder/driver.h"
+#include "ladder/step_loops.h"
 
 namespace carom::kernel {
 namespace {
@@ -34,12 +33,12 @@ Reduced reduce(const FrameState& s, double R) {
             {-(s.v1y - kSign * R * s.w1x), s.v2y - kSign * R * s.w2x}};
 }
 
-// The sums of a whole march; they are what the outputs are made of.
+// The sums over a whole march, from which the outputs follow.
 struct Sums {
     double Xi, PZ, QX[2], QY[2], p;  // PZ: vertical friction, positive where it presses ball 2
 };
 
-// The sums from the ends of the march, whatever happened between: the invariants are linear.
+// The sums from the first and the last state of the march alone: the invariants are linear.
 template <int kSign>
 Sums sums_between(const Reduced& a, const Reduced& b, double p) {
     constexpr double kKappa = 1.0 - 2.5 * kSign;
@@ -130,7 +129,7 @@ struct StopTest {
     }
 };
 
-// Exact steps until the march ends or `count` are done.
+// Takes exact steps until the march ends or `count` steps are done.
 template <int kSign>
 void reduced_steps(Reduced& r, StopTest& stop, long& steps, long count, const ReducedConstants& k) {
     for (; count > 0 && stop.goes_on(r.v_n); --count, ++steps) {

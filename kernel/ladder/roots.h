@@ -1,4 +1,5 @@
-// Reciprocal square roots. rsqrtss takes floats: squares of velocities outside [1e-30, 1e30] go to sqrt and division.
+// Reciprocal square roots. rsqrtss takes floats: squares of velocities outside [1e-30, 1e30] take square root and
+// division.
 #pragma once
 
 #include <immintrin.h>
@@ -12,7 +13,7 @@ inline bool fits_float(double square) {
     return square > 1e-30 && square < 1e30;
 }
 
-// 12 bits, as the instruction gives them. Intel and AMD differ in them.
+// 12 bits, which differ between Intel and AMD.
 inline double raw_rsqrt(double square) {
     return static_cast<double>(_mm_cvtss_f32(_mm_rsqrt_ss(_mm_set_ss(static_cast<float>(square)))));
 }
@@ -27,7 +28,7 @@ struct RawRoot {
     }
 };
 
-// Two Newton steps, 12 -> 23 -> 46 bits. The published code takes one and so is off by 1e-7.
+// Two Newton steps give 46 bits: 12 -> 23 -> 46. The published code takes one step, and its error is 1e-7.
 struct NewtonRoot {
     static double inverse(double square) {
         if (!fits_float(square)) return ExactRoot::inverse(square);

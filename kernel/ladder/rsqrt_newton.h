@@ -1,5 +1,5 @@
-// Section 3.2: rsqrtss and Newton steps. The published rung gives NaN at zero slip; here zero slip takes no
-// root at all.
+// Section 3.2: rsqrtss and Newton steps. The published variant gives NaN at zero slip; here a zero slip takes no
+// root.
 #pragma once
 
 #include "ladder/inverse_step.h"

@@ -1,4 +1,5 @@
-// Section 3.2, before refinement: rsqrtss as it comes, 12 bits. The loss is what motivates the next rung.
+// Section 3.2, before refinement: the 12 bits of rsqrtss. Their error is the reason for the Newton steps of
+// rsqrt_newton.h.
 #pragma once
 
 #include "ladder/inverse_step.h"

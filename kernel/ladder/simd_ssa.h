@@ -1,5 +1,5 @@
-// Section 3.7: SIMD in SSA style. Both balls share registers by component pairs, both sides are computed and
-// one is selected by a mask, every value is assigned once, and nothing branches but the stop test.
+// Section 3.7: SIMD in the style of static single assignment. A component of both balls shares a register, both sides
+// are computed and one is selected by a mask, every value is assigned once, and only the stop test branches.
 #pragma once
 
 #include <immintrin.h>

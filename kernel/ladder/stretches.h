@@ -1,7 +1,8 @@
-// Past the paper: what every every-step march in vectors shares. Between the steps at which a side or a stage
-// may change lie stretches in which neither can; there only the slip between the balls (x, |z|) and the cloth
-// slip (a, b) of the pressed ball are marched. The other ball's slip, v_n and the work follow at the end of
-// the stretch from linear invariants. A rung holds how it marches a stretch.
+// Past the paper: what the variants share that do every step of one impact in vectors. The march is divided into
+// stretches in which neither the pressed side nor the phase (compression, restitution) can change. There only the
+// slip between the balls (x, |z|) and the cloth slip (a, b) of the pressed ball are marched. The slip of the other
+// ball, v_n and the work follow at the end of the stretch from linear invariants. A variant holds only how it marches
+// a stretch.
 #pragma once
 
 #include <immintrin.h>
@@ -18,7 +19,7 @@ struct Stretch {
     double sum_z, sum_b;  // of z and b before each step
 };
 
-// Its constants: mu_s is that of the pressed ball.
+// The constants of a stretch; mu_s is that of the pressed ball.
 struct StretchConstants {
     double h, mu_h, mu_hs, u_floor;
 };
@@ -48,8 +49,8 @@ class StretchMarch {
     StopTest stop;
     long steps = 0;
 
-    // Steps within which neither the stage can end nor |z| reach zero. v_n grows by at most (2 + mu_s mu_b) h
-    // a step, |z| falls by at most (5 + 5/2 mu_s) mu_b h.
+    // Number of steps within which neither the phase can end nor |z| reach zero. In a step v_n grows by at most
+    // (2 + mu_s mu_b) h and |z| falls by at most (5 + 5/2 mu_s) mu_b h.
     long safe_steps() const {
         const int pressed = r.z < 0.0;
         const double mu_s = k.mu_s[pressed], growth = 2.0 * k.h + mu_s * k.mu_h, v = r.v_n;
@@ -70,7 +71,7 @@ class StretchMarch {
         const double Z0 = absolute(r.z), a0 = r.Ux[pressed], b0 = r.Uy[pressed];
         Stretch s{r.x, a0, Z0, b0, 0.0, 0.0};
         March::template march<kSign>(s, {k.h, k.mu_h, k.mu_h * k.mu_s[pressed], k.u_floor}, count);
-        // From the invariants of a stretch of M steps: the sums of q_y, of xi, of t.
+        // The sums of q_y, xi and t, from the invariants of a stretch of M steps.
         constexpr double kForQ = 1.0 / (1.0 - 1.25 * kSign);
         const double M = static_cast<double>(count), p = M * k.h;
         const double dx = s.x - r.x, da = s.a - a0, dZ = s.z - Z0, db = s.b - b0;
@@ -91,7 +92,7 @@ class StretchMarch {
     }
 };
 
-// A rung that marches its stretches by March.
+// A variant that marches its stretches by March.
 template <class March>
 struct InStretches {
     template <int kSign>

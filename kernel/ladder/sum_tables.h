@@ -1,7 +1,7 @@
-// Exact sums of polynomials over consecutive steps. A block has K steps, t = 0 .. K; a rate F is held by its
-// values at eight Gauss-Legendre nodes, as the polynomial of degree 7 through them. The sum over m < t of
-// F(m) is then a polynomial of degree 8 in t, the sum of those one of degree 9: no quadrature error, only
-// that of the interpolation.
+// Exact sums of polynomials over consecutive steps. A block has K steps, t = 0 .. K. A rate F is represented by its
+// values at eight Gauss-Legendre nodes, that is by the polynomial of degree 7 through them. The sum over m < t of
+// F(m) is then a polynomial of degree 8 in t, and the sum of these sums one of degree 9: there is no quadrature
+// error, only the error of the interpolation.
 #pragma once
 
 namespace carom::kernel {
@@ -14,17 +14,17 @@ constexpr double kGaussNodes[kNodes] = {
 
 struct alignas(64) SumTable {
     double at[kNodes];            // t of the nodes
-    double sums[kNodes][kNodes];  // [l][i]: what F(node l) adds to the sum at node i
-    double total[kNodes];         // ... to the sum over the block
-    double double_total[kNodes];  // ... to the sum over m < K of the sums at m
-    // Coefficients in theta of the sum (degree 8) and of the sum of sums (degree 9): of degrees 0 .. 7 by
-    // node, [l][k], of those above by degree, [k - 8][l].
+    double sums[kNodes][kNodes];  // [l][i]: the share of F(node l) in the sum at node i
+    double total[kNodes];         // [l]: its share in the sum over the block
+    double double_total[kNodes];  // [l]: its share in the sum over m < K of the sums at m
+    // Coefficients in theta of the sum (degree 8) and of the sum of sums (degree 9): of degrees 0 .. 7 by node,
+    // [l][k], and of higher degrees by degree, [k - 8][l].
     double once_low[kNodes][kNodes], once_high[1][kNodes];
     double twice_low[kNodes][kNodes], twice_high[2][kNodes];
     double steps;               // K
     double theta0, theta_step;  // theta = theta0 + theta_step t
-    double mode6[kNodes],
-        mode7[kNodes];  // the two highest Chebyshev modes of F: what the interpolation may still miss
+    // The two highest Chebyshev modes of F, which show how large the error of the interpolation is.
+    double mode6[kNodes], mode7[kNodes];
 };
 
 constexpr double evaluate(const double* a, int degree, double x) {
@@ -33,7 +33,7 @@ constexpr double evaluate(const double* a, int degree, double x) {
     return sum;
 }
 
-// The same with even and odd powers apart, which halves the chain.
+// The same with even and odd powers apart: two chains of half the length.
 template <int kDegree>
 double value(const double* a, double x) {
     constexpr int kEven = kDegree - kDegree % 2, kOdd = kDegree - 1 + kDegree % 2;
@@ -44,7 +44,7 @@ double value(const double* a, double x) {
     return even + x * odd;
 }
 
-// g with g(x + d) - g(x) = f(x) and g(start) = 0; f of degree `degree`, g one higher.
+// The polynomial g with g(x + d) - g(x) = f(x) and g(start) = 0. f has degree `degree`, g one more.
 constexpr void sum_polynomial(const double* f, int degree, double d, double start, double* g) {
     for (int i = degree; i >= 0; --i) {
         double rest = f[i], binomial = i + 1.0, power = d;

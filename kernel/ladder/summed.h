@@ -1,29 +1,30 @@
-// Past the march: its result without its steps. The Euler march is the sequence y(m+1) = y(m) + h f(y(m));
-// over a block of K steps the rates are a smooth function of m, so a polynomial through eight nodes holds
-// them all, and their sums over consecutive m are exact (sum_tables.h). The nodes are found by fixed-point
-// sweeps, eight lanes at once. It is the Euler sequence that is summed, not the continuous impact: step
-// count, last step and discretisation error are the march's own. Where rates are not smooth (a side that
-// flips, a slip near zero, a ball that starts rolling) exact steps are taken.
+// Past the march: its result without its steps. The explicit Euler march is the sequence y(m+1) = y(m) + h f(y(m)).
+// Over a block of K steps the rates are a smooth function of m: a polynomial through eight nodes represents them all,
+// and its sums over consecutive m are exact (sum_tables.h). The values at the nodes are found by fixed-point sweeps,
+// eight lanes at once. What is summed is the Euler sequence, not the continuous impact: step count, last step and
+// discretisation error are those of the march. Where the rates are not smooth (a change of the pressed side, a slip
+// near zero, a ball that starts rolling) exact steps are taken.
 #pragma once
 
 #include "ladder/reduced.h"
 #include "ladder/sum_tables.h"
-#include "ladder/vector8.h"
 #include "loop_marks.h"
+#include "simd.h"
 
 namespace carom::kernel {
 namespace {
 
-constexpr int kMostSweeps = 24;
-// Change of a node per sweep, and highest modes of the rates, both relative to the approach speed.
+using Eight = Pack<8>;
+
+constexpr int kMostBlockSweeps = 24;
+// Largest change of a node in the last sweep, and largest highest modes of the rates, both relative to the approach
+// speed.
 constexpr double kSweepTolerance = 5e-13, kModeTolerance = 2e-10;
-
-// What the modes may exceed that by after two sweeps: a block that will not do ends there.
+// After two sweeps the modes may exceed kModeTolerance by this factor; a block in which they are larger is given up.
 constexpr double kEarlySlack = 10.0;
-// Rounding of a sweep, summed over the nodes, relative to the slips.
+// Rounding error of a sweep, summed over the nodes, relative to the slips.
 constexpr double kSweepRounding = 4e-15;
-
-// How far the poles are kept, relative to the estimate.
+// Distance of the poles that a block keeps, relative to the estimate that the tolerance asks for.
 constexpr double kPoleMargin = 0.35;
 
 template <int kSign>
@@ -32,7 +33,7 @@ class SummedMarch {
     SummedMarch(const Reduced& start, const ReducedConstants& constants)
         : r(start), k(constants), scale(absolute(start.v_n)) {}
 
-    // The steps done, or -1. After `most_exact` exact steps it gives up, and `chatters` is set.
+    // Returns the number of steps, or -1. After `most_exact` exact steps it gives up and sets `chatters`.
     long run(long most_exact) {
         long patience = 1;
         while (stop.goes_on(r.v_n)) {
@@ -40,7 +41,7 @@ class SummedMarch {
             const FirstStep first = first_step();
             int level = widest(first);
             while (level >= 0 && !block(kSumTables[level], first)) --level;
-            // Exact steps, more of them the longer nothing smooth comes.
+            // Exact steps: more of them, the longer no block is smooth.
             if (level >= 0) {
                 patience = 1;
                 continue;
@@ -65,7 +66,8 @@ class SummedMarch {
     StopTest stop;
     long steps = 0;
 
-    // The reciprocal lengths and the rates at the state reached; `cloth`: that of the pressed ball takes part.
+    // The reciprocal lengths C and U and the rates at the present state. `cloth`: there is friction between the
+    // pressed ball and the cloth.
     struct FirstStep {
         int pressed;
         bool slips, turns, cloth, rolls;
@@ -78,7 +80,7 @@ class SummedMarch {
         f.size = absolute(r.z);
         const double c = square_root(r.x * r.x + r.z * r.z), mu_s = k.mu_s[f.pressed];
         const double a = r.Ux[f.pressed], b = r.Uy[f.pressed], u = square_root(a * a + b * b);
-        // A pressed ball that rolls: its slip gets a direction with the next step.
+        // The pressed ball rolls: its slip gets a direction in the next step.
         f.rolls = mu_s > 0.0 && !(u > k.u_floor);
         f.slips = !(c < kSlipCutoff);
         f.turns = f.slips && !(f.size < kSlipCutoff);
@@ -97,10 +99,10 @@ class SummedMarch {
         return f;
     }
 
-    // How smooth the direction of a vector is along a block of K steps from (a, b) at (da, db) a step: it has
-    // poles where the length vanishes, at complex t. With the path taken as straight these lie on the ellipse
-    // around the block of which the sum of half axes is rho, and modes fall as rho^-n. `amplitude` is what
-    // the direction can do to a result.
+    // How smooth the direction of a vector is along a block of K steps, from (a, b) with (da, db) a step. The
+    // direction has poles where the length vanishes, at complex t. If the path is taken as straight, they lie on the
+    // ellipse around the block whose half axes have the sum rho, and the modes fall as rho^-n. `amplitude` is the
+    // largest effect of the direction on a result.
     struct Path {
         double a, b, da, db, needed;  // needed: (rho + 1/rho) / 2
     };
@@ -113,7 +115,8 @@ class SummedMarch {
         return {a, b, da, db, 0.5 * (rho + 1.0 / rho)};
     }
 
-    // To a tenth, which is enough here: the exponent divided, the fraction taken as it falls.
+    // With an error of a tenth, which is enough here: the bits of a double, divided by 8, are close to those of the
+    // root.
     static double eighth_root(double x) {
         long bits;
         __builtin_memcpy(&bits, &x, sizeof x);
@@ -122,14 +125,14 @@ class SummedMarch {
         return x;
     }
 
-    // The slack of every block size at once; >= 0 where smooth.
-    static Vector8 slack(const Path& p, Vector8 K) {
-        const Vector8 a = p.a + K * p.da, b = p.b + K * p.db;
-        return square_root(p.a * p.a + p.b * p.b) + square_root8(a * a + b * b) -
+    // The slack of every block size at once: >= 0 where the direction is smooth enough.
+    static Eight slack(const Path& p, Eight K) {
+        const Eight a = p.a + K * p.da, b = p.b + K * p.db;
+        return square_root(p.a * p.a + p.b * p.b) + square_root(a * a + b * b) -
                K * (p.needed * square_root(p.da * p.da + p.db * p.db));
     }
 
-    // The widest block that promises to be resolved; -1 if none does.
+    // The widest block that eight nodes probably resolve; -1 if there is none.
     int widest(const FirstStep& f) const {
         constexpr double kKappa = 1.0 - 2.5 * kSign;
         if (f.rolls) return -1;
@@ -142,54 +145,54 @@ class SummedMarch {
                                 kLargestBlock * mu_s * f.t);
         alignas(64) constexpr double kSizes[kNodes] = {16, 32, 64, 128, 256, 512, 1024, 1024};
         alignas(64) double of_slip[kNodes], of_cloth[kNodes];
-        const Vector8 slip_slack = slack(slip, load8(kSizes)), cloth_slack = slack(cloth, load8(kSizes));
-        store8(of_slip, slip_slack);
-        store8(of_cloth, cloth_slack);
+        const Eight slip_slack = slack(slip, load<8>(kSizes)), cloth_slack = slack(cloth, load<8>(kSizes));
+        store(of_slip, slip_slack);
+        store(of_cloth, cloth_slack);
         while (level >= 0 && !(of_slip[level] >= 0.0 && of_cloth[level] >= 0.0)) --level;
         return level;
     }
 
     struct Rates {
-        Vector8 xi, t, q_x, q_y;
+        Eight xi, t, q_x, q_y;
     };
 
-    // y is near 1/sqrt(square): e = 1 - square y^2, and the series of (1 - e)^(-1/2). 35/128 e^4 is left, for
-    // the next sweep.
-    static Vector8 refined(Vector8 y, Vector8 e) { return y + (y * e) * (0.5 + e * (0.375 + e * 0.3125)); }
+    // y is close to 1/sqrt(square), with e = 1 - square y^2; corrected by the series of (1 - e)^(-1/2). The error
+    // 35/128 e^4 is left to the next sweep.
+    static Eight refined(Eight y, Eight e) { return y + (y * e) * (0.5 + e * (0.375 + e * 0.3125)); }
 
-    // C and U: reciprocal lengths of the sweep before, then of this one.
-    Rates rates(Vector8 x, Vector8 z, Vector8 a, Vector8 b, double mu_s, Vector8& C, Vector8& U) const {
-        const Vector8 c2 = x * x + z * z, u2 = a * a + b * b;
-        const Vector8 e_c = 1.0 - c2 * (C * C), e_u = 1.0 - u2 * (U * U);
-        if (all_below8(e_c * e_c + e_u * e_u, 0.01)) [[likely]] {
+    // C and U are the reciprocal lengths of the sweep before on entry and of this sweep on return.
+    Rates rates(Eight x, Eight z, Eight a, Eight b, double mu_s, Eight& C, Eight& U) const {
+        const Eight c2 = x * x + z * z, u2 = a * a + b * b;
+        const Eight e_c = 1.0 - c2 * (C * C), e_u = 1.0 - u2 * (U * U);
+        if (all_below(e_c * e_c + e_u * e_u, 0.01)) [[likely]] {
             C = refined(C, e_c);
             U = refined(U, e_u);
         } else {
-            C = 1.0 / square_root8(c2);
-            U = 1.0 / square_root8(u2);
+            C = 1.0 / square_root(c2);
+            U = 1.0 / square_root(u2);
         }
-        const Vector8 A = k.mu_h * C;
-        const Vector8 t = A * z;
-        const Vector8 B = t * (mu_s * U);
+        const Eight A = k.mu_h * C;
+        const Eight t = A * z;
+        const Eight B = t * (mu_s * U);
         return {A * x, t, B * a, B * b};
     }
 
-    // start + the columns weighted by F.
-    static Vector8 combined(const double (&columns)[kNodes][kNodes], Vector8 start, Vector8 F) {
-        // Through memory: loads broadcast for nothing, lanes moved in registers do not.
+    // start plus the columns weighted by F.
+    static Eight combined(const double (&columns)[kNodes][kNodes], Eight start, Eight F) {
+        // Through memory: a load broadcasts a number at no cost, a move between lanes of registers does not.
         alignas(64) double at_node[kNodes];
-        store8(at_node, F);
-        Vector8 even = start + at_node[0] * load8(columns[0]), odd = at_node[1] * load8(columns[1]);
+        store(at_node, F);
+        Eight even = start + at_node[0] * load<8>(columns[0]), odd = at_node[1] * load<8>(columns[1]);
 #pragma GCC unroll 8
         for (int l = 2; l < kNodes; l += 2) {
-            even = even + at_node[l] * load8(columns[l]);
-            odd = odd + at_node[l + 1] * load8(columns[l + 1]);
+            even = even + at_node[l] * load<8>(columns[l]);
+            odd = odd + at_node[l + 1] * load<8>(columns[l + 1]);
         }
         return even + odd;
     }
 
-    static double total(const double* weights, Vector8 F) {
-        return sum8(load8(weights) * F);
+    static double total(const double* weights, Eight F) {
+        return sum(load<8>(weights) * F);
     }
 
     bool block(const SumTable& table, const FirstStep& first) {
@@ -198,34 +201,34 @@ class SummedMarch {
         Rates f{};
         if (!first.slips) return advance(table, f, pressed);
         const double mu_s = first.cloth ? k.mu_s[pressed] : 0.0, z0 = first.turns ? first.size : 0.0;
-        // Where the cloth does nothing its slip must only not be zero.
+        // Without friction of the cloth its slip may be any number but zero.
         const double a0 = first.cloth ? r.Ux[pressed] : 1e3 * scale, b0 = first.cloth ? r.Uy[pressed] : 0.0;
-        const Vector8 at = load8(table.at), push = k.h * at;
-        // First guess: the rates of the first step throughout.
-        Vector8 x = r.x + at * (first.q_x - 7.0 * first.xi);
-        Vector8 z = z0 + at * (2.5 * first.q_y - 5.0 * first.t);
-        Vector8 a = a0 + at * (first.xi - kKappa * first.q_x);
-        Vector8 b = b0 + push - at * ((2.5 * kSign) * first.t + kKappa * first.q_y);
-        Vector8 C = all8(first.C), U = all8(first.cloth ? first.U : 1.0 / a0);
-        // Below the second no sweep gets, of rounding.
+        const Eight at = load<8>(table.at), push = k.h * at;
+        // First guess: the rates of the first step at all nodes.
+        Eight x = r.x + at * (first.q_x - 7.0 * first.xi);
+        Eight z = z0 + at * (2.5 * first.q_y - 5.0 * first.t);
+        Eight a = a0 + at * (first.xi - kKappa * first.q_x);
+        Eight b = b0 + push - at * ((2.5 * kSign) * first.t + kKappa * first.q_y);
+        Eight C = broadcast<8>(first.C), U = broadcast<8>(first.cloth ? first.U : 1.0 / a0);
+        // The second term is the rounding error, below which no sweep comes.
         const double settled =
             kSweepTolerance * scale + kSweepRounding * (absolute(r.x) + z0 + absolute(a0) + absolute(b0));
         double change_before = scale;
         for (int sweep = 1;; ++sweep) {
             CAROM_LOOP_BEGIN("summed sweep");
             const Rates now = rates(x, z, a, b, mu_s, C, U);
-            const Vector8 next_x = combined(table.sums, all8(r.x), now.q_x - 7.0 * now.xi);
-            const Vector8 next_z = combined(table.sums, all8(z0), 2.5 * now.q_y - 5.0 * now.t);
-            const Vector8 next_a = combined(table.sums, all8(a0), now.xi - kKappa * now.q_x);
-            const Vector8 next_b = combined(table.sums, b0 + push, (-2.5 * kSign) * now.t - kKappa * now.q_y);
-            const double change = sum8(absolute8(next_x - x) + absolute8(next_z - z) + absolute8(next_a - a) +
-                                       absolute8(next_b - b));
+            const Eight next_x = combined(table.sums, broadcast<8>(r.x), now.q_x - 7.0 * now.xi);
+            const Eight next_z = combined(table.sums, broadcast<8>(z0), 2.5 * now.q_y - 5.0 * now.t);
+            const Eight next_a = combined(table.sums, broadcast<8>(a0), now.xi - kKappa * now.q_x);
+            const Eight next_b = combined(table.sums, b0 + push, (-2.5 * kSign) * now.t - kKappa * now.q_y);
+            const double change = sum(absolute(next_x - x) + absolute(next_z - z) + absolute(next_a - a) +
+                                      absolute(next_b - b));
             x = next_x;
             z = next_z;
             a = next_a;
             b = next_b;
             CAROM_LOOP_END("summed sweep");
-            // Sweeps converge ever faster: the next would change less than this by the same factor at least.
+            // Sweeps converge faster and faster: the next change would be smaller by at least the same factor.
             const double left =
                 sweep > 2 && change < change_before ? change * change / change_before : change;
             if (left <= settled) {
@@ -234,23 +237,23 @@ class SummedMarch {
             }
             change_before = change;
             if (sweep == 2 && !resolved(table, now, kEarlySlack)) return false;
-            if (!(sweep < kMostSweeps)) return false;
+            if (!(sweep < kMostBlockSweeps)) return false;
         }
         if (!resolved(table, f, 1.0)) return false;
-        // A side that flips within the block shows at a node or at its end.
-        if (!all_below8(-1.0 * z, 0x1p-1074)) return false;
+        // A change of the pressed side within the block shows at a node or at the end of the block.
+        if (!all_below(-1.0 * z, 0x1p-1074)) return false;
         if (z0 + total(table.total, 2.5 * f.q_y - 5.0 * f.t) < 0.0) return false;
         return advance(table, f, pressed);
     }
 
     bool resolved(const SumTable& table, const Rates& f, double slack) const {
-        // One mixture of the four stands for all: uneven weights, so that no symmetry cancels.
-        const Vector8 F = (f.xi + 0.7 * f.t) + (1.3 * f.q_x - 0.6 * f.q_y);
+        // One mixture of the four rates represents them all; its weights are uneven, so that no symmetry cancels.
+        const Eight F = (f.xi + 0.7 * f.t) + (1.3 * f.q_x - 0.6 * f.q_y);
         const double missing = absolute(total(table.mode7, F)) + 0.1 * absolute(total(table.mode6, F));
         return missing * table.steps <= slack * kModeTolerance * scale;
     }
 
-    // Takes the block, or as much of it as the march needs.
+    // Advances by the block, or by as many of its steps as the march needs.
     bool advance(const SumTable& table, const Rates& f, int pressed) {
         const double K = table.steps, h = k.h, v0 = r.v_n;
         const double Q = total(table.total, f.q_y), v_end = v0 + 2.0 * h * K - Q;
@@ -259,14 +262,14 @@ class SummedMarch {
         const bool crosses = stop.compressing && v_end > 0.0;
         if (!crosses && (stop.compressing || stop.W + h * V < stop.W_f)) {
             stop.W += stop.compressing ? -h * V : h * V;
-            take(f, load8(table.total), K, pressed);
+            take(f, load<8>(table.total), K, pressed);
             steps += static_cast<long>(K);
             return true;
         }
         const Profile at(table, f.q_y, v0, h);
         double from = 0.0, v_from = v0, V_from = 0.0;
         if (stop.compressing) {
-            // The first step after which v_n > 0: a secant, as v grows almost evenly, and one correction.
+            // The first step after which v_n > 0: a secant, because v grows almost linearly, and one correction.
             const double slope = (v_end - v0) / K;
             double t = -v0 / slope;
             t -= at.v(t) / slope;
@@ -287,7 +290,7 @@ class SummedMarch {
         }
         double last = K;
         if (stop.W + h * (V - V_from) >= stop.W_f) {
-            // The first step with the work asked for: v taken as even, and one Newton step.
+            // The first step with the work to reach: v is taken as linear, and one Newton step follows.
             const double missing = (stop.W_f - stop.W) / h, growth = (v_end - v_from) / (K - from + 1e-300);
             const double root = square_root(v_from * v_from + 2.0 * growth * missing);
             double t = from + 2.0 * missing / (root + v_from);
@@ -304,15 +307,15 @@ class SummedMarch {
         } else {
             stop.W += h * (V - V_from);
         }
-        // What each node's rate adds to the sum at `last`.
+        // The share of the rate of each node in the sum at `last`.
         const double theta = table.theta0 + table.theta_step * last;
         alignas(64) double powers[kNodes], weight[kNodes];
         powers[0] = 1.0;
         for (int i = 1; i < kNodes; ++i) powers[i] = powers[i - 1] * theta;
         const double highest = powers[kNodes - 1] * theta;
         for (int l = 0; l < kNodes; ++l)
-            weight[l] = total(table.once_low[l], load8(powers)) + highest * table.once_high[0][l];
-        const Vector8 weights = load8(weight);
+            weight[l] = total(table.once_low[l], load<8>(powers)) + highest * table.once_high[0][l];
+        const Eight weights = load<8>(weight);
         take(f, weights, last, pressed);
         steps += static_cast<long>(last);
         return true;
@@ -321,11 +324,11 @@ class SummedMarch {
     // v_n and the sum of (v(m) + v(m+1)) / 2 over the steps of a block, at any t.
     class Profile {
       public:
-        Profile(const SumTable& t, Vector8 q_y, double start, double step) : table(t), v0(start), h(step) {
-            const Vector8 once_low = combined(table.once_low, all8(0.0), q_y);
-            const Vector8 twice_low = combined(table.twice_low, all8(0.0), q_y);
-            store8(once, once_low);
-            store8(twice, twice_low);
+        Profile(const SumTable& t, Eight q_y, double start, double step) : table(t), v0(start), h(step) {
+            const Eight once_low = combined(table.once_low, broadcast<8>(0.0), q_y);
+            const Eight twice_low = combined(table.twice_low, broadcast<8>(0.0), q_y);
+            store(once, once_low);
+            store(twice, twice_low);
             once[kNodes] = total(table.once_high[0], q_y);
             twice[kNodes] = total(table.twice_high[0], q_y);
             twice[kNodes + 1] = total(table.twice_high[1], q_y);
@@ -341,12 +344,12 @@ class SummedMarch {
         double theta(double t) const { return table.theta0 + table.theta_step * t; }
     };
 
-    // t cut to a whole number of 1 .. K.
+    // t rounded down to a whole number in 1 .. K.
     static double whole(double t, double K) {
         return t > 1.0 ? (t < K ? static_cast<double>(static_cast<long>(t)) : K) : 1.0;
     }
 
-    // The first whole t in 1 .. K at which `reached` holds, near the guess; -1 if none is.
+    // The first whole t in 1 .. K at which `reached` holds, searched from the guess; -1 if there is none.
     template <class Reached>
     static double first_whole(double guess, double K, Reached reached) {
         double t = whole(guess, K);
@@ -355,10 +358,11 @@ class SummedMarch {
         return reached(t) ? t : -1.0;
     }
 
-    void take(const Rates& f, Vector8 weights, double count, int pressed) {
+    // Adds the weighted sums of the rates over `count` steps to the state.
+    void take(const Rates& f, Eight weights, double count, int pressed) {
         constexpr double kKappa = 1.0 - 2.5 * kSign;
-        const double xi = sum8(weights * f.xi), t = sum8(weights * f.t);
-        const double q_x = sum8(weights * f.q_x), q_y = sum8(weights * f.q_y), p = count * k.h;
+        const double xi = sum(weights * f.xi), t = sum(weights * f.t);
+        const double q_x = sum(weights * f.q_x), q_y = sum(weights * f.q_y), p = count * k.h;
         const int other = 1 - pressed;
         const double size = absolute(r.z) - 5.0 * t + 2.5 * q_y;
         r.x += q_x - 7.0 * xi;
@@ -378,7 +382,7 @@ struct Summed {
         return march<kSign>(s, p, n, kMarchStepLimit * static_cast<long>(n), chatters);
     }
 
-    // Gives up after `most_exact` exact steps and says so; the state is then as it came.
+    // After `most_exact` exact steps it gives up, sets `chatters` and leaves the state as it was.
     template <int kSign>
     static long march(FrameState& s, const ImpactParams& p, int n, long most_exact, bool& chatters) {
         const ReducedConstants k = reduced_constants<kSign>(s, p, n);

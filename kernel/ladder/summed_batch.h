@@ -1,5 +1,8 @@
-// A batch, impact by impact by the summed march. Where rounding decides the result the published march's own
-// arithmetic takes over, eight lanes at once: its bits, so that a result depends on its own impact alone.
+// A batch, impact by impact by the summed march. Where rounding decides the result (glancing impacts, chatter near
+// stick) the arithmetic of the published march takes over, eight lanes at once and with the same bits. A result
+// depends on its own impact alone and has the same bits on every instruction set; it has the step count of the
+// published march, or one beside it where the last step sits on a rounding tie, and differs from it by at most about
+// 1e-10 of the approach speed at N up to 1000 (docs/kernel.md).
 #pragma once
 
 #include "ladder/batch_arrays.h"
@@ -9,12 +12,12 @@
 namespace carom::kernel {
 namespace {
 
-// Speed of a ball or its surface, in approach speeds, above which the published arithmetic is kept. The
-// baseline rounds each velocity by up to half an ulp a step, often to one side: up to 2^-53 N of the fastest
-// in all, 1.1e-10 of the approach speed from here on at N = 1000 (seen: 0.76e-10). No other order of sums
-// could follow it closer. Beyond N = 1000 it grows with N.
+// Speed of a ball or of its surface, in approach speeds, above which the published arithmetic is kept. The baseline
+// rounds each velocity by up to half an ulp a step, often to one side: in all by up to 2^-53 N of the fastest speed,
+// which from here on is 1.1e-10 of the approach speed at N = 1000 (measured: 0.76e-10). No other order of the sums
+// could follow it more closely. Beyond N = 1000 the difference grows with N.
 constexpr double kFastestSurface = 1000.0;
-// Exact steps after which an impact chatters (near stick, where the sign of a slip may be rounding).
+// Exact steps after which an impact counts as chattering (near stick, where rounding may decide the sign of a slip).
 constexpr long kChatter = 40;
 
 inline bool rounding_decides(const FrameState& s, double R) {
@@ -96,7 +99,7 @@ class SummedBatch {
     }
 };
 
-inline void summed_in_batch(const ImpactBatch& batch, int n, const ImpactBatchResult& result) {
+inline void summed_batch(const ImpactBatch& batch, int n, const ImpactBatchResult& result) noexcept {
     if (batch.params.cloth_slip == ClothSlip::kAsPublished)
         SummedBatch<+1>(batch, n, result).run();
     else

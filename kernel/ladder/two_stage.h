@@ -1,4 +1,4 @@
-// Section 3.3: the double loop, compression and restitution apart, around the baseline's arithmetic.
+// Section 3.3: one loop for compression and one for restitution around the arithmetic of the baseline.
 #pragma once
 
 #include "ladder/branch_hints.h"

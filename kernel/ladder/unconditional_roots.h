@@ -1,8 +1,8 @@
-// Section 3.3, inverted branches with unconditional roots: both cloth slips and all three roots are taken
-// before anything is asked, so that the roots of the cloth do not wait for the side.
+// Section 3.3, inverted branches with unconditional roots: both cloth slips and all three roots are computed before
+// the first branch, so that the roots of the cloth slips do not wait for the decision which ball is pressed.
 #pragma once
 
-#include "ladder/driver.h"
+#include "ladder/step_loops.h"
 
 namespace carom::kernel {
 namespace {

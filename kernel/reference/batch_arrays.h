@@ -1,4 +1,4 @@
-// Impacts as the structure of arrays that collide_balls_batch takes, and back.
+// Converts impacts into the structure of arrays that the batch kernels take, and their results back.
 #pragma once
 
 #include <vector>

@@ -1,8 +1,8 @@
-// Seeded random impacts between equal balls: what tests, the benchmark and the accuracy report draw from.
+// Seeded random impacts between equal balls, for the tests, the benchmark and the accuracy report.
 //
-// The generator is written down here (splitmix64), so that a seed means the same impacts with every standard
-// library. Mix of classes: generic sliding, ball 2 at rest, ball 1 rolling, both rolling, glancing, strong
-// spin (to 200 rad/s); mu_b 0.01..0.12, mu_s 0.1..0.4 per ball, e_b 0.8..1, approach speed about 0.05..8 m/s.
+// The impacts are a mixture of six kinds: both balls sliding, ball 2 at rest, ball 1 rolling, both rolling, glancing,
+// strong spin (up to 200 rad/s). The ranges are 0.01..0.12 for mu_b, 0.1..0.4 for mu_s of each ball, 0.8..1 for e_b,
+// and about 0.05..8 m/s for the approach speed.
 #pragma once
 
 #include <cmath>
@@ -16,6 +16,9 @@ namespace carom::reference {
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;  // in radians
 
+/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014), so that a seed means the same impacts with every standard library.
+/// The engine has a SplitMix64 of its own for racks: the kernel may not include the engine, and its public headers,
+/// which both may include, are no place for random numbers.
 class Generator {
   public:
     explicit Generator(std::uint64_t seed) : state_(seed) {}
@@ -57,7 +60,8 @@ inline Impact random_impact(Generator& rng) {
     b2.r[0] = b1.r[0] + 2.0 * p.R * nx;
     b2.r[1] = b1.r[1] + 2.0 * p.R * ny;
     const double speed = 0.05 * std::pow(160.0, rng.uniform());
-    // Cut angle: the direction of ball 1 against the line of centres; glancing hits leave 1e-3..0.1 of the speed.
+    // The cut angle, from the line of centres to the direction of ball 1. In a glancing impact the approach speed is
+    // 1e-3..0.1 of the speed.
     const double cut =
         kind == 4 ? std::acos(std::pow(10.0, rng.uniform(-3.0, -1.0))) : rng.uniform(-1.4, 1.4);
     const double c = std::cos(cut), s = std::sin(cut);
@@ -99,7 +103,7 @@ inline Impact random_impact(Generator& rng) {
             break;  // both sliding
     }
     const double approach = (b1.v[0] - b2.v[0]) * nx + (b1.v[1] - b2.v[1]) * ny;
-    if (approach < 0.0) {  // make them approach
+    if (approach < 0.0) {  // turn the velocities, so that the balls approach
         for (int k = 0; k < 2; ++k) {
             b1.v[k] = -b1.v[k];
             b2.v[k] = -b2.v[k];

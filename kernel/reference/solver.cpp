@@ -1,12 +1,14 @@
-// Legend: s = (x, z) slip between the balls, u = (a, b) slip of the active ball (the one pressed on the cloth),
-// both as in docs/kernel_tolerance.md; q the independent variable, dp = |s| |u| dq with p the normal impulse
-// per mass. In q neither the end of the slip (|s| -> 0) nor a cloth slip that passes close to zero is singular:
+// s = (x, z) is the slip between the balls and u = (a, b) the slip of the active ball, which is pressed on the cloth,
+// as in docs/kernel_tolerance.md. The independent variable is q, with dp = |s| |u| dq for the normal impulse p per
+// unit mass: in q neither the end of the slip (|s| -> 0) nor a cloth slip that passes close to zero is singular. With
+// ' = d/dq,
 //
 //     x' = -7 mu_b x |u| + mu_s mu_b z a             a' = mu_b x |u| - kappa mu_s mu_b z a
-//     z' = -5 mu_b z |u| + 5/2 mu_s mu_b z b         b' = |s| |u| - 5/2 sigma mu_b z |u| - kappa mu_s mu_b z
-//     b p' = |s| |u|    v' = 2 p' - mu_s mu_b z b    W' = v p'    D' = mu_b |s| p' + mu_s mu_b z |u|^2
+//     z' = -5 mu_b z |u| + 5/2 mu_s mu_b z b         b' = |s| |u| - 5/2 sigma mu_b z |u| - kappa mu_s mu_b z b
+//     p' = |s| |u|    v' = 2 p' - mu_s mu_b z b      W' = v p'    D' = mu_b |s| p' + mu_s mu_b z |u|^2
 //
-// and the friction impulses are sums of their own: X' = mu_b x |u|, Z' = mu_b z |u|, A' = mu_s mu_b z a, B' likewise.
+// and the friction impulses are integrals of their own: X' = mu_b x |u|, Z' = mu_b z |u|, A' = mu_s mu_b z a,
+// B' = mu_s mu_b z b.
 #include "reference/solver.h"
 
 #include <algorithm>
@@ -34,7 +36,7 @@ Real product(const Real* f, const Real* g, int k) {
     return sum;
 }
 
-// Coefficient k of the square root of `square`, from those below it.
+// Coefficient k of the square root of `square`, from the coefficients below it.
 Real root_term(const Real* square, const Real* root, int k) {
     if (k == 0) return std::sqrt(square[0]);
     Real sum = square[k];
@@ -90,7 +92,7 @@ Real step_length(const Expansion& e, Real tolerance) {
     return Real(0.8) * shortest;
 }
 
-// Where a variable that rises over [0, q] takes the value `target`, by bisection safeguarding Newton.
+// Where a variable that rises over [0, q] takes the value `target`, by bisection.
 Real crossing(const Expansion& e, int variable, Real target, Real q) {
     Real lo = 0, hi = q;
     for (int i = 0; i < 70; ++i) {
@@ -104,7 +106,7 @@ void advance(const Expansion& e, Real q, Real (&state)[kVariables]) {
     for (int i = 0; i < kVariables; ++i) state[i] = value(e, i, q);
 }
 
-// A cloth slip of zero has no direction: it takes that of the force that will move it.
+// A cloth slip of zero has no direction: it gets the direction of the force that will move it.
 void leave_zero_slip(const Constants& m, Real (&state)[kVariables], Real size) {
     const Real s = std::hypot(state[kX], state[kZ]);
     const Real fx = m.mu_b * state[kX] / s, fz = 1 - Real(2.5) * m.sigma * m.mu_b * state[kZ] / s;
@@ -113,7 +115,7 @@ void leave_zero_slip(const Constants& m, Real (&state)[kVariables], Real size) {
     state[kB] = f > 0 ? size * fz / f : 0;
 }
 
-// Normal impulse without friction until the end of the impact.
+// The rest of the impact after friction has ended.
 void finish_frictionless(Real work_left, bool compressing, Real e_b, Real (&state)[kVariables], Real& W_c) {
     if (compressing) {
         state[kP] += -state[kV] / 2;

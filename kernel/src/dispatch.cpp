@@ -1,21 +1,93 @@
-// Run-time choice of the instruction set, and the texts of the statuses.
+// The choice of the instruction set at run time, and the texts of what a kernel reports.
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <initializer_list>
 
-#include "carom/kernel/contact_phase.h"
-#include "carom/kernel/isa.h"
-#include "carom/kernel/march.h"
+#include "kernel_set.h"
 
 namespace carom::kernel {
+namespace {
 
-void march_scalar(const Ball&, const Ball&, const ImpactParams&, int, ImpactResult&) noexcept;
-void march_v3(const Ball&, const Ball&, const ImpactParams&, int, ImpactResult&) noexcept;
-void march_v4(const Ball&, const Ball&, const ImpactParams&, int, ImpactResult&) noexcept;
+struct Entry {
+    Isa isa;
+    const char* name;
+    const KernelSet& kernels;
+};
+// In the order of Isa.
+const Entry kEntries[] = {{Isa::kScalar, "scalar", scalar::kKernels},
+                          {Isa::kV3, "v3", v3::kKernels},
+                          {Isa::kV4, "v4", v4::kKernels}};
 
-long contact_phase_scalar(const ContactPhase&, const HertzLaw&, double, double, double) noexcept;
-long contact_phase_v3(const ContactPhase&, const HertzLaw&, double, double, double) noexcept;
-long contact_phase_v4(const ContactPhase&, const HertzLaw&, double, double, double) noexcept;
+const Entry& entry(Isa isa) {
+    return kEntries[static_cast<int>(isa)];
+}
+
+// By feature, because clang 14 does not know the names of the levels. What is not asked for here comes with these on
+// every processor.
+bool has_v3() {
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+           __builtin_cpu_supports("bmi2");
+}
+
+bool has_v4() {
+    return has_v3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl");
+}
+
+}  // namespace
+
+const char* name(Isa isa) noexcept {
+    return entry(isa).name;
+}
+
+bool parse_isa(const char* text, Isa& isa) noexcept {
+    for (const Entry& e : kEntries) {
+        if (std::strcmp(text, e.name) != 0) continue;
+        isa = e.isa;
+        return true;
+    }
+    return false;
+}
+
+bool available(Isa isa) noexcept {
+    return isa == Isa::kScalar || (isa == Isa::kV3 ? has_v3() : has_v4());
+}
+
+Isa best_isa() noexcept {
+    return has_v4() ? Isa::kV4 : has_v3() ? Isa::kV3 : Isa::kScalar;
+}
+
+const char* available_isas() noexcept {
+    return has_v4() ? "scalar, v3, v4" : has_v3() ? "scalar, v3" : "scalar";
+}
+
+IsaChoice isa_from_environment() noexcept {
+    IsaChoice choice{best_isa(), ""};
+    const char* text = std::getenv("CAROM_ISA");
+    if (text == nullptr || *text == '\0') return choice;
+    const bool known = parse_isa(text, choice.isa);
+    if (known && available(choice.isa)) return choice;
+    std::snprintf(choice.problem, sizeof choice.problem, "CAROM_ISA=%.40s: %s; available here: %s", text,
+                  known ? "this processor cannot run it" : "no such instruction set", available_isas());
+    return choice;
+}
+
+MarchFunction march_function(Isa isa) noexcept {
+    return entry(isa).kernels.march;
+}
+
+ToleranceFunction tolerance_function(Isa isa) noexcept {
+    return entry(isa).kernels.tolerance;
+}
+
+ToleranceBatchFunction tolerance_batch_function(Isa isa) noexcept {
+    return entry(isa).kernels.tolerance_batch;
+}
+
+ContactPhaseFunction contact_phase_function(Isa isa) noexcept {
+    return entry(isa).kernels.contact_phase;
+}
 
 const char* describe(ImpactStatus status) noexcept {
     switch (status) {
@@ -32,88 +104,24 @@ const char* describe(ImpactStatus status) noexcept {
     return "unknown status";
 }
 
-const char* name(Isa isa) noexcept {
-    switch (isa) {
-        case Isa::kScalar:
-            return "scalar";
-        case Isa::kV3:
-            return "v3";
-        case Isa::kV4:
-            return "v4";
+const char* name(ToleranceMethod method) noexcept {
+    switch (method) {
+        case ToleranceMethod::kNone:
+            return "";
+        case ToleranceMethod::kClosedFrictionless:
+            return "closed_frictionless";
+        case ToleranceMethod::kClosedGearing:
+            return "closed_gearing";
+        case ToleranceMethod::kClosedStick:
+            return "closed_stick";
+        case ToleranceMethod::kCollocation4:
+            return "collocation_4";
+        case ToleranceMethod::kCollocation8:
+            return "collocation_8";
+        case ToleranceMethod::kAdaptive:
+            return "adaptive";
     }
     return "unknown";
-}
-
-bool parse_isa(const char* text, Isa& isa) noexcept {
-    for (Isa candidate : {Isa::kScalar, Isa::kV3, Isa::kV4}) {
-        if (std::strcmp(text, name(candidate)) == 0) {
-            isa = candidate;
-            return true;
-        }
-    }
-    return false;
-}
-
-// By feature, because clang 14 does not know the names of the
-// levels; what they leave out comes with these on every CPU.
-static bool has_v3() {
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
-           __builtin_cpu_supports("bmi2");
-}
-
-bool available(Isa isa) noexcept {
-    switch (isa) {
-        case Isa::kScalar:
-            return true;
-        case Isa::kV3:
-            return has_v3();
-        case Isa::kV4:
-            return has_v3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-                   __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
-                   __builtin_cpu_supports("avx512vl");
-    }
-    return false;
-}
-
-Isa best_isa() noexcept {
-    for (Isa isa : {Isa::kV4, Isa::kV3}) {
-        if (available(isa)) return isa;
-    }
-    return Isa::kScalar;
-}
-
-IsaChoice isa_from_environment(Isa& isa) noexcept {
-    const char* text = std::getenv("CAROM_ISA");
-    if (text == nullptr || *text == '\0') {
-        isa = best_isa();
-        return IsaChoice::kOk;
-    }
-    if (!parse_isa(text, isa)) return IsaChoice::kUnknownName;
-    return available(isa) ? IsaChoice::kOk : IsaChoice::kUnavailable;
-}
-
-MarchFunction march_function(Isa isa) noexcept {
-    switch (isa) {
-        case Isa::kScalar:
-            return march_scalar;
-        case Isa::kV3:
-            return march_v3;
-        case Isa::kV4:
-            return march_v4;
-    }
-    return march_scalar;
-}
-
-ContactPhaseFunction contact_phase_function(Isa isa) noexcept {
-    switch (isa) {
-        case Isa::kScalar:
-            return contact_phase_scalar;
-        case Isa::kV3:
-            return contact_phase_v3;
-        case Isa::kV4:
-            return contact_phase_v4;
-    }
-    return contact_phase_scalar;
 }
 
 }  // namespace carom::kernel

@@ -1,13 +1,13 @@
-// The contact frame that all kernels share: validation, projection, back-projection. Included by files
-// built for one instruction set: no std templates here, everything inline in an anonymous namespace.
+// The contact frame of an impact, which all kernels share: validation, projection, back-projection.
 #pragma once
 
 #include "carom/kernel/impact.h"
+#include "numbers.h"
 
 namespace carom::kernel {
 namespace {
 
-// Velocities in the contact frame of the 2014 paper: y from centre 1 to centre 2, x = y x z, z up.
+// Velocities in the contact frame of the 2014 paper: y points from centre 1 to centre 2, z points up, x = y x z.
 struct FrameState {
     double v1x, v1y, w1x, w1y, w1z;
     double v2x, v2y, w2x, w2y, w2z;
@@ -17,15 +17,12 @@ struct Frame {
     double yx, yy;  // the horizontal unit vector y in table coordinates; x is (yy, -yx)
 };
 
-// Heights that differ by more than this share of the distance are no planar impact.
+// Largest difference of the heights of the centres, as a share of their distance: the impact is planar. It leaves
+// room for the rounding of heights that are meant to be equal.
 constexpr double kHeightTolerance = 1e-9;
-// An approach speed below this share of the largest velocity
-// underflows in the work integral: no event (hard case H30).
+// Smallest approach speed [m/s], and smallest share of the sum of all speeds: below it the square of the approach
+// speed underflows in the work integral, and the balls count as not approaching (hard case H30).
 constexpr double kSlowestApproach = 1e-150;
-
-inline bool finite(double x) {
-    return x - x == 0.0;
-}
 
 inline bool finite(const double (&a)[3]) {
     return finite(a[0]) && finite(a[1]) && finite(a[2]);
@@ -35,18 +32,10 @@ inline bool finite(const Ball& ball) {
     return finite(ball.r) && finite(ball.v) && finite(ball.w);
 }
 
-inline double square_root(double x) {
-    return __builtin_sqrt(x);
-}
-
-inline double absolute(double x) {
-    return x < 0.0 ? -x : x;
-}
-
-// A cloth slip up to here is rounding of a rolling ball's v and R w: it has no direction, and the step takes
-// no cloth friction, as at a slip of exactly zero. With the consistent sign only: there rolling balls meet u
-// = 0 as a rule, and two correct marches would otherwise differ by a whole step's friction. The published
-// code has no such floor.
+// A cloth slip [m/s] up to this floor is rounding noise of the v and R w of a rolling ball. It has no direction, and
+// the step takes no cloth friction, as at a slip of exactly zero. The floor exists for the consistent sign only:
+// there rolling balls meet u = 0 as a rule, and two correct marches would otherwise differ by the friction of a whole
+// step. The published code has no such floor.
 inline double cloth_slip_floor(const FrameState& s, double R, int sign) {
     if (sign > 0) return 0.0;
     const double v = absolute(s.v1x) + absolute(s.v1y) + absolute(s.v2x) + absolute(s.v2y);
@@ -54,7 +43,7 @@ inline double cloth_slip_floor(const FrameState& s, double R, int sign) {
     return 8.0 * 0x1p-52 * (v + R * w);
 }
 
-// The result of "nothing happens": velocities as they came.
+// The result where nothing is computed: the velocities before the impact.
 inline void copy_input(const Ball& b1, const Ball& b2, ImpactStatus status, ImpactResult& out) {
     for (int k = 0; k < 3; ++k) {
         out.v1[k] = b1.v[k];
@@ -73,8 +62,8 @@ inline bool in_range(const ImpactParams& p) {
            p.e_b <= 1.0;
 }
 
-// Checks the input and projects it. Anything but kOk means that
-// there is nothing to compute; `out` then holds the input.
+// Checks the input and projects it into the contact frame. Any status but kOk means that there is nothing to compute;
+// `out` then holds the input.
 inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactParams& p, Frame& f,
                                 FrameState& s, ImpactResult& out) {
     ImpactStatus status = ImpactStatus::kOk;
@@ -108,7 +97,7 @@ inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactPara
     const double scale = absolute(s.v1x) + absolute(s.v1y) + absolute(s.v2x) + absolute(s.v2y) +
                          p.R * (absolute(s.w1x) + absolute(s.w1y) + absolute(s.w1z) + absolute(s.w2x) +
                                 absolute(s.w2y) + absolute(s.w2z));
-    // Sums that overflow are as little a state as a NaN.
+    // Speeds whose squares overflow are a bad state, as a NaN is.
     if (!finite(scale) || !finite(scale * scale))
         status = ImpactStatus::kBadState;
     else if (!(approach > 0.0) || approach < kSlowestApproach || approach < kSlowestApproach * scale)
@@ -117,7 +106,7 @@ inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactPara
     return status;
 }
 
-// Back to table coordinates; vertical velocities pass through.
+// Projects back to table coordinates. Vertical velocities stay as they were.
 inline void leave_frame(const Ball& b1, const Ball& b2, const Frame& f, const FrameState& s, long steps,
                         ImpactResult& out) {
     out.v1[0] = s.v1x * f.yy + s.v1y * f.yx;

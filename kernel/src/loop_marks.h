@@ -1,4 +1,5 @@
-// Comments in the assembly around a loop's body, for tools/measure/mca_kernel.py; nothing in a build.
+// Comments in the assembly around the body of a loop, by which tools/measure/mca_kernel.py finds it. A build defines
+// no CAROM_LOOP_MARKS, and the marks are empty.
 #pragma once
 
 #ifdef CAROM_LOOP_MARKS

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "ladder/rungs.h"
 #include "reference/random_impacts.h"
 #include "support/impact_cases.h"
 #include "support/rung_runner.h"
@@ -143,7 +144,7 @@ void make_glancing(Impact& impact, double share) {
     for (int k = 0; k < 2; ++k) b1.v[k] += (share * fastest - approach) * n[k];
 }
 
-// The difference that collide_balls_batch promises, on many impacts, half of them glancing.
+// The difference that the summed batch promises, on many impacts, half of them glancing.
 TEST(Ladder, BatchesFollowTheBaseline) {
     std::vector<Impact> impacts = random_impacts(21, 4000);
     Generator rng(22);
@@ -168,21 +169,6 @@ TEST(Ladder, BatchesFollowTheBaseline) {
     }
 }
 
-// What programs call; the ladder's batch is what all tests above are about.
-TEST(Ladder, TheBatchThatProgramsCallIsTheSummedOne) {
-    const std::vector<Impact> impacts = random_impacts(23, 50);
-    int compared = 0;
-    for (const Rung& rung : ladder()) {
-        if (std::string(rung.name) != "summed batch" || !available(rung.isa)) continue;
-        ++compared;
-        const auto expected = run_rung(rung, impacts, 300, ClothSlip::kConsistent);
-        BatchArrays arrays(impacts, ClothSlip::kConsistent);
-        collide_balls_batch(rung.isa, arrays.batch, 300, arrays.result);
-        for (std::size_t i = 0; i < impacts.size(); ++i) EXPECT_TRUE(same_bits(arrays.get(i), expected[i]));
-    }
-    EXPECT_GT(compared, 0);
-}
-
 TEST(Ladder, TheTableIsWhole) {
     std::set<std::pair<std::string, Isa>> seen;
     std::map<std::string, std::string> sections;
@@ -202,6 +188,7 @@ TEST(Ladder, TheTableIsWhole) {
         EXPECT_TRUE(seen.count({needed, Isa::kV3})) << needed;
     for (const char* needed : {"8 lanes", "2x8 lanes"}) EXPECT_TRUE(seen.count({needed, Isa::kV4})) << needed;
     EXPECT_STREQ(baseline_rung().name, "baseline");
+    EXPECT_EQ(ladder().size(), scalar::kRungs.size() + v3::kRungs.size() + v4::kRungs.size());
 }
 
 // The one lossy rung says by how much: the difference is there, and within the bound of the table.

@@ -77,7 +77,7 @@ std::string report(const Plan& plan) {
                    name(scene.physics.ball_ball), name(scene.physics.cushion),
                    name(scene.physics.jaw_model()), name(scene.physics.clusters), plan.gravity);
     fmt::format_to(line, "kernel    {}\n", kernel_line(plan));
-    fmt::format_to(line, "isa       {} (available: {})\n", kernel::name(plan.isa), available_isas());
+    fmt::format_to(line, "isa       {} (available: {})\n", kernel::name(plan.isa), kernel::available_isas());
     fmt::format_to(line, "search    balls {}, table {}{}\n", name(plan.ball_search), name(plan.table_search),
                    plan.box_travel < std::numeric_limits<double>::infinity()
                        ? fmt::format("; boxes cover {} ball radii at first", plan.box_travel)

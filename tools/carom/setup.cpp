@@ -5,7 +5,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 
 #include "console.h"
@@ -21,30 +20,9 @@ constexpr double kFastestFps = 1e6;
 
 }  // namespace
 
-std::string available_isas() {
-    std::string names;
-    for (const kernel::Isa isa : {kernel::Isa::kScalar, kernel::Isa::kV3, kernel::Isa::kV4}) {
-        if (!kernel::available(isa)) continue;
-        if (!names.empty()) names += ", ";
-        names += kernel::name(isa);
-    }
-    return names;
-}
-
 kernel::Isa chosen_isa() {
-    kernel::Isa isa = kernel::Isa::kScalar;
-    const char* text = std::getenv("CAROM_ISA");
-    switch (kernel::isa_from_environment(isa)) {
-        case kernel::IsaChoice::kOk:
-            break;
-        case kernel::IsaChoice::kUnknownName:
-            throw UsageError(fmt::format("CAROM_ISA={}: no such instruction set; available here: {}",
-                                         text != nullptr ? text : "", available_isas()));
-        case kernel::IsaChoice::kUnavailable:
-            throw UsageError(
-                fmt::format("CAROM_ISA={}: this processor or this build cannot run it; available here: {}",
-                            text != nullptr ? text : "", available_isas()));
-    }
+    const auto [isa, problem] = kernel::isa_from_environment();
+    if (*problem != '\0') throw UsageError(problem);
     return isa;
 }
 

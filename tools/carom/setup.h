@@ -14,9 +14,6 @@ namespace carom::tools {
 /// CAROM_ISA, or the widest one. @throws UsageError for an unknown or unavailable name
 kernel::Isa chosen_isa();
 
-/// "scalar, v3": what this machine and build can run.
-std::string available_isas();
-
 /// Reads a scene and plans it; its warnings go to standard error. @throws SceneError
 Plan plan_scene(const std::string& path);
 

@@ -17,7 +17,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SINGLE = """#include "ladder/{header}"
+SINGLE = """#include "{header}"
 namespace carom::kernel {{
 void probe(const Ball& a, const Ball& b, const ImpactParams& p, int n, ImpactResult& out) noexcept {{
     Frame frame; FrameState s;
@@ -32,19 +32,23 @@ void probe(const ImpactBatch& b, int n, const ImpactBatchResult& r) noexcept {{
     BatchMarch<{arguments}, -1>(b, n, r).run();
 }} }}
 """
-PLAIN = """#define CAROM_MARCH_NAME probe
-#include "march/impl.h"
+PLAIN = """#include "march/drive.h"
+#include "march/loop.h"
+namespace carom::kernel {
+void probe(const Ball& a, const Ball& b, const ImpactParams& p, int n, ImpactResult& out) noexcept {
+    drive<PublishedMarch>(a, b, p, n, out);
+} }
 """
 SHORTEST = 15  # instructions; the shortest whole body, of the packed march, has 17
 # name, source, level, steps of one impact that one pass of the loop does
 LOOPS = [
     ("baseline", PLAIN, "v3", 1),
-    ("packed", SINGLE.format(header="packed_march.h", loop="PackedExact"), "v3", 1),
-    ("extrapolated seed", SINGLE.format(header="packed_march.h", loop="ExtrapolatedSeed"), "v3", 1),
-    ("pipelined", SINGLE.format(header="packed_march.h", loop="Pipelined"), "v3", 1),
-    ("carried roots", SINGLE.format(header="packed_march.h", loop="CarriedRoots"), "v3", 1),
-    ("decoupled roots", SINGLE.format(header="decoupled.h", loop="Decoupled"), "v3", 3),
-    ("summed, one sweep", SINGLE.format(header="summed.h", loop="Summed"), "v3", 1),
+    ("packed", SINGLE.format(header="ladder/packed_march.h", loop="PackedExact"), "v3", 1),
+    ("extrapolated seed", SINGLE.format(header="ladder/packed_march.h", loop="ExtrapolatedSeed"), "v3", 1),
+    ("pipelined", SINGLE.format(header="ladder/packed_march.h", loop="Pipelined"), "v3", 1),
+    ("carried roots", SINGLE.format(header="ladder/packed_march.h", loop="CarriedRoots"), "v3", 1),
+    ("decoupled roots", SINGLE.format(header="ladder/decoupled.h", loop="Decoupled"), "v3", 3),
+    ("summed, one sweep", SINGLE.format(header="ladder/summed.h", loop="Summed"), "v3", 1),
     ("four lanes", BATCH.format(arguments="4, 1, LaneExactRoots, SeparateArithmetic"), "v3", 4),
     ("four lanes carried", BATCH.format(arguments="4, 1, LaneCarriedRoots, FusedArithmetic"), "v3", 4),
     ("2x4 lanes", BATCH.format(arguments="4, 2, LaneCarriedRoots, FusedArithmetic"), "v3", 8),

@@ -24,8 +24,8 @@ int main(int argc, char** argv) {
     const std::string name = argv[1];
     const long number = std::strtol(argv[2], nullptr, 10),
                third = argc > 3 ? std::strtol(argv[3], nullptr, 10) : 1;
-    kernel::Isa isa{};
-    if (kernel::isa_from_environment(isa) != kernel::IsaChoice::kOk) return 2;
+    const auto [isa, problem] = kernel::isa_from_environment();
+    if (*problem != '\0') return 2;
     const bool gas = name == "gas" || name == "gas compliant";
     Scene scene = gas ? tools::gas_scene(static_cast<int>(number), third, 1)
                       : tools::shot_scene(name, static_cast<std::uint64_t>(number));

@@ -1,8 +1,8 @@
-// The published march in double, equation by equation: the loop.
+// The loop of the published march: explicit Euler in the normal impulse, equation by equation in double.
 //
-// Legend (2014 paper): P normal impulse, dP its step, dP1 and dP2 the horizontal and vertical friction
-// impulse between the balls, dPix, dPiy, dPjx, dPjy the cloth's on ball i (1) and j (2), C = 5/(2 m R), W
-// work of the normal impulse.
+// The names are those of the 2014 paper: P is the normal impulse and dP its step; dP1 and dP2 are the horizontal and
+// the vertical friction impulse between the balls; dPix, dPiy, dPjx and dPjy are the impulses of the cloth on ball i
+// (1) and ball j (2); C = 5/(2 m R); W is the work of the normal impulse.
 #pragma once
 
 #include "carom/kernel/march.h"
@@ -12,11 +12,14 @@
 namespace carom::kernel {
 namespace {
 
-// Slip below this (m/s) gives no friction, as in the published code. It is an absolute speed and so breaks
-// the homogeneity of the model at extremely low speed (hard case H26); parity is the point of this file.
-constexpr double kPublishedSlipCutoff = 1e-16;
+// [m/s] A slip below this gives no friction, as in the published code. It is an absolute speed and so breaks the
+// homogeneity of the model at extremely low speed (hard case H26), but this file has to agree with the published
+// code.
+constexpr double kSlipCutoff = 1e-16;
 
-template <int kSign>  // +1: u = (v_x + R w_y, v_y - R w_x), as published; -1: consistent
+// kSign is +1 for the cloth slip u = (v_x + R w_y, v_y - R w_x), as published, and -1 for the consistent sign.
+// Returns the number of steps, or -1 at the bound on steps.
+template <int kSign>
 long march_loop(FrameState& s, const ImpactParams& p, int n) {
     const double R = p.R, m = p.m;
     const double dP = 0.5 * (1.0 + p.e_b) * m * absolute(s.v2y - s.v1y) / n;
@@ -30,23 +33,23 @@ long march_loop(FrameState& s, const ImpactParams& p, int n) {
     while (v_n < 0.0 || compressing || W < W_f) {
         CAROM_LOOP_BEGIN("baseline");
         if (++steps > limit) return -1;
-        // Slip at the contact, between the balls, and at the cloth.
+        // The slip at the contact between the balls; below, u is the slip of the pressed ball on the cloth.
         const double c_x = s.v1x - s.v2x - R * (s.w1z + s.w2z);
         const double c_z = R * (s.w1x + s.w2x);
         const double c = square_root(c_x * c_x + c_z * c_z);
         double dP1 = 0.0, dP2 = 0.0, dPix = 0.0, dPiy = 0.0, dPjx = 0.0, dPjy = 0.0;
-        if (!(c < kPublishedSlipCutoff)) {
+        if (!(c < kSlipCutoff)) {
             dP1 = -p.mu_b * dP * c_x / c;
-            if (!(absolute(c_z) < kPublishedSlipCutoff)) {
+            if (!(absolute(c_z) < kSlipCutoff)) {
                 dP2 = -p.mu_b * dP * c_z / c;
-                if (dP2 > 0.0) {  // ball 2 is pressed down
+                if (dP2 > 0.0) {  // ball 2 is pressed on the cloth
                     const double u_x = s.v2x + kSign * R * s.w2y, u_y = s.v2y - kSign * R * s.w2x;
                     const double u = square_root(u_x * u_x + u_y * u_y);
                     if (u > u_floor) {
                         dPjx = -p.mu_s2 * (u_x / u) * dP2;
                         dPjy = -p.mu_s2 * (u_y / u) * dP2;
                     }
-                } else {  // ball 1 is
+                } else {  // ball 1 is pressed on the cloth
                     const double u_x = s.v1x + kSign * R * s.w1y, u_y = s.v1y - kSign * R * s.w1x;
                     const double u = square_root(u_x * u_x + u_y * u_y);
                     if (u > u_floor) {
@@ -66,7 +69,7 @@ long march_loop(FrameState& s, const ImpactParams& p, int n) {
         s.w2x += C * (dP2 + dPjy);
         s.w2y += C * -dPjx;
         s.w2z += C * -dP1;
-        // Work by the trapezoidal rule; compression ends with the first step that separates.
+        // Work by the trapezoidal rule. Compression ends with the first step after which the balls separate.
         const double v_n_before = v_n;
         v_n = s.v2y - s.v1y;
         W += 0.5 * dP * absolute(v_n_before + v_n);
@@ -78,6 +81,13 @@ long march_loop(FrameState& s, const ImpactParams& p, int n) {
     }
     return steps;
 }
+
+struct PublishedMarch {
+    template <int kSign>
+    static long loop(FrameState& s, const ImpactParams& p, int n) {
+        return march_loop<kSign>(s, p, n);
+    }
+};
 
 }  // namespace
 }  // namespace carom::kernel

@@ -1,15 +1,16 @@
-// The lanes of a batch by tolerance: the arrays of a batch in one row, impacts loaded into lanes and posed
-// there, solved by one collocation, and written back. tolerance_batch_impl.h says which impacts go this way.
+// The lanes of a batch by tolerance: impacts are loaded into lanes, brought into their canonical form there, solved
+// by one collocation, and written back. tolerance.cpp says which impacts are solved this way.
 #pragma once
 
 #include "carom/kernel/batch.h"
-#include "tolerance/impl.h"
+#include "tolerance/single.h"
 #include "tolerance/wide.h"
 
 namespace carom::kernel {
 namespace {
 
-// The arrays of a batch in one row, so that lanes can be copied without a formula for each.
+// The arrays of a batch by number, so that loops can go over them. A vector has three numbers, one for each
+// component.
 enum Input {
     kR1 = 0,
     kV1 = 3,
@@ -25,7 +26,7 @@ enum Input {
     kEB,
     kInputs
 };
-constexpr int kOutputs = 12;
+enum Output { kOutV1 = 0, kOutW1 = 3, kOutV2 = 6, kOutW2 = 9, kOutputs = 12 };
 
 struct BatchView {
     const double* in[kInputs];
@@ -45,10 +46,10 @@ inline BatchView view(const ImpactBatch& batch, const ImpactBatchResult& result)
         v.in[kR2 + k] = batch.ball2.r[k];
         v.in[kV2 + k] = batch.ball2.v[k];
         v.in[kW2 + k] = batch.ball2.w[k];
-        v.out[k] = result.ball1.v[k];
-        v.out[3 + k] = result.ball1.w[k];
-        v.out[6 + k] = result.ball2.v[k];
-        v.out[9 + k] = result.ball2.w[k];
+        v.out[kOutV1 + k] = result.ball1.v[k];
+        v.out[kOutW1 + k] = result.ball1.w[k];
+        v.out[kOutV2 + k] = result.ball2.v[k];
+        v.out[kOutW2 + k] = result.ball2.w[k];
     }
     v.in[kRadius] = batch.params.R;
     v.in[kMass] = batch.params.m;
@@ -63,7 +64,7 @@ inline BatchView view(const ImpactBatch& batch, const ImpactBatchResult& result)
     return v;
 }
 
-// What a block of lanes leaves: results, and which lanes have one or are worth a try with more nodes.
+// The results of a block of lanes: which lanes are a proper impact, which are solved, and which more nodes may solve.
 struct BlockResult {
     Wide out[kOutputs];
     Wide sweeps;
@@ -74,13 +75,13 @@ struct WideFrame {
     Wide yx, yy, x1, y1, wx1, wy1, wz1, x2, y2, wx2, wy2, wz2;
 };
 
-// enter_frame in lanes; a lane that it would turn away is not in the mask.
+// As enter_frame(). A lane whose status would not be kOk is not in the mask.
 CAROM_INLINE WideMask wide_enter(const Wide (&in)[kInputs], WideFrame& f) {
     Wide wrong = {};
-    // 0, or a NaN where an input is not finite.
+    // This sum is 0, or a NaN where an input is not finite.
     for (int i = 0; i < kInputs; ++i) wrong += in[i] - in[i];  // NOLINT(misc-redundant-expression): see above
     const Wide dx = in[kR2] - in[kR1], dy = in[kR2 + 1] - in[kR1 + 1], dz = in[kR2 + 2] - in[kR1 + 2];
-    const Wide d = wide_root(dx * dx + dy * dy);
+    const Wide d = square_root(dx * dx + dy * dy);
     f.yx = dx / d;
     f.yy = dy / d;
     f.x1 = in[kV1] * f.yy - in[kV1 + 1] * f.yx;
@@ -95,33 +96,35 @@ CAROM_INLINE WideMask wide_enter(const Wide (&in)[kInputs], WideFrame& f) {
     f.wz2 = in[kW2 + 2];
     const Wide approach = f.y1 - f.y2;
     const Wide scale =
-        ((magnitude(f.x1) + magnitude(f.y1)) + (magnitude(f.x2) + magnitude(f.y2))) +
-        in[kRadius] * ((magnitude(f.wx1) + magnitude(f.wy1)) + (magnitude(f.wz1) + magnitude(f.wx2)) +
-                       (magnitude(f.wy2) + magnitude(f.wz2)));
-    // Lanes of an extreme range of speeds go to the single kernel, which knows where an impact ends to be one.
-    return (wrong == 0.0) & (d > 0.0) & (magnitude(dz) <= kHeightTolerance * d) & (in[kRadius] > 1e-100) &
+        ((absolute(f.x1) + absolute(f.y1)) + (absolute(f.x2) + absolute(f.y2))) +
+        in[kRadius] * ((absolute(f.wx1) + absolute(f.wy1)) + (absolute(f.wz1) + absolute(f.wx2)) +
+                       (absolute(f.wy2) + absolute(f.wz2)));
+    // Impacts with an extreme range of speeds are left to the single kernel, which tells whether they are impacts at
+    // all.
+    return (wrong == 0.0) & (d > 0.0) & (absolute(dz) <= kHeightTolerance * d) & (in[kRadius] > 1e-100) &
            (in[kMass] > 0.0) & (in[kMuS1] >= 0.0) & (in[kMuS2] >= 0.0) & (in[kMuB] > 0.0) &
            (in[kMuS1] <= kLargestFriction) & (in[kMuS2] <= kLargestFriction) &
            (in[kMuB] <= kLargestFriction) & (in[kEB] >= 0.0) & (in[kEB] <= 1.0) & (approach > 1e-100) &
            (scale < 1e100) & (approach > 1e-12 * scale);
 }
 
+// As ellipse().
 CAROM_INLINE Wide wide_ellipse(Wide sum_of_axes) {
-    const Wide S = choose(sum_of_axes > 2.0, sum_of_axes, wide(2.0));
-    return 0.5 * (S + wide_root(S * S - 4.0));
+    const Wide S = select(sum_of_axes > 2.0, sum_of_axes, broadcast<kWidth>(2.0));
+    return 0.5 * (S + square_root(S * S - 4.0));
 }
 
-// Impacts in their canonical form, scaled by the approach speed.
+// As Problem: impacts in their canonical form, scaled by the approach speed.
 struct WidePose {
     WideFrame f;
     WideModel m;
     WideStart start;
     Wide n;                      // approach speed
-    WideMask second, from_rest;  // ball 2 is pressed on the cloth; its cloth slip is zero
+    WideMask second, from_rest;  // ball 2 is pressed on the cloth; the cloth slip is zero
     WideMask good;               // an impact between balls with slip between them
 };
 
-// As enter_frame and pose().
+// As enter_frame() and pose().
 CAROM_INLINE void wide_pose(const Wide (&in)[kInputs], ClothSlip cloth_slip, double tolerance, WidePose& q) {
     const WideMask entered = wide_enter(in, q.f);
     const WideFrame& f = q.f;
@@ -129,55 +132,55 @@ CAROM_INLINE void wide_pose(const Wide (&in)[kInputs], ClothSlip cloth_slip, dou
     const Wide x = f.x1 - f.x2 - R * (f.wz1 + f.wz2), z = R * (f.wx1 + f.wx2);
     const WideMask second = z < 0.0;
     const bool published = cloth_slip == ClothSlip::kAsPublished;
-    const Wide vx = choose(second, f.x2, -f.x1), vy = choose(second, f.y2, -f.y1);
-    const Wide wx = R * choose(second, f.wx2, -f.wx1), wy = R * choose(second, f.wy2, -f.wy1);
+    const Wide vx = select(second, f.x2, -f.x1), vy = select(second, f.y2, -f.y1);
+    const Wide wx = R * select(second, f.wx2, -f.wx1), wy = R * select(second, f.wy2, -f.wy1);
     const Wide a = published ? vx + wy : vx - wy, b = published ? vy - wx : vy + wx;
-    const Wide noise = kSlipNoise * ((magnitude(vx) + magnitude(wy)) + (magnitude(vy) + magnitude(wx)));
-    const Wide slight = choose(noise > (0.01 * tolerance) * n, noise, (0.01 * tolerance) * n);
+    const Wide noise = kSlipNoise * ((absolute(vx) + absolute(wy)) + (absolute(vy) + absolute(wx)));
+    const Wide slight = select(noise > (0.01 * tolerance) * n, noise, (0.01 * tolerance) * n);
     q.from_rest = a * a + b * b <= slight * slight;
     q.m.mu_b = in[kMuB];
-    q.m.mu_s = choose(second, in[kMuS2], in[kMuS1]);
+    q.m.mu_s = select(second, in[kMuS2], in[kMuS1]);
     q.m.e_b = in[kEB];
     q.m.sigma = published ? 2.5 : -2.5;
     q.m.kappa = published ? -1.5 : 3.5;
     q.start.x = x * scale;
-    q.start.z = magnitude(z) * scale;
-    q.start.a = choose(q.from_rest, wide(0.0), a * scale);
-    q.start.b = choose(q.from_rest, wide(0.0), b * scale);
+    q.start.z = absolute(z) * scale;
+    q.start.a = select(q.from_rest, broadcast<kWidth>(0.0), a * scale);
+    q.start.b = select(q.from_rest, broadcast<kWidth>(0.0), b * scale);
     q.n = n;
     q.second = second;
     q.good = entered & (q.start.z > 0.0);
 }
 
-// As apply() and leave_frame.
+// As apply() and leave_frame().
 CAROM_INLINE void wide_apply(const Wide (&in)[kInputs], const WidePose& q, const WideResult& t,
                              BlockResult& block) {
     const WideFrame& f = q.f;
     const Wide n = q.n, R = in[kRadius];
     const WideMask second = q.second;
-    const Wide p = n * t.p, xi = n * t.xi, down = n * t.zeta, zeta = choose(second, down, -down);
+    const Wide p = n * t.p, xi = n * t.xi, down = n * t.zeta, zeta = select(second, down, -down);
     const Wide g_a = n * t.g_a, g_b = n * t.g_b, spin = 2.5 / R, none = {};
-    const Wide on_a1 = choose(second, none, g_a), on_b1 = choose(second, none, g_b);
-    const Wide on_a2 = choose(second, -g_a, none), on_b2 = choose(second, -g_b, none);
+    const Wide on_a1 = select(second, none, g_a), on_b1 = select(second, none, g_b);
+    const Wide on_a2 = select(second, -g_a, none), on_b2 = select(second, -g_b, none);
     const Wide x1 = f.x1 + (on_a1 - xi), y1 = f.y1 + (on_b1 - p), x2 = f.x2 + (on_a2 + xi),
                y2 = f.y2 + (on_b2 + p);
     const Wide wx1 = f.wx1 + spin * (zeta + on_b1), wy1 = f.wy1 - spin * on_a1, wz1 = f.wz1 + spin * xi;
     const Wide wx2 = f.wx2 + spin * (zeta + on_b2), wy2 = f.wy2 - spin * on_a2, wz2 = f.wz2 + spin * xi;
-    block.out[0] = x1 * f.yy + y1 * f.yx;
-    block.out[1] = y1 * f.yy - x1 * f.yx;
-    block.out[2] = in[kV1 + 2];
-    block.out[3] = wx1 * f.yy + wy1 * f.yx;
-    block.out[4] = wy1 * f.yy - wx1 * f.yx;
-    block.out[5] = wz1;
-    block.out[6] = x2 * f.yy + y2 * f.yx;
-    block.out[7] = y2 * f.yy - x2 * f.yx;
-    block.out[8] = in[kV2 + 2];
-    block.out[9] = wx2 * f.yy + wy2 * f.yx;
-    block.out[10] = wy2 * f.yy - wx2 * f.yx;
-    block.out[11] = wz2;
+    block.out[kOutV1] = x1 * f.yy + y1 * f.yx;
+    block.out[kOutV1 + 1] = y1 * f.yy - x1 * f.yx;
+    block.out[kOutV1 + 2] = in[kV1 + 2];
+    block.out[kOutW1] = wx1 * f.yy + wy1 * f.yx;
+    block.out[kOutW1 + 1] = wy1 * f.yy - wx1 * f.yx;
+    block.out[kOutW1 + 2] = wz1;
+    block.out[kOutV2] = x2 * f.yy + y2 * f.yx;
+    block.out[kOutV2 + 1] = y2 * f.yy - x2 * f.yx;
+    block.out[kOutV2 + 2] = in[kV2 + 2];
+    block.out[kOutW2] = wx2 * f.yy + wy2 * f.yx;
+    block.out[kOutW2 + 1] = wy2 * f.yy - wx2 * f.yx;
+    block.out[kOutW2 + 2] = wz2;
 }
 
-// The guards of solve(), and the collocation, in lanes.
+// As solve(), for impacts that one collocation of N nodes solves.
 template <int N>
 CAROM_INLINE void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, double tolerance,
                               BlockResult& block) {
@@ -187,14 +190,14 @@ CAROM_INLINE void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, d
     const WideStart& start = q.start;
     const bool published = cloth_slip == ClothSlip::kAsPublished;
     const Wide guess = 0.5 * (1.0 + m.e_b);
-    const Wide s = wide_root(start.x * start.x + start.z * start.z), cx = start.x / s, cz = start.z / s;
+    const Wide s = square_root(start.x * start.x + start.z * start.z), cx = start.x / s, cz = start.z / s;
     const Wide fall = m.mu_b * ((7.0 * cx * cx + 5.0 * cz * cz) + 2.7 * (m.mu_s * cz));
     const Wide rho_s = wide_ellipse(4.0 * s / (fall * guess) - 2.0);
     const Wide a1 = start.a + guess * (m.mu_b * cx), b1 = start.b + guess * (1.0 - m.sigma * (m.mu_b * cz));
-    const Wide u0 = wide_root(start.a * start.a + start.b * start.b), u1 = wide_root(a1 * a1 + b1 * b1);
+    const Wide u0 = square_root(start.a * start.a + start.b * start.b), u1 = square_root(a1 * a1 + b1 * b1);
     const Wide bend = guess * ((published ? 1.5 : 3.5) * (m.mu_s * m.mu_b));
     const Wide beside = wide_ellipse(2.0 * ((u0 + u1) - bend) / (guess * (1.0 + 2.5 * m.mu_b)));
-    const Wide rho_u = choose(q.from_rest, wide(1e30), beside);
+    const Wide rho_u = select(q.from_rest, broadcast<kWidth>(1e30), beside);
     const Wide s2 = rho_s * rho_s, u2 = rho_u * rho_u, s4 = s2 * s2, u4 = u2 * u2;
     const Wide size_s = kSizeS * m.mu_b, size_u = kSizeU * (m.mu_b * m.mu_s);
     block.resolvable =
@@ -210,19 +213,21 @@ CAROM_INLINE void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, d
     wide_apply(in, q, t, block);
 }
 
-CAROM_INLINE void write_lane(const BatchView& v, const BlockResult& block, int lane, long i,
+// Writes lane `from` of a block as result i of the batch.
+CAROM_INLINE void write_lane(const BatchView& v, const BlockResult& block, int from, long i,
                              ToleranceMethod method) {
-    for (int k = 0; k < kOutputs; ++k) v.out[k][i] = block.out[k][lane];
+    for (int k = 0; k < kOutputs; ++k) v.out[k][i] = lane(block.out[k], from);
     v.status[i] = ImpactStatus::kOk;
-    if (v.steps != nullptr) v.steps[i] = static_cast<long>(block.sweeps[lane]);
+    if (v.steps != nullptr) v.steps[i] = static_cast<long>(lane(block.sweeps, from));
     if (v.method != nullptr) v.method[i] = method;
 }
 
+// Loads the impacts index[0], ..., index[lanes - 1]; the first fills the lanes that are left.
 CAROM_INLINE void gather(const BatchView& v, const long* index, int lanes, Wide (&in)[kInputs]) {
     long from[kWidth];
-    for (int lane = 0; lane < kWidth; ++lane) from[lane] = index[lane < lanes ? lane : 0];
+    for (int i = 0; i < kWidth; ++i) from[i] = index[i < lanes ? i : 0];
     for (int k = 0; k < kInputs; ++k) {
-        for (int lane = 0; lane < kWidth; ++lane) in[k][lane] = v.in[k][from[lane]];
+        for (int i = 0; i < kWidth; ++i) set_lane(in[k], i, v.in[k][from[i]]);
     }
 }
 

@@ -1,16 +1,20 @@
-// Impacts of a batch that need stretches, posed and put side by side: each lane takes up the next as soon as
-// it is through with one.
+// Impacts of a batch that are solved in stretches. Each lane starts the next impact as soon as it has finished one.
 #pragma once
 
-#include "tolerance/impl.h"
+#include "tolerance/single.h"
 #include "tolerance/wide_adaptive.h"
 
 namespace carom::kernel {
 namespace {
 
-constexpr int kPool = 128;  // so many at once
+// Impacts that are solved in one go.
+constexpr int kPool = 128;
 
-// Posed impacts that need stretches, and what becomes of them.
+// From this tolerance on, lanes solve stretches of 4 nodes faster than stretches of 8: they are shorter, but a sweep
+// of 8 nodes costs more than twice as much and its values do not fit into the registers.
+constexpr double kLooseWide = 1e-7;
+
+// Impacts in their canonical form, and their results.
 struct HardPool {
     double x[kPool], z[kPool], a[kPool], b[kPool], mu_b[kPool], mu_s[kPool], e_b[kPool];
     double p[kPool], xi[kPool], zeta[kPool], g_a[kPool], g_b[kPool], sweeps[kPool];
@@ -37,14 +41,9 @@ CAROM_INLINE void keep_result(const Adaptive& run, int i, HardPool& pool) {
     pool.solved[i] = run.stretches < kMostStretches;
 }
 
-// From this tolerance on lanes do better with stretches of 4 nodes: they are shorter, but a sweep of 8 nodes
-// costs more than twice as much and spills its registers.
-constexpr double kLooseWide = 1e-7;
-
-// Impacts by stretches: a lane that is through with one takes up the next.
+// Solves the first `count` impacts of the pool.
 template <int N>
 inline void run_stretches(int count, double tolerance, ClothSlip cloth_slip, HardPool& pool) {
-    constexpr int K = N / 4;
     Adaptive runs[kWidth];
     int impact[kWidth];
     int next = 0;
@@ -52,58 +51,58 @@ inline void run_stretches(int count, double tolerance, ClothSlip cloth_slip, Har
     w.m.sigma = cloth_slip == ClothSlip::kAsPublished ? 2.5 : -2.5;
     w.m.kappa = cloth_slip == ClothSlip::kAsPublished ? -1.5 : 3.5;
     w.tolerance = tolerance;
-    for (int lane = 0; lane < kWidth; ++lane) impact[lane] = -1;
+    for (int i = 0; i < kWidth; ++i) impact[i] = -1;
     WideStretchResult result;
     for (;;) {
         bool busy = false;
-        for (int lane = 0; lane < kWidth; ++lane) {
-            Adaptive& run = runs[lane];
-            for (;;) {  // until the lane has a stretch to do or nothing is left for it
-                if (impact[lane] < 0) {
+        for (int i = 0; i < kWidth; ++i) {
+            Adaptive& run = runs[i];
+            for (;;) {  // until the lane has a stretch to solve or no impact is left
+                if (impact[i] < 0) {
                     if (next == count) break;
-                    begin_adaptive<K>(problem_of(pool, next, tolerance, cloth_slip), run);
-                    impact[lane] = next++;
-                    w.m.mu_b[lane] = run.m.mu_b;
-                    w.m.mu_s[lane] = run.m.mu_s;
+                    begin_adaptive<N>(problem_of(pool, next, tolerance, cloth_slip), run);
+                    impact[i] = next++;
+                    set_lane(w.m.mu_b, i, run.m.mu_b);
+                    set_lane(w.m.mu_s, i, run.m.mu_s);
                 }
                 if (run.stretches < kMostStretches && plan(run)) break;
                 finish(run);
-                keep_result(run, impact[lane], pool);
-                impact[lane] = -1;
+                keep_result(run, impact[i], pool);
+                impact[i] = -1;
             }
-            w.wanted[lane] = impact[lane] < 0 ? 0 : -1;
-            if (impact[lane] < 0) continue;
+            set_lane(w.wanted, i, impact[i] < 0 ? 0 : -1);
+            if (impact[i] < 0) continue;
             busy = true;
-            w.start.x[lane] = run.at.x;
-            w.start.z[lane] = run.at.z;
-            w.start.a[lane] = run.at.a;
-            w.start.b[lane] = run.at.b;
-            w.v[lane] = run.at.v;
-            w.h[lane] = run.asked;
-            w.work[lane] = run.left;
-            w.root_s[lane] = run.root_s;
-            w.to_zero[lane] = run.last && run.compressing ? -1 : 0;
-            w.to_work[lane] = run.last && !run.compressing ? -1 : 0;
-            w.exact[lane] = run.shrink < 1.0 ? -1 : 0;
+            set_lane(w.start.x, i, run.at.x);
+            set_lane(w.start.z, i, run.at.z);
+            set_lane(w.start.a, i, run.at.a);
+            set_lane(w.start.b, i, run.at.b);
+            set_lane(w.v, i, run.at.v);
+            set_lane(w.h, i, run.asked);
+            set_lane(w.work, i, run.left);
+            set_lane(w.root_s, i, run.root_s);
+            set_lane(w.to_zero, i, run.last && run.compressing ? -1 : 0);
+            set_lane(w.to_work, i, run.last && !run.compressing ? -1 : 0);
+            set_lane(w.exact, i, run.shrink < 1.0 ? -1 : 0);
         }
         if (!busy) break;
         wide_stretch<N>(w, result);
-        for (int lane = 0; lane < kWidth; ++lane) {
-            if (impact[lane] < 0) continue;
-            Adaptive& run = runs[lane];
+        for (int i = 0; i < kWidth; ++i) {
+            if (impact[i] < 0) continue;
+            Adaptive& run = runs[i];
             State at = run.at;
             Impulses total = run.total;
-            const Impulses add = {result.t.p[lane], result.t.xi[lane], result.t.zeta[lane],
-                                  result.t.g_a[lane], result.t.g_b[lane]};
+            const Impulses add = {lane(result.t.p, i), lane(result.t.xi, i), lane(result.t.zeta, i),
+                                  lane(result.t.g_a, i), lane(result.t.g_b, i)};
             add_stretch(run.m, add, at, total);
-            run.sweeps += static_cast<int>(result.t.sweeps[lane]);
-            const bool going = advance(run, result.t.converged[lane] != 0, at, total, result.done[lane]);
-            ++run.stretches;
-            if (going) continue;
-            --run.stretches;
+            run.sweeps += static_cast<int>(lane(result.t.sweeps, i));
+            if (advance(run, lane(result.t.converged, i) != 0, at, total, lane(result.done, i))) {
+                ++run.stretches;
+                continue;
+            }
             finish(run);
-            keep_result(run, impact[lane], pool);
-            impact[lane] = -1;
+            keep_result(run, impact[i], pool);
+            impact[i] = -1;
         }
     }
 }

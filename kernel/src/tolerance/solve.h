@@ -1,5 +1,5 @@
-// Which method solves an impact, and the intervals of those that
-// no single collocation solves. Legend: tolerance_collocation.h.
+// Which method solves an impact, and the stretches of an impact that no single collocation solves. Legend:
+// collocation.h.
 #pragma once
 
 #include "carom/kernel/tolerance.h"
@@ -8,13 +8,22 @@
 namespace carom::kernel {
 namespace {
 
+// Most stretches of one impact; only degenerate input comes near it.
+constexpr int kMostStretches = 2000;
+
+// The error of one collocation of 4 nodes is at most kSizeS mu_b rho_s^-6 + kSizeU mu_b mu_s rho_u^-5, and of one of
+// 8 nodes kSizeS mu_b rho_s^-12 + kSizeU/2 mu_b mu_s rho_u^-10, with a margin of 4 or more: fitted to random impacts.
+constexpr double kSizeS = 1.0, kSizeU = 1.2;
+
+// From this tolerance on, stretches of 4 nodes are hardly shorter than stretches of 8 and cost less.
+constexpr double kLooseStretches = 1e-4;
+
 // An impact in its canonical form, scaled by the approach speed.
 struct Problem {
     Model model;
     State start;
     double tolerance;
-    bool from_rest;  // the cloth slip is zero (rolling, at rest): it starts in the direction of the force on
-                     // it
+    bool from_rest;  // the cloth slip is zero (rolling, at rest): it starts in the direction of its force
 };
 
 struct Solution {
@@ -23,18 +32,18 @@ struct Solution {
     ToleranceMethod method;
 };
 
-// Ellipse of Bernstein about [0, 1]: how far a singularity stays away from a stretch. The error of N nodes
-// falls as rho^-2N.
-CAROM_INLINE double ellipse(double sum_of_axes) {  // rho + 1/rho -> rho
+// The Bernstein ellipse about [0, 1] on which a singularity lies: rho from rho + 1/rho. The error of N nodes falls as
+// rho^-2N.
+CAROM_INLINE double ellipse(double sum_of_axes) {
     return sum_of_axes > 2.0 ? 0.5 * (sum_of_axes + square_root(sum_of_axes * sum_of_axes - 4.0)) : 1.0;
 }
 
-// Rates at which the forces of the start change the slips.
+// The rates at which the forces of the start change the slips.
 struct Rates {
     double s, root_s;  // |s| and 1/|s|
-    // How fast |s| shrinks at most; the cloth force may add (1 + 2.5^2)^(1/2) mu_s mu_b z/|s|.
+    // The fastest that |s| can shrink; the cloth force adds up to (1 + 2.5^2)^(1/2) mu_s mu_b z/|s|.
     double fall;
-    double fx, fy;  // of the cloth slip
+    double fx, fy;  // the rates of the cloth slip
 };
 
 CAROM_INLINE Rates rates(const Model& m, const State& at) {
@@ -48,7 +57,7 @@ CAROM_INLINE Rates rates(const Model& m, const State& at) {
     return r;
 }
 
-// Frictionless from here to the end.
+// The rest of an impact whose friction has ended.
 CAROM_INLINE void finish_frictionless(double v, double work_left, bool compressing, double compressed,
                                       double e_b, Impulses& total) {
     if (compressing) {
@@ -59,8 +68,8 @@ CAROM_INLINE void finish_frictionless(double v, double work_left, bool compressi
     if (work_left > 0.0) total.p += 2.0 * work_left / (v + square_root(v * v + 4.0 * work_left));
 }
 
-// The rest of an impact whose slip is nearly gone: it ends with the direction of the cloth slip as it is, or,
-// where the impulse that is left does not suffice for that, in proportion.
+// The rest of an impact whose slip has nearly vanished. The slip ends while the cloth slip keeps its direction; where
+// the impulse that is left is too small to end it, the friction impulses are reduced in proportion.
 inline void finish_stuck(const Model& m, State at, double left, Impulses& total, double& v) {
     const double s = square_root(at.x * at.x + at.z * at.z), u = square_root(at.a * at.a + at.b * at.b);
     const double ga = u > 0.0 ? m.mu_s * (at.a / u) : 0.0, gb = u > 0.0 ? m.mu_s * (at.b / u) : 0.0;
@@ -74,19 +83,19 @@ inline void finish_stuck(const Model& m, State at, double left, Impulses& total,
     v -= gb * zeta;
 }
 
-// Smallest rho for which 4 K nodes keep an error of this size relative to the tolerance.
-template <int K>
+// Smallest rho for which N nodes keep an error that is this multiple of the tolerance for rho = 1.
+template <int N>
 inline double needed_ellipse(double excess) {
     double rho = 1.6;
     for (int i = 0; i < 32; ++i) {
         const double r2 = rho * rho, r6 = r2 * r2 * r2;
-        if ((K == 1 ? r6 : r6 * r6) >= excess) break;
+        if ((N == 4 ? r6 : r6 * r6) >= excess) break;
         rho *= 1.125;
     }
     return rho;
 }
 
-// A last resort that always makes progress: the forces of the start kept over a stretch too short to matter.
+// The last resort, which always makes progress: one explicit Euler step over a stretch that is too short to matter.
 inline void frozen_step(const Model& m, double h, State& at, Impulses& total, double& done) {
     const double s = square_root(at.x * at.x + at.z * at.z), u = square_root(at.a * at.a + at.b * at.b);
     const double xi = s > 0.0 ? m.mu_b * (at.x / s) * h : 0.0, zeta = s > 0.0 ? m.mu_b * (at.z / s) * h : 0.0;
@@ -105,8 +114,7 @@ inline void frozen_step(const Model& m, double h, State& at, Impulses& total, do
     total.g_b += gb;
 }
 
-constexpr int kMostStretches = 2000;
-
+// The goals of Stretch.
 struct Goals {
     double sweep, root;
 };
@@ -114,12 +122,12 @@ struct Goals {
 CAROM_INLINE Goals goals(const Model& m, double tolerance) {
     Goals g;
     g.sweep = 8.0 * tolerance * tolerance;
-    // A corrected root keeps (5/16) r^3 of its error r, and an error of a direction acts with 7 mu_b.
+    // A correction leaves (5/16) r^3 of the error r of a root, and an error of a direction acts with 7 mu_b.
     g.root = 0.05 * (tolerance * tolerance) / (m.mu_b * m.mu_b);
     return g;
 }
 
-// Whether the forces of a stretch are resolved by its nodes.
+// Whether the nodes of a stretch resolve its forces.
 CAROM_INLINE bool resolved(const Model& m, const Stretch& stretch, double tolerance) {
     const double s2 = stretch.s_top * stretch.s_top, g2 = stretch.g_top * stretch.g_top;
     return 7.0 * stretch.h * s2 <= 3.0 * tolerance * m.mu_b &&
@@ -127,8 +135,8 @@ CAROM_INLINE bool resolved(const Model& m, const Stretch& stretch, double tolera
                9.0 * (tolerance * tolerance) * (m.mu_b * m.mu_s);
 }
 
-// An impact on its way through stretches, each so long that |s| and |u| keep a share of their size over it.
-// `plan` chooses the next stretch, `advance` takes or refuses what a collocation made of it.
+// An impact that is solved in stretches, each so short that |s| and |u| keep a share of their size over it. `plan`
+// chooses the next stretch; `advance` accepts or rejects the result of its collocation.
 struct Adaptive {
     Model m;
     double tolerance, S, shortest;
@@ -137,18 +145,18 @@ struct Adaptive {
     double compressed, left, shrink;
     bool compressing, from_rest;
     int sweeps, stretches;
-    // The stretch that was planned.
+    // The planned stretch.
     double end, asked, root_s;
     bool last;
 };
 
-template <int K>
+template <int N>
 CAROM_INLINE void begin_adaptive(const Problem& problem, Adaptive& run) {
     run.m = problem.model;
     run.tolerance = problem.tolerance;
     run.at = problem.start;
     run.total = {0.0, 0.0, 0.0, 0.0, 0.0};
-    const double rho = needed_ellipse<K>(0.3 * run.m.mu_b / run.tolerance);
+    const double rho = needed_ellipse<N>(0.3 * run.m.mu_b / run.tolerance);
     run.S = rho + 1.0 / rho;
     run.shortest = 1e-3 * run.tolerance / run.m.mu_b;
     run.compressing = true;
@@ -158,7 +166,7 @@ CAROM_INLINE void begin_adaptive(const Problem& problem, Adaptive& run) {
     run.sweeps = run.stretches = 0;
 }
 
-// False if the slip is all but gone: then the impulses are complete but for what frictionless motion adds.
+// Returns false if the slip has all but vanished: then only the frictionless rest of the impact is missing.
 CAROM_INLINE bool plan(Adaptive& run) {
     const Model& m = run.m;
     State& at = run.at;
@@ -176,7 +184,7 @@ CAROM_INLINE bool plan(Adaptive& run) {
     const double S = run.S;
     double h = 4.0 * r.s / (r.fall * (S + 2.0));
     if (!run.from_rest) {
-        // The cloth force itself hastens or delays the closest approach of u to zero.
+        // The cloth force itself speeds up or slows down the approach of u to zero.
         const double drag = u > 0.0 ? m.kappa * (m.mu_s * (m.mu_b * (at.z * r.root_s))) / u : 0.0;
         const double fx = r.fx - drag * at.a, fy = r.fy - drag * at.b, f2 = fx * fx + fy * fy;
         const double along = -(at.a * fx + at.b * fy) / f2;
@@ -190,7 +198,7 @@ CAROM_INLINE bool plan(Adaptive& run) {
     return true;
 }
 
-// False if that was the last stretch. `done` is the work of the normal impulse over it.
+// Returns false after the last stretch. `done` is the work of the normal impulse over the stretch.
 CAROM_INLINE bool advance(Adaptive& run, bool ok, State next, Impulses sum_next, double done) {
     if (!ok) {
         if (run.asked > run.shortest) {
@@ -224,28 +232,28 @@ CAROM_INLINE bool advance(Adaptive& run, bool ok, State next, Impulses sum_next,
 
 CAROM_INLINE void finish(Adaptive& run) {
     finish_frictionless(run.at.v, run.left, run.compressing, run.compressed, run.m.e_b, run.total);
-    if (run.sweeps == 0) run.sweeps = 1;  // slip so small that it ends at once
+    if (run.sweeps == 0) run.sweeps = 1;  // the slip was so small that it ended at once
 }
 
-// False if the number of stretches meets its bound: then `solution` is finite but may miss the tolerance.
-template <int K>
+// Returns false at the bound on stretches: then `solution` is finite but may miss the tolerance.
+template <int N>
 inline bool solve_adaptive(const Problem& problem, Solution& solution) {
     Adaptive run;
-    begin_adaptive<K>(problem, run);
+    begin_adaptive<N>(problem, run);
     const Goals goal = goals(run.m, run.tolerance);
     for (; run.stretches < kMostStretches; ++run.stretches) {
         if (!plan(run)) break;
         Stretch stretch{run.asked, run.left, 0.0, 0.0, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0};
         State next = run.at;
         Impulses sum_next = run.total;
-        const int exact = run.shrink < 1.0 ? Tables<K>::sweeps : 3;
+        const int exact = run.shrink < 1.0 ? kMostSweeps : 3;
         bool ok;
         if (!run.last)
-            ok = collocate<K, End::kFixed>(run.m, next, sum_next, stretch, run.root_s, exact);
+            ok = collocate<N, End::kFixed>(run.m, next, sum_next, stretch, run.root_s, exact);
         else if (run.compressing)
-            ok = collocate<K, End::kToZero>(run.m, next, sum_next, stretch, run.root_s, exact);
+            ok = collocate<N, End::kToZero>(run.m, next, sum_next, stretch, run.root_s, exact);
         else
-            ok = collocate<K, End::kToWork>(run.m, next, sum_next, stretch, run.root_s, exact);
+            ok = collocate<N, End::kToWork>(run.m, next, sum_next, stretch, run.root_s, exact);
         run.sweeps += stretch.sweeps;
         ok = ok && resolved(run.m, stretch, run.tolerance);
         if (!advance(run, ok, next, sum_next, stretch.done)) break;
@@ -257,19 +265,19 @@ inline bool solve_adaptive(const Problem& problem, Solution& solution) {
     return run.stretches < kMostStretches;
 }
 
-template <int K>
+template <int N>
 CAROM_INLINE bool solve_whole(const Problem& problem, double guess, double root_s, Solution& solution) {
     const Goals goal = goals(problem.model, problem.tolerance);
     Stretch stretch{guess, 0.0, 0.5, 0.0, kRowsGoal * problem.tolerance, goal.sweep, goal.root, 0.0, 0.0, 0};
     State state = problem.start;
     solution.total = {0.0, 0.0, 0.0, 0.0, 0.0};
-    const bool ok = collocate<K, End::kWhole>(problem.model, state, solution.total, stretch, root_s, 0);
+    const bool ok = collocate<N, End::kWhole>(problem.model, state, solution.total, stretch, root_s, 0);
     solution.sweeps = stretch.sweeps;
-    solution.method = K == 1 ? ToleranceMethod::kCollocation4 : ToleranceMethod::kCollocation8;
+    solution.method = N == 4 ? ToleranceMethod::kCollocation4 : ToleranceMethod::kCollocation8;
     return ok && resolved(problem.model, stretch, problem.tolerance);
 }
 
-// Closed forms: no friction between the balls, or no vertical slip and so no cloth force.
+// The closed forms: no friction between the balls, or no vertical slip and therefore no cloth force.
 CAROM_INLINE void solve_closed(const Problem& problem, Solution& solution) {
     const Model& m = problem.model;
     const double x = problem.start.x, p = 0.5 * (1.0 + m.e_b);
@@ -284,15 +292,7 @@ CAROM_INLINE void solve_closed(const Problem& problem, Solution& solution) {
     solution.total.xi = x < 0.0 ? -xi : xi;
 }
 
-// The error of one collocation of 4 nodes is at most kSizeS mu_b rho_s^-6 + kSizeU mu_b mu_s rho_u^-5, of one
-// of 8 nodes kSizeS mu_b rho_s^-12 + kSizeU/2 mu_b mu_s rho_u^-10: fitted to random impacts, with a margin of
-// 4 or more.
-constexpr double kSizeS = 1.0, kSizeU = 1.2;
-
-// From this tolerance on stretches of 4 nodes need hardly be shorter than those of 8.
-constexpr double kLooseStretches = 1e-4;
-
-// Picks the cheapest method that keeps the bound.
+// Chooses the cheapest method that keeps the tolerance.
 CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
     const Model& m = problem.model;
     const State& start = problem.start;
@@ -302,14 +302,15 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
     }
     const double guess = 0.5 * (1.0 + m.e_b);
     const Rates r = rates(m, start);
-    // How far stick, straight ahead, and the zero of the cloth slip, beside its nearly straight way, are off.
+    // How far away the singularities are: stick lies straight ahead, the zero of the cloth slip beside its nearly
+    // straight path.
     const double rho_s = ellipse(4.0 * r.s / (r.fall * guess) - 2.0);
     double rho_u = 1e30;
     if (!problem.from_rest) {
         const double a1 = start.a + guess * r.fx, b1 = start.b + guess * r.fy;
         const double u0 = square_root(start.a * start.a + start.b * start.b),
                      u1 = square_root(a1 * a1 + b1 * b1);
-        // The cloth force bends the way by no more than this.
+        // The cloth force bends this path by no more than `bend`.
         const double bend = guess * (absolute(m.kappa) * (m.mu_s * m.mu_b));
         rho_u = ellipse(2.0 * ((u0 + u1) - bend) / (guess * (1.0 + absolute(m.sigma) * m.mu_b)));
     }
@@ -318,13 +319,13 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
     solution.sweeps = 0;
     const double s4 = s2 * s2, u4 = u2 * u2;
     if (problem.tolerance * (s4 * s2) >= size_s && problem.tolerance * (u4 * rho_u) >= size_u) {
-        if (solve_whole<1>(problem, guess, r.root_s, solution)) return;
+        if (solve_whole<4>(problem, guess, r.root_s, solution)) return;
     }
     if (problem.tolerance * (s4 * s4 * s4) >= size_s && problem.tolerance * (u4 * u4 * u2) >= 0.5 * size_u) {
-        if (solve_whole<2>(problem, guess, r.root_s, solution)) return;
+        if (solve_whole<8>(problem, guess, r.root_s, solution)) return;
     }
-    if (problem.tolerance >= kLooseStretches && solve_adaptive<1>(problem, solution)) return;
-    solve_adaptive<2>(problem, solution);
+    if (problem.tolerance >= kLooseStretches && solve_adaptive<4>(problem, solution)) return;
+    solve_adaptive<8>(problem, solution);
 }
 
 }  // namespace

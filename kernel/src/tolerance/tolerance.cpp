@@ -1,58 +1,188 @@
-// Which build of the kernel by tolerance runs, and the names of its methods.
-#include "carom/kernel/tolerance.h"
+// Impacts by tolerance, single and in batches. Built once per instruction set.
+//
+// A batch solves its easy impacts in lanes as they come, by one collocation of 4 nodes. Impacts that need 8 nodes are
+// gathered until they fill a register; those that need stretches are gathered too, and each lane starts the next one
+// as soon as it has finished one. Special cases are left to the single kernel.
+#include "kernel_set.h"
+#include "tolerance/batch_lanes.h"
+#include "tolerance/batch_pool.h"
 
 namespace carom::kernel {
+namespace {
 
-#define CAROM_DECLARE_TOLERANCE(isa)                                                                     \
-    void tolerance_##isa(const Ball&, const Ball&, const ImpactParams&, double, ImpactResult&) noexcept; \
-    void tolerance_batch_##isa(const ImpactBatch&, double, const ImpactBatchResult&) noexcept;
+// Impacts between two looks at what has been gathered.
+constexpr long kChunk = 256;
+// Impacts that need stretches are solved when so many have been gathered.
+constexpr int kMostHard = 256;
 
-CAROM_DECLARE_TOLERANCE(scalar)
-CAROM_DECLARE_TOLERANCE(v3)
-CAROM_DECLARE_TOLERANCE(v4)
-
-ToleranceFunction tolerance_function(Isa isa) noexcept {
-    switch (isa) {
-        case Isa::kScalar:
-            return tolerance_scalar;
-        case Isa::kV3:
-            return tolerance_v3;
-        case Isa::kV4:
-            return tolerance_v4;
+// Lane i of a batch by the single kernel.
+inline void solve_single(const BatchView& v, long i, double tolerance) {
+    Ball ball1, ball2;
+    for (int k = 0; k < 3; ++k) {
+        ball1.r[k] = v.in[kR1 + k][i];
+        ball1.v[k] = v.in[kV1 + k][i];
+        ball1.w[k] = v.in[kW1 + k][i];
+        ball2.r[k] = v.in[kR2 + k][i];
+        ball2.v[k] = v.in[kV2 + k][i];
+        ball2.w[k] = v.in[kW2 + k][i];
     }
-    return tolerance_scalar;
+    const ImpactParams params = {v.in[kRadius][i], v.in[kMass][i], v.in[kMuS1][i], v.in[kMuS2][i],
+                                 v.in[kMuB][i],    v.in[kEB][i],   v.cloth_slip};
+    ImpactResult result;
+    solve_impact(ball1, ball2, params, tolerance, result);
+    for (int k = 0; k < 3; ++k) {
+        v.out[kOutV1 + k][i] = result.v1[k];
+        v.out[kOutW1 + k][i] = result.w1[k];
+        v.out[kOutV2 + k][i] = result.v2[k];
+        v.out[kOutW2 + k][i] = result.w2[k];
+    }
+    v.status[i] = result.status;
+    if (v.steps != nullptr) v.steps[i] = result.steps;
+    if (v.method != nullptr) v.method[i] = result.method;
 }
 
-ToleranceBatchFunction tolerance_batch_function(Isa isa) noexcept {
-    switch (isa) {
-        case Isa::kScalar:
-            return tolerance_batch_scalar;
-        case Isa::kV3:
-            return tolerance_batch_v3;
-        case Isa::kV4:
-            return tolerance_batch_v4;
+// The impacts that are left: those that one collocation of 8 nodes may solve, and those that need stretches.
+struct Remaining {
+    long resolvable[kChunk + kWidth], hard[kMostHard + kChunk + kWidth];
+    int resolvables, hards;
+};
+
+// Solves the impacts [begin, end) by 4 nodes.
+inline void sweep_easy(const BatchView& v, long begin, long end, double tolerance, Remaining& rest) {
+    Wide in[kInputs];
+    BlockResult block;
+    for (long i = begin; i < end; i += kWidth) {
+        const int lanes = static_cast<int>(end - i < kWidth ? end - i : kWidth);
+        if (lanes == kWidth) {
+            for (int k = 0; k < kInputs; ++k) in[k] = load<kWidth>(v.in[k] + i);
+        } else {
+            long index[kWidth] = {};
+            for (int j = 0; j < lanes; ++j) index[j] = i + j;
+            gather(v, index, lanes, in);
+        }
+        solve_block<4>(in, v.cloth_slip, tolerance, block);
+        if (lanes == kWidth) {  // lanes that are not solved are written again later
+            for (int k = 0; k < kOutputs; ++k) store(v.out[k] + i, block.out[k]);
+            for (int j = 0; j < kWidth; ++j) v.status[i + j] = ImpactStatus::kOk;
+            if (v.steps != nullptr) {
+                for (int j = 0; j < kWidth; ++j) v.steps[i + j] = static_cast<long>(lane(block.sweeps, j));
+            }
+            if (v.method != nullptr) {
+                for (int j = 0; j < kWidth; ++j) v.method[i + j] = ToleranceMethod::kCollocation4;
+            }
+            if (!any(~block.done)) continue;
+        }
+        for (int j = 0; j < lanes; ++j) {
+            if (lane(block.done, j) != 0) {
+                if (lanes < kWidth) write_lane(v, block, j, i + j, ToleranceMethod::kCollocation4);
+            } else if (lane(block.good, j) == 0) {
+                solve_single(v, i + j, tolerance);
+            } else if (lane(block.resolvable, j) != 0) {
+                rest.resolvable[rest.resolvables++] = i + j;
+            } else {
+                rest.hard[rest.hards++] = i + j;
+            }
+        }
     }
-    return tolerance_batch_scalar;
 }
 
-const char* name(ToleranceMethod method) noexcept {
-    switch (method) {
-        case ToleranceMethod::kNone:
-            return "";
-        case ToleranceMethod::kClosedFrictionless:
-            return "closed_frictionless";
-        case ToleranceMethod::kClosedGearing:
-            return "closed_gearing";
-        case ToleranceMethod::kClosedStick:
-            return "closed_stick";
-        case ToleranceMethod::kCollocation4:
-            return "collocation_4";
-        case ToleranceMethod::kCollocation8:
-            return "collocation_8";
-        case ToleranceMethod::kAdaptive:
-            return "adaptive";
+// Solves the gathered impacts by 8 nodes. Those that do not fill a register stay for later, unless `all` are wanted.
+inline void sweep_resolvable(const BatchView& v, double tolerance, bool all, Remaining& rest) {
+    Wide in[kInputs];
+    BlockResult block;
+    int first = 0;
+    for (; rest.resolvables - first >= (all ? 1 : kWidth); first += kWidth) {
+        const int lanes = rest.resolvables - first < kWidth ? rest.resolvables - first : kWidth;
+        const long* index = rest.resolvable + first;
+        gather(v, index, lanes, in);
+        solve_block<8>(in, v.cloth_slip, tolerance, block);
+        for (int j = 0; j < lanes; ++j) {
+            if (lane(block.done, j) != 0)
+                write_lane(v, block, j, index[j], ToleranceMethod::kCollocation8);
+            else
+                rest.hard[rest.hards++] = index[j];
+        }
     }
-    return "unknown";
+    const int left = rest.resolvables > first ? rest.resolvables - first : 0;
+    for (int k = 0; k < left; ++k) rest.resolvable[k] = rest.resolvable[first + k];
+    rest.resolvables = left;
 }
+
+// Solves the gathered impacts that no single collocation solves.
+inline void sweep_hard(const BatchView& v, double tolerance, Remaining& rest) {
+    Wide in[kInputs];
+    WidePose q;
+    HardPool pool;
+    for (int first = 0; first < rest.hards; first += kPool) {
+        const int count = rest.hards - first < kPool ? rest.hards - first : kPool;
+        const long* index = rest.hard + first;
+        for (int i = 0; i < count; i += kWidth) {
+            gather(v, index + i, count - i, in);
+            wide_pose(in, v.cloth_slip, tolerance, q);
+            store(pool.x + i, q.start.x);
+            store(pool.z + i, q.start.z);
+            store(pool.a + i, q.start.a);
+            store(pool.b + i, q.start.b);
+            store(pool.mu_b + i, q.m.mu_b);
+            store(pool.mu_s + i, q.m.mu_s);
+            store(pool.e_b + i, q.m.e_b);
+            for (int j = 0; j < kWidth; ++j) pool.from_rest[i + j] = lane(q.from_rest, j) != 0;
+        }
+        if (tolerance >= kLooseWide)
+            run_stretches<4>(count, tolerance, v.cloth_slip, pool);
+        else
+            run_stretches<8>(count, tolerance, v.cloth_slip, pool);
+        for (int i = 0; i < count; i += kWidth) {
+            const int lanes = count - i < kWidth ? count - i : kWidth;
+            gather(v, index + i, lanes, in);
+            wide_pose(in, v.cloth_slip, tolerance, q);
+            WideResult t;
+            t.p = load<kWidth>(pool.p + i);
+            t.xi = load<kWidth>(pool.xi + i);
+            t.zeta = load<kWidth>(pool.zeta + i);
+            t.g_a = load<kWidth>(pool.g_a + i);
+            t.g_b = load<kWidth>(pool.g_b + i);
+            BlockResult block;
+            wide_apply(in, q, t, block);
+            block.sweeps = load<kWidth>(pool.sweeps + i);
+            for (int j = 0; j < lanes; ++j) {
+                if (pool.solved[i + j])
+                    write_lane(v, block, j, index[i + j], ToleranceMethod::kAdaptive);
+                else
+                    solve_single(v, index[i + j], tolerance);
+            }
+        }
+    }
+    rest.hards = 0;
+}
+
+}  // namespace
+
+namespace CAROM_ISA_NAMESPACE {
+
+void tolerance_single(const Ball& ball1, const Ball& ball2, const ImpactParams& params, double tolerance,
+                      ImpactResult& result) noexcept {
+    solve_impact(ball1, ball2, params, tolerance, result);
+}
+
+void tolerance_batch(const ImpactBatch& batch, double tolerance, const ImpactBatchResult& result) noexcept {
+    const BatchView v = view(batch, result);
+    if (!(tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance)) {
+        // The single kernel reports what is wrong.
+        for (long i = 0; i < batch.count; ++i) solve_single(v, i, tolerance);
+        return;
+    }
+    const double solved = smallest(tolerance, kLoosestSolved);
+    Remaining rest;
+    rest.resolvables = rest.hards = 0;
+    for (long begin = 0; begin < batch.count; begin += kChunk) {
+        const bool last = batch.count - begin <= kChunk;
+        sweep_easy(v, begin, last ? batch.count : begin + kChunk, solved, rest);
+        sweep_resolvable(v, solved, last, rest);
+        if (last || rest.hards >= kMostHard) sweep_hard(v, solved, rest);
+    }
+}
+
+}  // namespace CAROM_ISA_NAMESPACE
 
 }  // namespace carom::kernel

@@ -1,89 +1,20 @@
-// One collocation of many impacts at once: a lane is an impact, the nodes stand in arrays.
+// One collocation of many impacts at once: each lane is an impact, and the nodes are elements of arrays. Legend:
+// collocation.h.
 //
-// Legend: tolerance_collocation.h. A lane sees only its own numbers, so that its bits depend neither on the width
-// of the registers nor on its neighbours: each keeps the impulses of the sweep at which it converged itself.
+// A lane reads only its own numbers and keeps the impulses of the sweep at which it converged itself. Its bits
+// therefore depend neither on the width of the registers nor on the impacts in the other lanes.
 #pragma once
 
 #include "tolerance/collocation.h"
-#include "tolerance/tables.h"
+#include "tolerance/gauss.h"
 
 namespace carom::kernel {
 namespace {
 
-#if defined(__AVX512F__)
-constexpr int kWidth = 8;
-#else
-constexpr int kWidth = 4;
-#endif
-typedef double Wide __attribute__((vector_size(8 * kWidth)));
-typedef decltype(Wide{} < Wide{}) WideMask;
-
-CAROM_INLINE Wide wide(double x) {
-    return Wide{} + x;
-}
-
-CAROM_INLINE Wide wide_load(const double* from) {
-    Wide v;
-    __builtin_memcpy(&v, from, sizeof v);
-    return v;
-}
-
-CAROM_INLINE void wide_store(double* to, Wide v) {
-    __builtin_memcpy(to, &v, sizeof v);
-}
-
-CAROM_INLINE Wide wide_root(Wide v) {
-#if defined(__AVX512F__)
-    return (Wide)_mm512_maskz_sqrt_pd(0xff, (__m512d)v);  // the plain form warns in gcc 12
-#else
-    return square_root(v);
-#endif
-}
-
-CAROM_INLINE Wide choose(WideMask mask, Wide yes, Wide no) {
-    return (Wide)(((WideMask)yes & mask) | ((WideMask)no & ~mask));
-}
-
-CAROM_INLINE Wide magnitude(Wide v) {
-    return (Wide)((WideMask)v & (WideMask{} + 0x7fffffffffffffffL));
-}
-
-CAROM_INLINE bool any(WideMask mask) {
-#if defined(__AVX512F__)
-    return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0;
-#elif defined(__AVX__)
-    return _mm256_testz_si256((__m256i)mask, (__m256i)mask) == 0;
-#else
-    return ((mask[0] | mask[1]) | (mask[2] | mask[3])) != 0;
-#endif
-}
-
-template <int N>
-struct WideTables;
-
-template <>
-struct WideTables<4> {
-    static constexpr const double* nodes = kNodes4;
-    static constexpr const double* weights = kWeights4;
-    static constexpr const double* integral = kIntegral4[0];
-    static constexpr const double* top = kTop4;
-    static constexpr const double* before = kBefore4[0];
-    static constexpr const double* before_late = kBeforeLate4[0];
-    static constexpr const double* after_late = kAfterLate4[0];
-    static constexpr int sweeps = 24;
-};
-
-template <>
-struct WideTables<8> {
-    static constexpr const double* nodes = kNodes8;
-    static constexpr const double* weights = kWeights8;
-    static constexpr const double* integral = kIntegral8[0];
-    static constexpr const double* top = kTop8;
-    static constexpr const double* before = kBefore8[0];
-    static constexpr const double* before_late = kBeforeLate8[0];
-    static constexpr const double* after_late = kAfterLate8[0];
-    static constexpr int sweeps = 24;
-};
+// A pack of impacts: one register, or two where registers hold two doubles.
+constexpr int kWidth = kRegisterLanes < 4 ? 4 : kRegisterLanes;
+using Wide = Pack<kWidth>;
+using WideMask = Mask<kWidth>;
 
 struct WideModel {
     Wide mu_b, mu_s, e_b;
@@ -105,7 +36,7 @@ struct WideNodes {
     Wide x[N], z[N], a[N], b[N], root_s[N], root_u[N], xi[N], zeta[N], g_a[N], g_b[N];
 };
 
-// sum_j row[j] f[j], in a written order
+// sum_j row[j] f[j], even and odd terms apart
 template <int N>
 CAROM_INLINE Wide wide_dot(const double* row, int stride, const Wide (&f)[N]) {
     Wide even = row[0] * f[0], odd = row[stride] * f[1];
@@ -116,26 +47,26 @@ CAROM_INLINE Wide wide_dot(const double* row, int stride, const Wide (&f)[N]) {
     return even + odd;
 }
 
-// Integrals from 0 to every node. The nodes lie symmetrically, so that the even and the odd part of f need
-// only half a table each: `even` and `odd` are half the sum and half the difference of mirrored columns.
+// Integrals from 0 to every node, for the even and the odd part of f: half the sum and half the difference of
+// mirrored columns. The nodes lie symmetrically, so that each part needs only half a table.
 struct Mirrored8 {
     double even[4][4], odd[4][4];
     constexpr Mirrored8() : even{}, odd{} {
         for (int i = 0; i < 4; ++i) {
             for (int j = 0; j < 4; ++j) {
-                even[i][j] = 0.5 * (kIntegral8[j][i] + kIntegral8[7 - j][i]);
-                odd[i][j] = 0.5 * (kIntegral8[j][i] - kIntegral8[7 - j][i]);
+                even[i][j] = 0.5 * (Gauss<8>::integral[j][i] + Gauss<8>::integral[7 - j][i]);
+                odd[i][j] = 0.5 * (Gauss<8>::integral[j][i] - Gauss<8>::integral[7 - j][i]);
             }
         }
     }
 };
 constexpr Mirrored8 kMirrored8;
 
-// integral[i] = start + h Int f up to node i
+// integral[i] = start + h times the integral of f from 0 to node i
 template <int N>
 CAROM_INLINE void wide_integrals(Wide start, Wide h, const Wide (&f)[N], Wide (&integral)[N]) {
     if constexpr (N == 4) {
-        for (int i = 0; i < N; ++i) integral[i] = start + h * wide_dot<N>(WideTables<N>::integral + i, N, f);
+        for (int i = 0; i < N; ++i) integral[i] = start + h * wide_dot<N>(Gauss<N>::integral[0] + i, N, f);
     } else {
         constexpr int H = N / 2;
         Wide sums[H], differences[H];
@@ -143,7 +74,7 @@ CAROM_INLINE void wide_integrals(Wide start, Wide h, const Wide (&f)[N], Wide (&
             sums[j] = f[j] + f[N - 1 - j];
             differences[j] = f[j] - f[N - 1 - j];
         }
-        const Wide total = wide_dot<H>(WideTables<N>::weights, 1, sums);
+        const Wide total = wide_dot<H>(Gauss<N>::weights, 1, sums);
         for (int i = 0; i < H; ++i) {
             const Wide even = wide_dot<H>(kMirrored8.even[i], 1, sums);
             const Wide odd = wide_dot<H>(kMirrored8.odd[i], 1, differences);
@@ -155,8 +86,8 @@ CAROM_INLINE void wide_integrals(Wide start, Wide h, const Wide (&f)[N], Wide (&
 
 enum class Roots : unsigned char { kFresh, kCarried, kMixed };
 
-// Forces at the nodes. Reciprocal roots are fresh, or the old ones corrected by one cubic Newton step; mixed:
-// fresh in the lanes of `exact`.
+// As forces(). The reciprocal roots are computed afresh (kFresh), or those of the sweep before are corrected
+// (kCarried); kMixed: afresh in the lanes of `exact`.
 template <int N, Roots kRoots>
 CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exact = WideMask{}) {
     Wide worst = {};
@@ -165,7 +96,7 @@ CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exac
         Wide fresh_s, fresh_u;
         if constexpr (kRoots != Roots::kCarried) {
             // One division for both roots.
-            const Wide s = wide_root(ss), u = wide_root(uu), share = 1.0 / (s * u);
+            const Wide s = square_root(ss), u = square_root(uu), share = 1.0 / (s * u);
             fresh_s = share * u;
             fresh_u = share * s;
         }
@@ -179,9 +110,9 @@ CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exac
             n.root_u[i] += n.root_u[i] * (ru * (0.5 + 0.375 * ru));
             Wide left = rs * rs + ru * ru;
             if constexpr (kRoots == Roots::kMixed) {
-                n.root_s[i] = choose(exact, fresh_s, n.root_s[i]);
-                n.root_u[i] = choose(exact, fresh_u, n.root_u[i]);
-                left = choose(exact, Wide{}, left);
+                n.root_s[i] = select(exact, fresh_s, n.root_s[i]);
+                n.root_u[i] = select(exact, fresh_u, n.root_u[i]);
+                left = select(exact, Wide{}, left);
             }
             worst += left;
         }
@@ -195,6 +126,7 @@ CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exac
     return worst;
 }
 
+// As slips().
 template <int N>
 CAROM_INLINE Wide wide_slips(const WideModel& m, const WideStart& start, Wide h, WideNodes<N>& n) {
     Wide dx[N], dz[N], da[N], db[N], change = {};
@@ -223,7 +155,7 @@ CAROM_INLINE Wide wide_slips(const WideModel& m, const WideStart& start, Wide h,
     return change;
 }
 
-// As EndRows. `t` is where they stand.
+// As EndRows.
 template <int N>
 struct WideRows {
     Wide t, before[N], before_late[N], after_late[N];
@@ -231,7 +163,7 @@ struct WideRows {
 
 template <int N>
 CAROM_INLINE Wide wide_polynomial(const double* table, Wide t) {
-    Wide value = wide(table[(N - 1) * N]);
+    Wide value = broadcast<kWidth>(table[(N - 1) * N]);
     for (int k = N - 2; k >= 0; --k) value = value * t + table[k * N];
     return value;
 }
@@ -240,9 +172,9 @@ template <int N>
 CAROM_INLINE void wide_set_rows(Wide t, WideRows<N>& rows) {
     rows.t = t;
     for (int j = 0; j < N; ++j) {
-        rows.before[j] = wide_polynomial<N>(WideTables<N>::before + j, t);
-        rows.before_late[j] = wide_polynomial<N>(WideTables<N>::before_late + j, t);
-        rows.after_late[j] = wide_polynomial<N>(WideTables<N>::after_late + j, t);
+        rows.before[j] = wide_polynomial<N>(Gauss<N>::before[0] + j, t);
+        rows.before_late[j] = wide_polynomial<N>(Gauss<N>::before_late[0] + j, t);
+        rows.after_late[j] = wide_polynomial<N>(Gauss<N>::after_late[0] + j, t);
     }
 }
 
@@ -257,6 +189,7 @@ CAROM_INLINE Wide wide_dot(const Wide (&a)[N], const Wide (&b)[N]) {
     return even + odd;
 }
 
+// As find_end() of a whole impact, with one division for two.
 template <int N>
 CAROM_INLINE Wide wide_find_end(const WideModel& m, const Wide (&g_b)[N], const WideRows<N>& rows,
                                 Wide& p_c) {
@@ -265,7 +198,7 @@ CAROM_INLINE Wide wide_find_end(const WideModel& m, const Wide (&g_b)[N], const 
     const Wide both = 1.0 / (lost * share);
     p_c = both * lost;
     const Wide work = p_c * (1.0 - p_c * (1.0 - wide_dot<N>(rows.before_late, g_b)));
-    return p_c + m.e_b * wide_root(work * (both * share));
+    return p_c + m.e_b * square_root(work * (both * share));
 }
 
 // The forces of the sweep at which a lane converged.
@@ -278,47 +211,47 @@ template <int N>
 CAROM_INLINE void wide_keep(WideMask lanes, const WideNodes<N>& n, WideForces<N>& kept) {
     if (!any(lanes)) return;
     for (int i = 0; i < N; ++i) {
-        kept.xi[i] = choose(lanes, n.xi[i], kept.xi[i]);
-        kept.zeta[i] = choose(lanes, n.zeta[i], kept.zeta[i]);
-        kept.g_a[i] = choose(lanes, n.g_a[i], kept.g_a[i]);
-        kept.g_b[i] = choose(lanes, n.g_b[i], kept.g_b[i]);
+        kept.xi[i] = select(lanes, n.xi[i], kept.xi[i]);
+        kept.zeta[i] = select(lanes, n.zeta[i], kept.zeta[i]);
+        kept.g_a[i] = select(lanes, n.g_a[i], kept.g_a[i]);
+        kept.g_b[i] = select(lanes, n.g_b[i], kept.g_b[i]);
     }
 }
 
 // As resolved().
 template <int N>
 CAROM_INLINE WideMask wide_resolved(const WideModel& m, Wide p, double tolerance, const WideForces<N>& f) {
-    using T = WideTables<N>;
-    const Wide tx = wide_dot<N>(T::top, 1, f.xi), tz = wide_dot<N>(T::top, 1, f.zeta);
-    const Wide ta = wide_dot<N>(T::top, 1, f.g_a), tb = wide_dot<N>(T::top, 1, f.g_b);
+    using G = Gauss<N>;
+    const Wide tx = wide_dot<N>(G::top, 1, f.xi), tz = wide_dot<N>(G::top, 1, f.zeta);
+    const Wide ta = wide_dot<N>(G::top, 1, f.g_a), tb = wide_dot<N>(G::top, 1, f.g_b);
     const Wide s2 = tx * tx + tz * tz, g2 = ta * ta + tb * tb;
     return (7.0 * p * s2 <= 3.0 * tolerance * m.mu_b) &
-           (81.0 * (p * p) * (g2 * wide_root(g2)) <= 9.0 * (tolerance * tolerance) * (m.mu_b * m.mu_s));
+           (81.0 * (p * p) * (g2 * square_root(g2)) <= 9.0 * (tolerance * tolerance) * (m.mu_b * m.mu_s));
 }
 
 template <int N>
 CAROM_INLINE void wide_integrate(Wide p, const WideForces<N>& f, WideResult& out) {
-    using T = WideTables<N>;
+    using G = Gauss<N>;
     out.p = p;
-    out.xi = p * wide_dot<N>(T::weights, 1, f.xi);
-    out.zeta = p * wide_dot<N>(T::weights, 1, f.zeta);
-    out.g_a = p * wide_dot<N>(T::weights, 1, f.g_a);
-    out.g_b = p * wide_dot<N>(T::weights, 1, f.g_b);
+    out.xi = p * wide_dot<N>(G::weights, 1, f.xi);
+    out.zeta = p * wide_dot<N>(G::weights, 1, f.zeta);
+    out.g_a = p * wide_dot<N>(G::weights, 1, f.g_a);
+    out.g_b = p * wide_dot<N>(G::weights, 1, f.g_b);
 }
 
-// Solves `wanted` lanes; those that do not converge are not in `out.converged`.
+// As collocate() of a whole impact, for the lanes `wanted`; lanes that do not converge are not in `out.converged`.
 template <int N>
 CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, WideMask wanted,
                                  double tolerance, WideResult& out) {
-    using T = WideTables<N>;
+    using G = Gauss<N>;
     WideNodes<N> n;
     Wide h = 0.5 * (1.0 + m.e_b), t_c = 2.0 / (1.0 + m.e_b) - 1.0;
     WideRows<N> rows;
     wide_set_rows<N>(t_c, rows);
-    const Wide share = m.mu_b / wide_root(start.x * start.x + start.z * start.z);
+    const Wide share = m.mu_b / square_root(start.x * start.x + start.z * start.z);
     const Wide xi0 = share * start.x, zeta0 = share * start.z;
     for (int i = 0; i < N; ++i) {
-        const Wide p = h * T::nodes[i];
+        const Wide p = h * G::nodes[i];
         n.x[i] = start.x - p * (7.0 * xi0);
         n.z[i] = start.z - p * (5.0 * zeta0);
         n.a[i] = start.a + p * xi0;
@@ -335,13 +268,13 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
     Wide dh_before = {};
     WideMask open = wanted, finished = {};
     WideForces<N> kept = {};
-    for (int k = 1; k < T::sweeps && any(open); ++k) {
+    for (int k = 1; k < kMostSweeps && any(open); ++k) {
         const Wide change = wide_slips<N>(m, start, h, n);
         Wide p_c;
         const Wide h_new = wide_find_end<N>(m, n.g_b, rows, p_c), dh = h_new - h;
-        // Rows are set anew in the lanes where that matters; the others keep theirs, whatever their neighbours do.
-        const WideMask moved = open & (magnitude(t_c - rows.t) * m.mu_b * m.mu_s > kRowsGoal * tolerance);
-        if (any(moved)) wide_set_rows<N>(choose(moved, t_c, rows.t), rows);
+        // The rows change only in the lanes where that matters: the others do not depend on what these do.
+        const WideMask moved = open & (absolute(t_c - rows.t) * m.mu_b * m.mu_s > kRowsGoal * tolerance);
+        if (any(moved)) wide_set_rows<N>(select(moved, t_c, rows.t), rows);
         t_c = 2.0 * p_c / h_new - 1.0;
         h = h_new;
         const Wide r = wide_forces<N, Roots::kCarried>(m, n);
@@ -351,10 +284,10 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
         dh_before = dh;
         wide_keep<N>(now, n, kept);
         finished |= now;
-        out.sweeps = choose(now, wide(k + 1.0), out.sweeps);
+        out.sweeps = select(now, broadcast<kWidth>(k + 1.0), out.sweeps);
         open &= ~now;
     }
-    // The rows of a lane stand still once it has converged.
+    // The rows of a lane do not change after it has converged.
     Wide p_c;
     const Wide p = wide_find_end<N>(m, kept.g_b, rows, p_c);
     out.converged = finished & wide_resolved<N>(m, p, tolerance, kept);

@@ -1,6 +1,5 @@
-// One stretch of many impacts at once, as collocate() does for one. Legend: tolerance_collocation.h.
-//
-// A lane sees only its own numbers: its bits depend neither on the width of the registers nor on its neighbours.
+// One stretch of many impacts at once, as collocate() does for one impact. Legend: collocation.h. A lane reads only
+// its own numbers, as in wide.h.
 #pragma once
 
 #include "tolerance/wide.h"
@@ -8,18 +7,20 @@
 namespace carom::kernel {
 namespace {
 
+// Sweeps after which a stretch that has not been shortened before is given up and shortened: the other lanes wait for
+// it.
+constexpr int kPatience = 10;
+
 struct WideStretch {
     WideModel m;
     WideStart start;
-    Wide v, h, work, root_s;    // h: impulse asked for, a first guess for stretches that end by themselves
-    WideMask to_zero, to_work;  // the end of compression, the end of restitution; otherwise a given impulse
-    WideMask exact;             // fresh roots in every sweep
-    WideMask wanted;
+    Wide v, h, work, root_s;  // h: the given impulse, or a first guess
+    WideMask to_zero,
+        to_work;      // the stretch ends as End::kToZero or as End::kToWork; otherwise as End::kFixed
+    WideMask exact;   // compute fresh roots in every sweep
+    WideMask wanted;  // lanes that hold a stretch
     double tolerance;
 };
-
-// Sweeps after which a stretch is cut that has not been cut before: others wait for it.
-constexpr int kPatience = 10;
 
 struct WideStretchResult {
     WideResult t;
@@ -29,30 +30,30 @@ struct WideStretchResult {
 // Int_0^1 (1 - tau) f dtau
 template <int N>
 CAROM_INLINE Wide wide_late_share(const Wide (&f)[N]) {
-    using T = WideTables<N>;
-    Wide even = (T::weights[0] * (1.0 - T::nodes[0])) * f[0];
-    Wide odd = (T::weights[1] * (1.0 - T::nodes[1])) * f[1];
+    using G = Gauss<N>;
+    Wide even = (G::weights[0] * (1.0 - G::nodes[0])) * f[0];
+    Wide odd = (G::weights[1] * (1.0 - G::nodes[1])) * f[1];
     for (int j = 2; j < N; j += 2) {
-        even += (T::weights[j] * (1.0 - T::nodes[j])) * f[j];
-        odd += (T::weights[j + 1] * (1.0 - T::nodes[j + 1])) * f[j + 1];
+        even += (G::weights[j] * (1.0 - G::nodes[j])) * f[j];
+        odd += (G::weights[j + 1] * (1.0 - G::nodes[j + 1])) * f[j + 1];
     }
     return even + odd;
 }
 
-// As find_end.
+// As find_end().
 template <int N>
 CAROM_INLINE Wide wide_stretch_end(const WideStretch& w, WideMask open_end, const Wide (&g_b)[N]) {
     if (!any(open_end)) return w.h;
     const Wide lost = 1.0 - wide_late_share<N>(g_b);
-    const Wide share = 2.0 - wide_dot<N>(WideTables<N>::weights, 1, g_b);
-    const Wide by_work = w.v + wide_root(w.v * w.v + 4.0 * (lost * w.work));
-    const Wide h = choose(w.to_zero, -w.v, 2.0 * w.work) / choose(w.to_zero, share, by_work);
-    return choose(open_end, h, w.h);
+    const Wide share = 2.0 - wide_dot<N>(Gauss<N>::weights, 1, g_b);
+    const Wide by_work = w.v + square_root(w.v * w.v + 4.0 * (lost * w.work));
+    const Wide h = select(w.to_zero, -w.v, 2.0 * w.work) / select(w.to_zero, share, by_work);
+    return select(open_end, h, w.h);
 }
 
 template <int N>
 CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
-    using T = WideTables<N>;
+    using G = Gauss<N>;
     const WideModel& m = w.m;
     const WideMask open_end = w.to_zero | w.to_work;
     WideNodes<N> n;
@@ -60,7 +61,7 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
     const Wide share = m.mu_b * w.root_s;
     const Wide xi0 = share * w.start.x, zeta0 = share * w.start.z;
     for (int i = 0; i < N; ++i) {
-        const Wide p = h * T::nodes[i];
+        const Wide p = h * G::nodes[i];
         n.x[i] = w.start.x - p * (7.0 * xi0);
         n.z[i] = w.start.z - p * (5.0 * zeta0);
         n.a[i] = w.start.a + p * xi0;
@@ -77,8 +78,8 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
     Wide dh_before = {};
     WideMask open = w.wanted, finished = {};
     WideForces<N> kept = {};
-    out.t.sweeps = wide(T::sweeps);
-    for (int k = 1; k < T::sweeps && any(open); ++k) {
+    out.t.sweeps = broadcast<kWidth>(kMostSweeps);
+    for (int k = 1; k < kMostSweeps && any(open); ++k) {
         const Wide change = wide_slips<N>(m, w.start, h, n);
         const Wide h_new = wide_stretch_end<N>(w, open_end, n.g_b), dh = h_new - h;
         h = h_new;
@@ -95,8 +96,8 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
         dh_before = dh;
         wide_keep<N>(now, n, kept);
         finished |= now;
-        out.t.sweeps = choose(now, wide(k + 1.0), out.t.sweeps);
-        // A NaN stays one, and what is slow at first is cheaper in two stretches.
+        out.t.sweeps = select(now, broadcast<kWidth>(k + 1.0), out.t.sweeps);
+        // A NaN never converges, and a stretch that converges slowly costs less as two stretches.
         open &= ~now & (left == left);  // NOLINT(misc-redundant-expression): asks for a NaN
         if (k >= kPatience) open &= w.exact;
     }

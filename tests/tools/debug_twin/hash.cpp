@@ -9,8 +9,8 @@
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
-    carom::kernel::Isa isa{};
-    if (carom::kernel::isa_from_environment(isa) != carom::kernel::IsaChoice::kOk) return 2;
+    const auto [isa, problem] = carom::kernel::isa_from_environment();
+    if (*problem != '\0') return 2;
     try {
         std::puts(carom::simulate(carom::make_plan(carom::read_scene(argv[1]), isa)).hash().c_str());
     } catch (const std::exception& error) {

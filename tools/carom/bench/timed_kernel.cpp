@@ -8,6 +8,7 @@
 #include "carom/kernel/tolerance.h"
 #include "console.h"
 #include "ladder/ladder.h"
+#include "setup.h"
 
 namespace carom::tools {
 namespace {
@@ -90,10 +91,7 @@ void choose(std::vector<TimedKernel>& list, const std::vector<std::string>& only
 }
 
 std::vector<Isa> chosen_isas() {
-    Isa isa{};
-    const IsaChoice choice = isa_from_environment(isa);
-    if (choice == IsaChoice::kUnknownName) throw UsageError("CAROM_ISA: unknown; scalar, v3 or v4");
-    if (choice == IsaChoice::kUnavailable) throw UsageError("CAROM_ISA: this processor does not have it");
+    const Isa isa = chosen_isa();
     const char* forced = std::getenv("CAROM_ISA");
     if (forced != nullptr && *forced != '\0') return {isa};
     std::vector<Isa> list;

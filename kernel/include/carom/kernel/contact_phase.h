@@ -24,8 +24,8 @@ struct HertzLaw {
     bool published_slip_sign;  ///< of the cloth slip
 };
 
-/// What one call reads and writes. `numbers` and `places` are scratch
-/// memory of contact_phase_numbers() and contact_phase_places() elements.
+/// What one call reads and writes. `numbers` and `places` are scratch memory of contact_phase_numbers() and
+/// contact_phase_places() elements.
 struct ContactPhase {
     int balls, contacts;
     double* motion;  ///< per ball v_x, v_y, R w_x, R w_y, R w_z [V]; replaced

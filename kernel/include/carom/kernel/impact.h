@@ -36,7 +36,7 @@ enum class ImpactStatus : unsigned char {
     kNotApproaching,  ///< approach speed <= 0 (or too small to be a number): the balls leave as they came
     kBadState,      ///< a state is not finite, the centres coincide or are not at one height: result = input
     kBadParameter,  ///< a parameter or setting is out of range: result = input
-    kStepLimit,     ///< the march met its bound on steps (see march.h): result = input
+    kStepLimit,     ///< the march reached its bound on steps (see march.h): result = input
 };
 
 /// What is wrong, in words; "" for kOk and kNotApproaching.

@@ -1,4 +1,4 @@
-// Run-time choice of the instruction set. Every level gives the same bits; the choice is about speed alone.
+// The choice of the instruction set at run time. All instruction sets give the same bits; they differ in speed only.
 #pragma once
 
 namespace carom::kernel {
@@ -12,19 +12,27 @@ enum class Isa : unsigned char {
 /// "scalar", "v3" or "v4", as in CAROM_ISA.
 const char* name(Isa isa) noexcept;
 
-/// Parses such a name; false if it is none.
+/// Parses such a name. Returns false, and leaves `isa` as it is, if `text` is none.
 bool parse_isa(const char* text, Isa& isa) noexcept;
 
-/// Whether this processor and operating system can run it and this build holds kernels for it.
+/// Whether this processor and operating system can run the instruction set.
 bool available(Isa isa) noexcept;
 
 /// The widest available one.
 Isa best_isa() noexcept;
 
-/// Outcome of reading CAROM_ISA.
-enum class IsaChoice : unsigned char { kOk, kUnknownName, kUnavailable };
+/// The available ones as text: "scalar, v3".
+const char* available_isas() noexcept;
 
-/// CAROM_ISA if it is set, else best_isa(). An unknown or unavailable name is reported, never replaced.
-IsaChoice isa_from_environment(Isa& isa) noexcept;
+/// An instruction set, or in words why there is none.
+struct IsaChoice {
+    Isa isa;
+    char problem
+        [160];  ///< "" where `isa` is valid; else what is wrong with CAROM_ISA and which sets are available here
+};
+
+/// The instruction set that CAROM_ISA in the environment names; where it is unset or empty, best_isa(). An unknown or
+/// unavailable name is a problem and never replaced by another.
+IsaChoice isa_from_environment() noexcept;
 
 }  // namespace carom::kernel

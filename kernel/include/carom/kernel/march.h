@@ -1,4 +1,4 @@
-// The published march: Euler steps in the normal impulse.
+// The published march: explicit Euler steps in the normal impulse.
 #pragma once
 
 #include "carom/kernel/impact.h"
@@ -14,7 +14,7 @@ namespace carom::kernel {
 /// about 40 the march gains energy by construction (hard case H24).
 ///
 /// @param n  substeps N >= 1; fewer is kBadParameter.
-/// The number of steps is bounded: an impact that has not ended after kMarchStepLimit * n steps is
+/// The number of steps is bounded: the status of an impact that has not ended after kMarchStepLimit * n steps is
 /// kStepLimit.
 using MarchFunction = void (*)(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
                                ImpactResult& result) noexcept;

@@ -1,8 +1,7 @@
 // Impacts by tolerance: as accurate as asked, and no slower than needed (docs/kernel_tolerance.md).
 //
 // The impact of the 2014 model (march.h) is a small ordinary differential equation in the normal impulse.
-// This kernel solves it by whichever method is cheapest for the impact at hand and keeps the bound asked for,
-// instead of marching.
+// Instead of marching, this kernel solves it by the cheapest method that keeps the tolerance asked for.
 #pragma once
 
 #include "carom/kernel/batch.h"
@@ -15,15 +14,15 @@ namespace carom::kernel {
 inline constexpr double kTightestTolerance = 1e-13;
 inline constexpr double kLoosestTolerance = 1e-1;
 
-/// Friction coefficients above this are kBadParameter here: up to it no ball can stick to the cloth during an
-/// impact, which the equations that are solved take for granted.
+/// Friction coefficients above this are kBadParameter here. Up to this value no ball can stick to the cloth during an
+/// impact, as the equations that are solved assume.
 inline constexpr double kLargestFriction = 1.0;
 
 /// Solves one impact between equal balls.
 ///
-/// @param tolerance  (looser than 1e-3 is solved as 1e-3) largest error of any component of v [m/s] and of R
-/// w after the impact, as a share of the approach
-///     speed. Rounding adds a few units in the last place of the largest speed that went in.
+/// @param tolerance  largest error of any component of v and of R w after the impact, as a share of the approach speed;
+/// a tolerance looser than 1e-3 is solved as 1e-3. Rounding adds a few units in the last place of the largest speed
+/// before the impact.
 /// `result.steps` is the number of evaluations of the slip directions over the impact (sweeps), 1 for a
 /// closed form; `result.method` is what was used.
 using ToleranceFunction = void (*)(const Ball& ball1, const Ball& ball2, const ImpactParams& params,
@@ -40,7 +39,7 @@ using ToleranceBatchFunction = void (*)(const ImpactBatch& batch, double toleran
 /// The batch kernel built for one instruction set (which must be available).
 ToleranceBatchFunction tolerance_batch_function(Isa isa) noexcept;
 
-/// "closed_stick", "collocation_4", ...: as profiles print it.
+/// The name of a method in profiles: "closed_stick", "collocation_4", ...
 const char* name(ToleranceMethod method) noexcept;
 
 }  // namespace carom::kernel

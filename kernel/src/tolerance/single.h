@@ -1,5 +1,4 @@
-// One impact by tolerance: check, scale, solve, project back. Built once per instruction set;
-// CAROM_TOLERANCE_NAME is the name of the function.
+// One impact by tolerance: check, scale, solve, project back.
 #pragma once
 
 #include "tolerance/solve.h"
@@ -7,18 +6,19 @@
 namespace carom::kernel {
 namespace {
 
-// Slip of a rolling ball is rounding noise: below this share of the speeds it is zero.
+// The cloth slip of a rolling ball is rounding noise: up to this share of the speeds it counts as zero.
 constexpr double kSlipNoise = 0x1p-49;
+
+// Loosest tolerance that is solved for. A looser one would save nothing, and the iteration could stop so early that
+// energy rises.
+constexpr double kLoosestSolved = 1e-3;
 
 CAROM_INLINE bool tolerance_in_range(const ImpactParams& p, double tolerance) {
     return tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance && p.mu_b <= kLargestFriction &&
            p.mu_s1 <= kLargestFriction && p.mu_s2 <= kLargestFriction;
 }
 
-// Looser than this nothing is gained, and the iteration may stop so early that energy rises.
-constexpr double kLoosestSolved = 1e-3;
-
-// The canonical form of an impact, and whether it is ball 2 that is pressed on the cloth.
+// Brings an impact into its canonical form. Returns whether ball 2 is the one that is pressed on the cloth.
 CAROM_INLINE bool pose(const FrameState& s, const ImpactParams& p, double tolerance, Problem& problem) {
     const double R = p.R, n = s.v1y - s.v2y, scale = 1.0 / n;
     const double x = s.v1x - s.v2x - R * (s.w1z + s.w2z), z = R * (s.w1x + s.w2x);
@@ -43,7 +43,7 @@ CAROM_INLINE bool pose(const FrameState& s, const ImpactParams& p, double tolera
     return second;
 }
 
-// Adds the impulses to the velocities.
+// Adds the impulses, which are scaled by the approach speed n, to the velocities.
 CAROM_INLINE void apply(const Impulses& t, double n, double R, bool second, FrameState& s) {
     const double p = n * t.p, xi = n * t.xi, zeta = second ? n * t.zeta : -(n * t.zeta);
     const double g_a = n * t.g_a, g_b = n * t.g_b, spin = 2.5 / R;
@@ -78,15 +78,10 @@ CAROM_INLINE void solve_impact(const Ball& ball1, const Ball& ball2, const Impac
     apply(solution.total, n, params.R, second, state);
     leave_frame(ball1, ball2, frame, state, solution.sweeps, result);
     result.method = solution.method;
-    // Spins of a radius next to zero overflow.
+    // With a radius close to zero the spins overflow.
     if (!(finite(result.w1) && finite(result.w2))) copy_input(ball1, ball2, ImpactStatus::kBadState, result);
 }
 
 }  // namespace
-
-void CAROM_TOLERANCE_NAME(const Ball& ball1, const Ball& ball2, const ImpactParams& params, double tolerance,
-                          ImpactResult& result) noexcept {
-    solve_impact(ball1, ball2, params, tolerance, result);
-}
 
 }  // namespace carom::kernel

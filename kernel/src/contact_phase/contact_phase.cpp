@@ -1,49 +1,61 @@
-// The contact phase, four contacts at a time. Built once per instruction set; CAROM_CONTACT_PHASE_NAME is the
-// name of the function.
+// The contact phase, four contacts at a time. Built once per instruction set.
 //
-// An evaluation of the right-hand side gathers the motions of the balls of four contacts, computes their
-// forces in lanes, and adds these to the balls one contact after the other in the order of the list: a lane
-// computes what a scalar program would, and every sum has one written order. Only contacts that overlap at
-// that stage take part. Memory is laid out for whole registers: the velocity and the horizontal spin of a
-// ball are one row of four, the vertical spins stand behind the rows.
-#pragma once
-
+// An evaluation of the right-hand side gathers the motions of the balls of four contacts, computes their forces in
+// lanes, and adds the forces to the balls, one contact after the other in the order of the list. A lane computes what
+// a scalar program would compute, and every sum has one written order. Only contacts that overlap at that stage take
+// part. Memory is laid out for whole registers: the velocity and the horizontal spin of a ball are one row of four
+// numbers.
 #include "carom/kernel/contact_phase.h"
-#include "contact_phase/lanes.h"
+#include "kernel_set.h"
+#include "numbers.h"
+#include "simd.h"
 
 namespace carom::kernel {
 namespace {
 
-constexpr int kPerBall = 5;  // of ContactPhase::motion
-constexpr int kStages = 4;
+using Four = Pack<4>;
+
+constexpr int kPerBall = 5;  // numbers of a ball in ContactPhase::motion
+constexpr int kStages = 4;   // of the Runge-Kutta step
+
+// Numbers of a ball here. A row holds velocities in the even places and spins in the odd ones: a contact feels the
+// difference of the velocities of its balls and the sum of their spins, which is one subtract_add().
+constexpr int kRow = 8;
+constexpr int kPlace[kPerBall] = {0, 2, 1, 3, 5};    // of v_x, v_y, R w_x, R w_y, R w_z in a row
+constexpr int kLift = 4, kTurn = 5, kStiffness = 7;  // of other numbers in a row: see Work
+
+// Stability of the step. The regularised friction is stiff: with k = mu_b F / |s|, friction over slip, the friction
+// of one contact makes its slip decay at the rate 7 k, and by the theorem of Gershgorin no rate of all contacts
+// together exceeds 7 times the largest sum of k over a ball (the cloth under the ball counts half). Runge-Kutta steps
+// are stable up to 2.78 over that rate. A step takes at most kStableShare over the largest sum.
+constexpr double kStableShare = 2.0 / 7.0;
+// Where a slip is still above epsilon, steps of that length would jump over the transition into stick. There k counts
+// kResolve times, but no more than its value in stick, mu_b F / epsilon.
+constexpr double kResolve = 8.0;
 
 CAROM_INLINE int padded(int n) {
     return (n + 3) / 4 * 4;
 }
 
-// Rows have velocities in the even places and spins in the odd ones: in a contact the velocities of the
-// second ball count against those of the first and its spins with them, which is one subtract_add().
-constexpr int kRow = 8;
-constexpr int kPlace[kPerBall] = {0, 2, 1, 3, 5};  // of v_x, v_y, R w_x, R w_y, R w_z in a row
-constexpr int kLift = 4, kTurn = 5, kStiffness = 7;
-
 struct Work {
     int balls, contacts;
     int rows, lanes;  // sizes of the arrays per ball and per contact
-    // Per ball a row (v_x, R w_x, v_y, R w_y | -, R w_z, -, -): the state, its stages and their slopes. In a
-    // slope the fifth number is the sum of the vertical forces, the eighth minus the sum of friction over slip.
+    // The state, its stages and their slopes; of each ball a row (v_x, R w_x, v_y, R w_y | -, R w_z, -, -). In a
+    // slope the fifth number (kLift) is the sum of the vertical forces, the eighth (kStiffness) minus the sum of
+    // friction over slip.
     double *y, *y_stage, *dy[kStages];
-    // Per contact.
+    // Of each contact: overlap, its stages and their slopes, normal, and the largest overlap since the contact
+    // opened.
     double *d, *d_stage, *rate[kStages], *nx, *ny, *memory;
-    int *i, *j;  // places of the rows of the two balls
-    // The contacts that overlap, in their order: place, rows, normal.
+    int *i, *j;  // where the rows of the two balls begin
+    // The list of contacts that overlap, in their order: number, rows, normal.
     int *active, *active_i, *active_j;
     double *active_nx, *active_ny;
-    int* overlaps;  // per four contacts, a bit each: the state that the list is for
-    int count;      // of the list, padded
+    int* overlaps;  // of each four contacts a bit each: those that are in the list
+    int count;      // contacts in the list, with those that fill the last register
 };
 
-// HertzLaw, ready for use in lanes.
+// HertzLaw in lanes.
 struct Law {
     Four a, b, minus_mu_b, mu_s, epsilon2, cloth_sign;
     Four stiffest;  // -mu_b / epsilon
@@ -51,6 +63,7 @@ struct Law {
     bool cloth;
 };
 
+// The next `count` numbers of the scratch memory, set to zero.
 CAROM_INLINE double* take(double*& from, int count) {
     double* taken = from;
     from += count;
@@ -58,7 +71,7 @@ CAROM_INLINE double* take(double*& from, int count) {
     return taken;
 }
 
-// One ball more than there are, at rest, stands for both balls of the lanes that fill up the last register.
+// Contacts that fill up the last register are between one more ball, which rests, and itself.
 CAROM_INLINE Work lay_out(const ContactPhase& phase) {
     Work w;
     w.balls = phase.balls;
@@ -104,31 +117,25 @@ CAROM_INLINE Work lay_out(const ContactPhase& phase) {
 CAROM_INLINE void rates(const Work& w, const double* y, double* rate) {
     for (int c = 0; c < w.lanes; c += 4) {
         Four dv[4];
-        for (int lane = 0; lane < 4; ++lane) dv[lane] = load(y + w.i[c + lane]) - load(y + w.j[c + lane]);
+        for (int lane = 0; lane < 4; ++lane)
+            dv[lane] = load<4>(y + w.i[c + lane]) - load<4>(y + w.j[c + lane]);
         transpose(dv[0], dv[1], dv[2], dv[3]);
-        store(rate + c, dv[0] * load(w.nx + c) + dv[2] * load(w.ny + c));
+        store(rate + c, dv[0] * load<4>(w.nx + c) + dv[2] * load<4>(w.ny + c));
     }
 }
 
-// The regularised friction is stiff: friction over slip, k = mu_b F / |s|, of one contact makes its slip
-// decay at the rate 7 k, and by Gershgorin no rate of all contacts together exceeds 7 times the largest sum
-// of k over a ball (the cloth under it counts half). Runge-Kutta steps are stable up to 2.78 over that. Where
-// a slip is still above epsilon, steps of that length would jump over the way into stick: there k counts
-// kResolve times, up to its value in stick, mu_b F / epsilon.
-constexpr double kStableShare = 2.0 / 7.0;
-constexpr double kResolve = 8.0;
-
 CAROM_INLINE Four normal_force(const Law& law, Four d, Four memory) {
     const Four loading = d * square_root(d);
-    Four share = d / memory;  // not used where memory is 0
+    Four share = d / memory;  // a lane whose memory is 0 does not use it
     for (int p = law.p; p > 1; p /= 2) share = share * share;
-    return where_less(d, memory, loading * (law.a + law.b * share), loading);
+    return select(d < memory, loading * (law.a + law.b * share), loading);
 }
 
+// Brings the list of contacts up to date.
 CAROM_INLINE void list_overlaps(Work& w, const double* d) {
     int change = 0;
     for (int block = 0; block < w.lanes / 4; ++block) {
-        const int bits = less(every(0.0), load(d + 4 * block));
+        const int bits = bits_less(broadcast<4>(0.0), load<4>(d + 4 * block));
         change |= bits ^ w.overlaps[block];
         w.overlaps[block] = bits;
     }
@@ -152,15 +159,16 @@ CAROM_INLINE void list_overlaps(Work& w, const double* d) {
 CAROM_INLINE void add_forces(const Work& w, const Law& law, const double* y, const double* d, int first,
                              double* dy) {
     const int *c = w.active + first, *i = w.active_i + first, *j = w.active_j + first;
-    const Four nx = load(w.active_nx + first), ny = load(w.active_ny + first);
+    const Four nx = load<4>(w.active_nx + first), ny = load<4>(w.active_ny + first);
     Four motion[4];
-    for (int lane = 0; lane < 4; ++lane) motion[lane] = subtract_add(load(y + i[lane]), load(y + j[lane]));
+    for (int lane = 0; lane < 4; ++lane)
+        motion[lane] = subtract_add(load<4>(y + i[lane]), load<4>(y + j[lane]));
     transpose(motion[0], motion[1], motion[2], motion[3]);
     const double* turn = y + kTurn;
-    const Four turning = four(turn[i[0]] + turn[j[0]], turn[i[1]] + turn[j[1]], turn[i[2]] + turn[j[2]],
+    const Four turning = pack(turn[i[0]] + turn[j[0]], turn[i[1]] + turn[j[1]], turn[i[2]] + turn[j[2]],
                               turn[i[3]] + turn[j[3]]);
-    const Four overlap = four(d[c[0]], d[c[1]], d[c[2]], d[c[3]]);
-    const Four memory = four(w.memory[c[0]], w.memory[c[1]], w.memory[c[2]], w.memory[c[3]]);
+    const Four overlap = pack(d[c[0]], d[c[1]], d[c[2]], d[c[3]]);
+    const Four memory = pack(w.memory[c[0]], w.memory[c[1]], w.memory[c[2]], w.memory[c[3]]);
     const Four F = normal_force(law, overlap, memory);
     // t = n x z = (n_y, -n_x); s_x = (v_i - v_j) . t - R (w_iz + w_jz), s_z = R (w_i + w_j) . t.
     const Four s_x = motion[0] * ny - motion[2] * nx - turning;
@@ -170,30 +178,30 @@ CAROM_INLINE void add_forces(const Work& w, const Law& law, const double* y, con
     const Four twist = 2.5 * f_z;
     Four rows[4] = {f_x * ny - F * nx, twist * ny, -F * ny - f_x * nx, -twist * nx};
     const Four resolved = kResolve * k, stuck = law.stiffest * F;
-    Four ends[4] = {f_z, -2.5 * f_x, every(0.0), where_less(resolved, stuck, stuck, resolved)};
+    Four ends[4] = {f_z, -2.5 * f_x, broadcast<4>(0.0), select(resolved < stuck, stuck, resolved)};
     transpose(rows[0], rows[1], rows[2], rows[3]);
     transpose(ends[0], ends[1], ends[2], ends[3]);
     for (int lane = 0; lane < 4; ++lane) {
         double *dy_i = dy + i[lane], *dy_j = dy + j[lane];
-        store(dy_i, load(dy_i) + rows[lane]);
-        store(dy_i + 4, load(dy_i + 4) + ends[lane]);
-        store(dy_j, subtract_add(load(dy_j), rows[lane]));
-        store(dy_j + 4, subtract_add(load(dy_j + 4), ends[lane]));
+        store(dy_i, load<4>(dy_i) + rows[lane]);
+        store(dy_i + 4, load<4>(dy_i + 4) + ends[lane]);
+        store(dy_j, subtract_add(load<4>(dy_j), rows[lane]));
+        store(dy_j + 4, subtract_add(load<4>(dy_j + 4), ends[lane]));
     }
 }
 
-// The cloth under the balls that are pressed down.
+// Adds the friction of the cloth under the balls that are pressed down.
 CAROM_INLINE void add_cloth(const Work& w, const Law& law, const double* y, double* dy) {
-    const Four zero = every(0.0);
+    const Four zero = broadcast<4>(0.0);
     for (int b = 0; b < kRow * w.rows; b += 4 * kRow) {
         const double* vertical = dy + b + kLift;
-        const Four lift = four(vertical[0], vertical[kRow], vertical[2 * kRow], vertical[3 * kRow]);
-        if (less(lift, zero) == 0) continue;
+        const Four lift = pack(vertical[0], vertical[kRow], vertical[2 * kRow], vertical[3 * kRow]);
+        if (bits_less(lift, zero) == 0) continue;
         Four motion[4];
-        for (int lane = 0; lane < 4; ++lane) motion[lane] = load(y + b + kRow * lane);
+        for (int lane = 0; lane < 4; ++lane) motion[lane] = load<4>(y + b + kRow * lane);
         transpose(motion[0], motion[1], motion[2], motion[3]);
         const Four ux = motion[0] + law.cloth_sign * motion[3], uy = motion[2] - law.cloth_sign * motion[1];
-        const Four pressed = law.mu_s * where_less(lift, zero, lift, zero);
+        const Four pressed = law.mu_s * select(lift < zero, lift, zero);
         const Four k = pressed / square_root(ux * ux + uy * uy + law.epsilon2);
         double stiffness[4];
         store(stiffness, 0.5 * k);
@@ -201,51 +209,54 @@ CAROM_INLINE void add_cloth(const Work& w, const Law& law, const double* y, doub
         transpose(rows[0], rows[1], rows[2], rows[3]);
         for (int lane = 0; lane < 4; ++lane) {
             double* row = dy + b + kRow * lane;
-            store(row, load(row) + rows[lane]);
+            store(row, load<4>(row) + rows[lane]);
             row[kStiffness] += stiffness[lane];
         }
     }
 }
 
-// The right-hand side, in units of V and L: forces d^1.5, mass 1. Added to dy.
+// Adds the right-hand side to dy, in units of V and L: forces are d^1.5, masses 1.
 CAROM_INLINE void forces(Work& w, const Law& law, const double* y, const double* d, double* dy) {
     list_overlaps(w, d);
     for (int n = 0; n < w.count; n += 4) add_forces(w, law, y, d, n, dy);
     if (law.cloth) add_cloth(w, law, y, dy);
 }
 
-// Rows of eight, a number of a multiple of eight.
+// to = from + share * slope; `count` is a multiple of kRow.
 CAROM_INLINE void shift(double* to, const double* from, const double* slope, double share, int count) {
     for (int n = 0; n < count; n += kRow) {
         for (int half = n; half < n + kRow; half += 4)
-            store(to + half, load(from + half) + share * load(slope + half));
+            store(to + half, load<4>(from + half) + share * load<4>(slope + half));
     }
 }
 
-// The end of a step. The slopes that forces are added to are left at 0 for the next.
+// The end of a step. kClear sets the slopes to zero, because forces() adds to them.
 template <bool kClear>
 CAROM_INLINE void combine(double* y, double* const* slope, double sixth, int count) {
     double *k0 = slope[0], *k1 = slope[1], *k2 = slope[2], *k3 = slope[3];
     for (int n = 0; n < count; n += kRow) {
         for (int half = n; half < n + kRow; half += 4) {
-            const Four outer = load(k0 + half) + load(k3 + half), inner = load(k1 + half) + load(k2 + half);
-            store(y + half, load(y + half) + sixth * (outer + 2.0 * inner));
+            const Four outer = load<4>(k0 + half) + load<4>(k3 + half),
+                       inner = load<4>(k1 + half) + load<4>(k2 + half);
+            store(y + half, load<4>(y + half) + sixth * (outer + 2.0 * inner));
             if (!kClear) continue;
-            store(k0 + half, every(0.0));
-            store(k1 + half, every(0.0));
-            store(k2 + half, every(0.0));
-            store(k3 + half, every(0.0));
+            store(k0 + half, broadcast<4>(0.0));
+            store(k1 + half, broadcast<4>(0.0));
+            store(k2 + half, broadcast<4>(0.0));
+            store(k3 + half, broadcast<4>(0.0));
         }
     }
 }
 
+// The longest stable step, at most `longest`.
 CAROM_INLINE double stable_step(const Work& w, const double* dy, double longest) {
     double least = 0.0;
     for (int b = 0; b < w.balls; ++b) least = smallest(least, dy[kRow * b + kStiffness]);
     return kStableShare < longest * -least ? kStableShare / -least : longest;
 }
 
-// rate[0] belongs to the state at entry; d_stage is the overlap before the step at exit. Returns its length.
+// One Runge-Kutta step; returns its length. At entry rate[0] belongs to the state; at exit d_stage is the overlap
+// before the step.
 CAROM_INLINE double step(Work& w, const Law& law, double longest) {
     forces(w, law, w.y, w.d, w.dy[0]);
     const double h = stable_step(w, w.dy[0], longest);
@@ -256,29 +267,30 @@ CAROM_INLINE double step(Work& w, const Law& law, double longest) {
         rates(w, w.y_stage, w.rate[k]);
         forces(w, law, w.y_stage, w.d_stage, w.dy[k]);
     }
-    for (int c = 0; c < w.lanes; c += 4) store(w.d_stage + c, load(w.d + c));
+    for (int c = 0; c < w.lanes; c += 4) store(w.d_stage + c, load<4>(w.d + c));
     combine<true>(w.y, w.dy, h / 6.0, kRow * w.rows);
     combine<false>(w.d, w.rate, h / 6.0, w.lanes);
     return h;
 }
 
-// The largest overlap inside a step in which a contact turned back, from the cubic Hermite interpolant:
-// without it the energy of each contact carries an error of order h^2.
+// The largest overlap inside a step in which the overlap stopped growing, from the cubic Hermite interpolant. Without
+// it the energy of each contact has an error of order h^2.
 CAROM_INLINE double peak(double before, double after, double m0, double m1) {
     // d(s) = d0 + m0 s + (3 rise - 2 m0 - m1) s^2 + (m0 + m1 - 2 rise) s^3; its slope falls from m0 > 0 to m1 < 0.
     const double rise = after - before, q2 = 3.0 * rise - 2.0 * m0 - m1, q3 = m0 + m1 - 2.0 * rise;
-    const double s = m0 / (__builtin_sqrt(largest(0.0, q2 * q2 - 3.0 * q3 * m0)) - q2);
+    const double s = m0 / (square_root(largest(0.0, q2 * q2 - 3.0 * q3 * m0)) - q2);
     return s > 0.0 && s < 1.0 ? before + s * (m0 + s * (q2 + s * q3)) : 0.0;
 }
 
-// Largest overlap since a contact opened. `before` holds the rates before the step, `now` those after it.
+// Updates the largest overlap of each contact. `before` holds the rates before the step, `now` those after it.
 CAROM_INLINE void remember(const Work& w, const double* before, const double* now, double h) {
-    const Four zero = every(0.0);
+    const Four zero = broadcast<4>(0.0);
     for (int c = 0; c < w.lanes; c += 4) {
-        const Four d = load(w.d + c), memory = load(w.memory + c);
-        const Four most = where_less(zero, d, where_less(memory, d, d, memory), zero);
+        const Four d = load<4>(w.d + c), memory = load<4>(w.memory + c);
+        const Four most = select(zero < d, select(memory < d, d, memory), zero);
         store(w.memory + c, most);
-        const int turned = less(zero, load(before + c)) & less(load(now + c), zero) & less(zero, d);
+        const int turned =
+            bits_less(zero, load<4>(before + c)) & bits_less(load<4>(now + c), zero) & bits_less(zero, d);
         if (turned == 0) continue;
         for (int k = c; k < c + 4; ++k) {
             if ((turned >> (k - c) & 1) != 0)
@@ -287,6 +299,7 @@ CAROM_INLINE void remember(const Work& w, const double* before, const double* no
     }
 }
 
+// Whether all contacts are open and none would close within look_ahead.
 CAROM_INLINE bool finished(const Work& w, const double* rate, double look_ahead) {
     for (int c = 0; c < w.contacts; ++c) {
         if (w.d[c] > 0.0) return false;
@@ -297,16 +310,18 @@ CAROM_INLINE bool finished(const Work& w, const double* rate, double look_ahead)
 
 }  // namespace
 
-long CAROM_CONTACT_PHASE_NAME(const ContactPhase& phase, const HertzLaw& law, double longest_step,
-                              double look_ahead, double time_limit) noexcept {
+namespace CAROM_ISA_NAMESPACE {
+
+long contact_phase(const ContactPhase& phase, const HertzLaw& law, double longest_step, double look_ahead,
+                   double time_limit) noexcept {
     Work w = lay_out(phase);
-    const Law lanes{every(law.a),
-                    every(law.b),
-                    every(-law.mu_b),
-                    every(law.mu_s),
-                    every(law.epsilon * law.epsilon),
-                    every(law.published_slip_sign ? 1.0 : -1.0),
-                    every(-law.mu_b / law.epsilon),
+    const Law lanes{broadcast<4>(law.a),
+                    broadcast<4>(law.b),
+                    broadcast<4>(-law.mu_b),
+                    broadcast<4>(law.mu_s),
+                    broadcast<4>(law.epsilon * law.epsilon),
+                    broadcast<4>(law.published_slip_sign ? 1.0 : -1.0),
+                    broadcast<4>(-law.mu_b / law.epsilon),
                     law.p,
                     law.mu_s > 0.0};
     rates(w, w.y, w.rate[0]);
@@ -319,7 +334,7 @@ long CAROM_CONTACT_PHASE_NAME(const ContactPhase& phase, const HertzLaw& law, do
         time += h;
         rates(w, w.y, w.rate[1]);
         remember(w, w.rate[0], w.rate[1], h);
-        for (int c = 0; c < w.lanes; c += 4) store(w.rate[0] + c, load(w.rate[1] + c));
+        for (int c = 0; c < w.lanes; c += 4) store(w.rate[0] + c, load<4>(w.rate[1] + c));
         open = finished(w, w.rate[0], look_ahead);
     }
     for (int b = 0; b < w.balls; ++b) {
@@ -327,5 +342,7 @@ long CAROM_CONTACT_PHASE_NAME(const ContactPhase& phase, const HertzLaw& law, do
     }
     return steps;
 }
+
+}  // namespace CAROM_ISA_NAMESPACE
 
 }  // namespace carom::kernel

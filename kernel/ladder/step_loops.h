@@ -1,17 +1,15 @@
-// What all rungs of the ladder share: constants, loops with the published stop test, and the entry from table
-// coordinates. A rung holds only what differs: a step, or a loop of its own.
+// What the kernel variants of the ladder share: constants, and loops with the published stop test. A variant holds
+// only what differs: a step, or a loop of its own.
 #pragma once
 
 #include "carom/kernel/march.h"
-#include "frame.h"
+#include "march/drive.h"
+#include "march/loop.h"
 
 namespace carom::kernel {
 namespace {
 
-// As march_impl.h: slip below this gives no friction in the published code.
-constexpr double kSlipCutoff = 1e-16;
-
-// Names as in march_impl.h.
+// Named as in march/loop.h.
 struct Constants {
     double R, m, mu_s1, mu_s2, mu_b, dP, C, e_b, u_floor;
     long limit;
@@ -36,7 +34,7 @@ struct Impulses {
     double dP1 = 0.0, dP2 = 0.0, dPix = 0.0, dPiy = 0.0, dPjx = 0.0, dPjy = 0.0;
 };
 
-// Applies them as the baseline does, expression by expression.
+// Applies the impulses with the expressions of the baseline.
 inline void apply(FrameState& s, const Constants& k, const Impulses& d) {
     s.v1x += (d.dP1 + d.dPix) / k.m;
     s.v1y += (-k.dP + d.dPiy) / k.m;
@@ -50,7 +48,7 @@ inline void apply(FrameState& s, const Constants& k, const Impulses& d) {
     s.w2z += k.C * -d.dP1;
 }
 
-// The published loop around Step::step<kSign>(state, constants).
+// The loop of the published march around Step::step<kSign>(state, constants).
 template <class Step, int kSign>
 long single_loop(FrameState& s, const ImpactParams& p, int n) {
     const Constants k = constants<kSign>(s, p, n);
@@ -71,7 +69,7 @@ long single_loop(FrameState& s, const ImpactParams& p, int n) {
     return steps;
 }
 
-// The same in two stages, compression and restitution, so that neither asks in which it is.
+// The same in two loops, one for compression and one for restitution: neither asks which phase it is in.
 template <class Step, int kSign>
 long two_stage_loop(FrameState& s, const ImpactParams& p, int n) {
     const Constants k = constants<kSign>(s, p, n);
@@ -95,7 +93,7 @@ long two_stage_loop(FrameState& s, const ImpactParams& p, int n) {
     return steps;
 }
 
-// A rung of which only the step differs.
+// A variant of which only the step differs.
 template <class Step>
 struct WithStep {
     template <int kSign>
@@ -103,26 +101,6 @@ struct WithStep {
         return single_loop<Step, kSign>(s, p, n);
     }
 };
-
-// From table coordinates and back: validation, projection, the rung's loop, back-projection.
-template <class Rung>
-void drive(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n, ImpactResult& result) {
-    if (n < 1) {
-        copy_input(ball1, ball2, ImpactStatus::kBadParameter, result);
-        return;
-    }
-    Frame frame;
-    FrameState state;
-    if (enter_frame(ball1, ball2, params, frame, state, result) != ImpactStatus::kOk) return;
-    const long steps =
-        params.cloth_slip == ClothSlip::kAsPublished
-            ? Rung::template loop<+1>(state, params, n)
-            : Rung::template loop<-1>(state, params, n);  // NOLINT(misc-redundant-expression): +1, -1
-    if (steps < 0)
-        copy_input(ball1, ball2, ImpactStatus::kStepLimit, result);
-    else
-        leave_frame(ball1, ball2, frame, state, steps, result);
-}
 
 }  // namespace
 }  // namespace carom::kernel

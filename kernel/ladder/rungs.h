@@ -1,0 +1,20 @@
+// The lists of kernel variants that rungs.cpp makes, one for each instruction set.
+#pragma once
+
+#include <span>
+
+#include "ladder/ladder.h"
+
+namespace carom::kernel {
+
+namespace scalar {
+extern const std::span<const Rung> kRungs;
+}
+namespace v3 {
+extern const std::span<const Rung> kRungs;
+}
+namespace v4 {
+extern const std::span<const Rung> kRungs;
+}
+
+}  // namespace carom::kernel

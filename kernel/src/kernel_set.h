@@ -1,0 +1,46 @@
+// One kernel of every kind, as built for one instruction set.
+//
+// The sources in march/, tolerance/ and contact_phase/ are compiled once for every instruction set. The build defines
+// CAROM_ISA_NAMESPACE as scalar, v3 or v4; what a source exports lies in that namespace.
+#pragma once
+
+#include "carom/kernel/contact_phase.h"
+#include "carom/kernel/isa.h"
+#include "carom/kernel/march.h"
+#include "carom/kernel/tolerance.h"
+
+namespace carom::kernel {
+
+struct KernelSet {
+    MarchFunction march;
+    ToleranceFunction tolerance;
+    ToleranceBatchFunction tolerance_batch;
+    ContactPhaseFunction contact_phase;
+};
+
+namespace scalar {
+constexpr Isa kIsa = Isa::kScalar;
+extern const KernelSet kKernels;
+}  // namespace scalar
+namespace v3 {
+constexpr Isa kIsa = Isa::kV3;
+extern const KernelSet kKernels;
+}  // namespace v3
+namespace v4 {
+constexpr Isa kIsa = Isa::kV4;
+extern const KernelSet kKernels;
+}  // namespace v4
+
+#ifdef CAROM_ISA_NAMESPACE
+namespace CAROM_ISA_NAMESPACE {
+void march(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
+           ImpactResult& result) noexcept;
+void tolerance_single(const Ball& ball1, const Ball& ball2, const ImpactParams& params, double tolerance,
+                      ImpactResult& result) noexcept;
+void tolerance_batch(const ImpactBatch& batch, double tolerance, const ImpactBatchResult& result) noexcept;
+long contact_phase(const ContactPhase& phase, const HertzLaw& law, double longest_step, double look_ahead,
+                   double time_limit) noexcept;
+}  // namespace CAROM_ISA_NAMESPACE
+#endif
+
+}  // namespace carom::kernel

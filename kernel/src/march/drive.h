@@ -1,0 +1,32 @@
+// A march from table coordinates and back. Its loop differs from one kernel variant to the next; what stands around
+// the loop does not: validation, projection into the contact frame, back-projection.
+#pragma once
+
+#include "frame.h"
+
+namespace carom::kernel {
+namespace {
+
+// March::loop<kSign>(state, params, n) marches a state in the contact frame; kSign is the sign of the cloth slip. It
+// returns the number of steps, or -1 if the march did not end within its bound on steps.
+template <class March>
+void drive(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n, ImpactResult& result) {
+    if (n < 1) {
+        copy_input(ball1, ball2, ImpactStatus::kBadParameter, result);
+        return;
+    }
+    Frame frame;
+    FrameState state;
+    if (enter_frame(ball1, ball2, params, frame, state, result) != ImpactStatus::kOk) return;
+    const long steps =
+        params.cloth_slip == ClothSlip::kAsPublished
+            ? March::template loop<+1>(state, params, n)
+            : March::template loop<-1>(state, params, n);  // NOLINT(misc-redundant-expression): +1, -1
+    if (steps < 0)
+        copy_input(ball1, ball2, ImpactStatus::kStepLimit, result);
+    else
+        leave_frame(ball1, ball2, frame, state, steps, result);
+}
+
+}  // namespace
+}  // namespace carom::kernel

@@ -1,0 +1,14 @@
+// The published march, the plain reference that every faster variant is compared with. Built once per instruction
+// set.
+#include "kernel_set.h"
+#include "march/drive.h"
+#include "march/loop.h"
+
+namespace carom::kernel::CAROM_ISA_NAMESPACE {
+
+void march(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
+           ImpactResult& result) noexcept {
+    drive<PublishedMarch>(ball1, ball2, params, n, result);
+}
+
+}  // namespace carom::kernel::CAROM_ISA_NAMESPACE

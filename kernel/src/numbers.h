@@ -1,0 +1,29 @@
+// The few functions of one number that the kernels need. Files that are built for one instruction set include no std
+// templates (simd.h says why); everything here is inline and in an anonymous namespace.
+#pragma once
+
+namespace carom::kernel {
+namespace {
+
+inline bool finite(double x) {
+    return x - x == 0.0;
+}
+
+inline double square_root(double x) {
+    return __builtin_sqrt(x);
+}
+
+inline double absolute(double x) {
+    return x < 0.0 ? -x : x;
+}
+
+inline double largest(double a, double b) {
+    return a > b ? a : b;
+}
+
+inline double smallest(double a, double b) {
+    return a < b ? a : b;
+}
+
+}  // namespace
+}  // namespace carom::kernel
