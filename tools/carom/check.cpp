@@ -5,12 +5,17 @@
 #include <limits>
 #include <string>
 
-#include "commands.h"
+#include <memory>
 #include "console.h"
+#include "options.h"
 #include "setup.h"
 
 namespace carom::tools {
 namespace {
+
+struct CheckArgs {
+    std::string scene;
+};
 
 template <class List>
 std::string ids(const List& list) {
@@ -95,11 +100,19 @@ std::string report(const Plan& plan) {
     return fmt::to_string(out);
 }
 
-}  // namespace
-
-int run_check(const CheckArgs& args) {
+int run(const CheckArgs& args) {
     print(report(plan_scene(args.scene)));
     return kOk;
+}
+
+}  // namespace
+
+void add_check(Options& program) {
+    auto args = std::make_shared<CheckArgs>();
+    Options& command =
+        program.command("check", "Validate a scene; print its plan: effects, models, kernel, names");
+    command.argument("SCENE", args->scene, "Scene file (TOML)").required = true;
+    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools

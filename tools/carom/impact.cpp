@@ -4,16 +4,26 @@
 
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
-#include "commands.h"
+#include <memory>
+#include "carom/kernel/tolerance.h"
 #include "console.h"
 #include "impact_line.h"
+#include "options.h"
 #include "setup.h"
 
 namespace carom::tools {
 namespace {
+
+struct ImpactArgs {
+    std::string method = "mathavan";
+    std::optional<int> substeps;
+    double tolerance = 1e-6;
+    std::string cloth_slip = "consistent";
+};
 
 /// Lines of standard input, of bounded length. Not std::getline:
 /// that neither returns on SIGINT nor stops at a length.
@@ -80,9 +90,7 @@ bool is_blank(const std::string& line) {
     return line.find_first_not_of(" \t\r") == std::string::npos;
 }
 
-}  // namespace
-
-int run_impact(const ImpactArgs& args) {
+int run(const ImpactArgs& args) {
     const ImpactSettings settings = settings_of(args);
     LineReader reader;
     std::string line;
@@ -101,6 +109,25 @@ int run_impact(const ImpactArgs& args) {
         flush_output();
     }
     return all_computed ? kOk : kFailed;
+}
+
+}  // namespace
+
+void add_impact(Options& program) {
+    auto args = std::make_shared<ImpactArgs>();
+    Options& command =
+        program.command("impact", "One impact per line of standard input, its result per line (JSON)");
+    Option& method = command.option("--method", &args->method, "NAME", "Ball-ball model");
+    method.choices = {"mathavan", "inelastic", "elastic"};
+    Option& substeps = command.option("--substeps", &args->substeps, "N",
+                                      "Use the published march with this N (mathavan; default: off)");
+    substeps.range = {1, 100000000};
+    Option& tolerance = command.option("--tolerance", &args->tolerance, "E",
+                                       "Error allowed, relative to the approach speed (mathavan)");
+    tolerance.range = {kernel::kTightestTolerance, kernel::kLoosestTolerance};
+    tolerance.excludes = "--substeps";
+    add_cloth_slip(command, args->cloth_slip, "Sign of the cloth slip inside the impact (mathavan)");
+    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools

@@ -10,14 +10,37 @@
 #include <utility>
 #include <vector>
 
+#include <memory>
 #include "carom/render/sequence.h"
-#include "commands.h"
 #include "console.h"
 #include "margin/frame_costs.h"
+#include "options.h"
 #include "setup.h"
 
 namespace carom::tools {
 namespace {
+
+struct RenderArgs {
+    std::string input;  ///< a scene, or a record (.json)
+    std::string pattern = "frames/%05d.png";
+    std::optional<double> fps;
+    std::string size;  ///< "1280x720"; empty: the scene's
+    double from = 0.0;
+    std::optional<double> to;
+    std::optional<long> frame;
+    std::optional<double> at;
+    std::string camera;  ///< empty: the scene's
+    std::string gl = "osmesa";
+    int png_level = 1;
+    std::string eye, target;  ///< "x,y,z"; empty: a named camera
+    std::string ball;         ///< that camera follow follows; empty: the one that moves first
+    std::string overlay;      ///< list of names
+    bool trails = false;      ///< --overlay trails
+    std::string sheet;        ///< "4x3"; empty: frames
+    int jobs = 0;
+    bool resume = false;
+    bool raw = false;
+};
 
 bool is_record_file(const std::string& path) {
     constexpr std::string_view kEnding = ".json";
@@ -130,8 +153,6 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     return options;
 }
 
-}  // namespace
-
 // The margin bar's share of the simulation: what the events cost that fall between a frame and the next one.
 // A record that was not profiled has no costs: then the bar shows drawing, reading back and encoding alone.
 void set_simulation_costs(const Record& record, render::SequenceOptions& options) {
@@ -157,7 +178,7 @@ int write_sheet(const RenderArgs& args, const Record& record, const render::Sequ
     return kOk;
 }
 
-int run_render(const RenderArgs& args) {
+int run(const RenderArgs& args) {
     check_args(args);
     if (args.raw && (args.resume || !args.sheet.empty()))
         throw UsageError("--raw goes with neither --resume nor --sheet");
@@ -198,6 +219,50 @@ int run_render(const RenderArgs& args) {
     print(fmt::format("to make a film of them: ffmpeg -framerate {} -i {} -pix_fmt yuv420p shot.mp4\n",
                       options.fps, options.pattern));
     return kOk;
+}
+
+}  // namespace
+
+void add_render(Options& program) {
+    auto args = std::make_shared<RenderArgs>();
+    Options& command =
+        program.command("render", "Numbered PNG frames of a scene or a record; frame k shows from + k/fps");
+    command.argument("SCENE", args->input, "Scene file (TOML), or a record (.json) of carom simulate -o")
+        .required = true;
+    command.option("-o,--output", &args->pattern, "PATTERN",
+                   "Files to write, with one %d or %05d for the number of the frame");
+    add_picture(command, args->fps, args->size);
+    command.option("--from", &args->from, "S", "First instant in s");
+    command.option("--to", &args->to, "S", "Last instant in s (default: the end of the shot)");
+    command.option("--frame", &args->frame, "K", "Only frame K (default: all)");
+    command.option("--at", &args->at, "S", "Only this instant in s, as frame 0 (default: all)");
+    Option& camera = command.option("--camera", &args->camera, "NAME",
+                                    "Camera (default: the scene's, which is top unless it says otherwise)");
+    camera.choices = {"top", "rail", "player", "follow"};
+    command.option("--eye", &args->eye, "X,Y,Z",
+                   "Free camera: where the eye is, in m (default: a named camera)");
+    Option& target = command.option("--target", &args->target, "X,Y,Z",
+                                    "Free camera: what it looks at, in m (default: a named camera)");
+    target.needs = "--eye";
+    command.option("--ball", &args->ball, "ID",
+                   "Ball that camera follow follows (default: the one that moves first)");
+    command.option(
+        "--overlay", &args->overlay, "LIST",
+        "Drawn over the picture: trails, events, spin, ghost, clock, margin, or all (default: none)");
+    command.flag("--trails", args->trails, "The same as --overlay trails (default: off)");
+    command.option("--sheet", &args->sheet, "CxR",
+                   "One contact sheet of columns x rows pictures instead of frames (default: off)");
+    Option& jobs =
+        command.option("--jobs", &args->jobs, "N", "Threads that encode and write; 0: one per core");
+    jobs.range = {0, 256};
+    command.flag("--resume", args->resume, "Leave out frames whose finished file is there (default: off)");
+    command.flag("--raw", args->raw,
+                 "RGB bytes on standard output instead of PNG files, for ffmpeg (default: off)");
+    add_gl(command, args->gl);
+    Option& level = command.option("--png-level", &args->png_level, "L",
+                                   "Compression, 0 (large, fast) to 9 (small, slow)");
+    level.range = {0, 9};
+    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools

@@ -1,4 +1,3 @@
-// Steps that several sub-commands begin with.
 #include "setup.h"
 
 #include <fmt/core.h>
@@ -20,6 +19,34 @@ constexpr int kLargestSide = 16384;
 constexpr double kFastestFps = 1e6;
 
 }  // namespace
+
+void add_gl(Options& command, std::string& gl) {
+    Option& option =
+        command.option("--gl", &gl, "NAME", "OpenGL without a display: osmesa, or egl (surfaceless)");
+    option.choices = {"osmesa", "egl"};
+}
+
+void add_picture(Options& command, std::optional<double>& fps, std::string& size) {
+    command.option("--fps", &fps, "F",
+                   "Frames per second (default: the scene's, which is 60 unless it says otherwise)");
+    command.option("--size", &size, "WxH",
+                   "Pixels (default: the scene's, which is 1280x720 unless it says otherwise)");
+}
+
+void add_repeat(Options& command, int& rounds, std::string description) {
+    command.option("--repeat", &rounds, "N", std::move(description)).range = {1, 1000};
+}
+
+void add_cloth_slip(Options& command, std::string& name, std::string description) {
+    Option& option = command.option("--cloth-slip", &name, "NAME", std::move(description));
+    option.choices = {"consistent", "as_published"};
+}
+
+void add_reports(Options& command, std::string& csv, std::string& plot, bool& json) {
+    command.option("--csv", &csv, "FILE.csv", "Write the table (default: not written)");
+    command.option("--plot", &plot, "FILE.svg", "Draw it (default: not drawn)");
+    command.flag("--json", json, "Print JSON (default: off)");
+}
 
 std::string available_isas() {
     std::string names;

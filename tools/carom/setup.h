@@ -1,4 +1,4 @@
-// Steps that several sub-commands begin with.
+// Options that several commands have, and steps that several begin with.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,16 @@
 #include "carom/engine/record.h"
 #include "carom/engine/simulate.h"
 #include "carom/render/sequence.h"
+#include "options.h"
 
 namespace carom::tools {
+
+// Options: their variables hold the defaults, except in add_picture, where the scene has them.
+void add_gl(Options& command, std::string& gl);
+void add_picture(Options& command, std::optional<double>& fps, std::string& size);
+void add_repeat(Options& command, int& rounds, std::string description);
+void add_cloth_slip(Options& command, std::string& name, std::string description);
+void add_reports(Options& command, std::string& csv, std::string& plot, bool& json);
 
 /// CAROM_ISA, or the widest one. @throws UsageError for an unknown or unavailable name
 kernel::Isa chosen_isa();

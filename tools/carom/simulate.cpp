@@ -8,15 +8,29 @@
 #include <optional>
 #include <string>
 
+#include <memory>
 #include "base/output_file.h"
 #include "carom/engine/verify.h"
-#include "commands.h"
 #include "console.h"
+#include "options.h"
 #include "report/csv.h"
 #include "setup.h"
 
 namespace carom::tools {
 namespace {
+
+struct SimulateArgs {
+    std::string scene;
+    std::string record;  ///< file names; empty: not asked for
+    std::string events;
+    std::string samples;
+    std::optional<double> sample_dt;  ///< [s]
+    std::optional<double> until;      ///< [s]
+    bool hash = false;
+    bool profile = false;
+    bool json = false;
+    bool verify = false;  ///< check the laws after every event
+};
 
 /// Sums of a profiled run over the events of one kind [ns].
 struct CostSum {
@@ -188,9 +202,7 @@ int verified(const Record& record, const Plan& plan) {
     return kFailed;
 }
 
-}  // namespace
-
-int run_simulate(const SimulateArgs& args) {
+int run(const SimulateArgs& args) {
     check_args(args);
     const Plan plan = plan_scene(args.scene);
     SimulateOptions options;
@@ -208,6 +220,33 @@ int run_simulate(const SimulateArgs& args) {
     print(args.hash ? record.hash() + "\n" : summary(record, args.scene));
     if (args.profile) print(profile_report(record));
     return status;
+}
+
+}  // namespace
+
+void add_simulate(Options& program) {
+    auto args = std::make_shared<SimulateArgs>();
+    Options& command =
+        program.command("simulate", "Run a scene: what happened, events, record, sampled states, hash");
+    command.argument("SCENE", args->scene, "Scene file (TOML)").required = true;
+    command.option("-o,--output", &args->record, "FILE.json",
+                   "Write the record, for carom render (default: not written)");
+    command.option("--events", &args->events, "FILE.csv", "Write the events (default: not written)");
+    command.option("--samples", &args->samples, "FILE.csv",
+                   "Write sampled states; needs --sample-dt (default: not written)");
+    command.option("--sample-dt", &args->sample_dt, "S", "Time between samples in s (default: none)");
+    command.option("--until", &args->until, "S",
+                   "Stop at this time in s at the latest (default: the scene's end)");
+    command.flag("--hash", args->hash,
+                 "Print the hash of all bits of the record instead of the summary (default: off)");
+    command.flag("--profile", args->profile,
+                 "Time every event: cost by kind, kernel by ball-ball event, columns in the events file "
+                 "(default: off)");
+    command.flag("--json", args->json, "Print JSON (default: off)");
+    command.flag(
+        "--verify", args->verify,
+        "Check the laws after every event; a broken one is named, and the exit status is 1 (default: off)");
+    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools

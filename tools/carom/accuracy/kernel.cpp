@@ -312,7 +312,9 @@ KernelAccuracy measure_kernel_accuracy(const AccuracyKernelArgs& args) {
     return result;
 }
 
-int run_accuracy_kernel(const AccuracyKernelArgs& args) {
+namespace {
+
+int run(const AccuracyKernelArgs& args) {
     check_plot_path(args.plot);
     const KernelAccuracy result = measure_kernel_accuracy(args);
     if (!args.csv.empty()) {
@@ -323,6 +325,22 @@ int run_accuracy_kernel(const AccuracyKernelArgs& args) {
     if (!args.plot.empty()) plot_kernel_accuracy(result, args.plot);
     print(args.json ? kernel_accuracy_json(result) : kernel_accuracy_text(result));
     return kOk;
+}
+
+}  // namespace
+
+void add_accuracy_kernel(Options& accuracy) {
+    auto args = std::make_shared<AccuracyKernelArgs>();
+    Options& command = accuracy.command(
+        "kernel", "One impact: time and error of the march, of the tolerance kernel, of closed forms");
+    command.option("--count", &args->count, "N", "Seeded random impacts").range = {1, 1000000};
+    command.option("--seed", &args->seed, "S", "Seed of the random impacts");
+    add_repeat(command, args->repeat, "Interleaved rounds; minimum, median and maximum are over them");
+    Option& most = command.option("--most-substeps", &args->most_substeps, "N", "Largest N of the march");
+    most.range = {10, 100000};
+    add_reports(command, args->csv, args->plot, args->json);
+    command.footer = "Errors are shares of the approach speed, from a solution on which two methods agree.";
+    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools

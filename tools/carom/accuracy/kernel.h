@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "options.h"
+
 namespace carom::tools {
 
 struct AccuracyKernelArgs {
@@ -58,7 +60,7 @@ std::string kernel_accuracy_json(const KernelAccuracy& result);
 std::string kernel_accuracy_csv(const KernelAccuracy& result);
 void plot_kernel_accuracy(const KernelAccuracy& result, const std::string& path);
 
-/// Measures, writes what was asked for and prints. Returns the exit status.
-int run_accuracy_kernel(const AccuracyKernelArgs& args);
+/// Adds `carom accuracy kernel`.
+void add_accuracy_kernel(Options& accuracy);
 
 }  // namespace carom::tools

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include <memory>
 #include "accuracy/box2d_shot.h"
+#include "accuracy/kernel.h"
 #include "base/output_file.h"
 #include "bench/clock.h"
 #include "bench/rounds.h"
 #include "carom/engine/simulate.h"
 #include "console.h"
+#include "options.h"
 #include "report/plot.h"
 #include "setup.h"
 
@@ -225,7 +228,11 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     return result;
 }
 
-int run_accuracy_scene(const AccuracySceneArgs& args) {
+namespace {
+
+int run(const AccuracySceneArgs& args) {
+    if (args.scene.empty())
+        throw UsageError("accuracy: a scene file or the word kernel is required; see carom accuracy --help");
     check_plot_path(args.plot);
     if (!(args.target > 0.0 && std::isfinite(args.target)))
         throw UsageError(fmt::format("--target {}: expected a number of metres greater than 0", args.target));
@@ -244,6 +251,27 @@ int run_accuracy_scene(const AccuracySceneArgs& args) {
     if (!args.plot.empty()) plot_scene_accuracy(result, args.scene, args.plot);
     print(args.json ? scene_accuracy_json(result) : scene_accuracy_text(result, args.scene));
     return kOk;
+}
+
+}  // namespace
+
+void add_accuracy(Options& program) {
+    auto args = std::make_shared<AccuracySceneArgs>();
+    Options& command = program.command(
+        "accuracy", "What accuracy costs in time: of a shot (SCENE), or of one impact (kernel)");
+    command.argument("SCENE", args->scene, "Scene file (TOML)");
+    command.option("--target", &args->target, "M",
+                   "Final error allowed, in m: what the recommendation aims at");
+    Option& march = command.option("--march", &args->march, "N,...", "Settings of the march to compare, N");
+    march.range = {1, 100000000};
+    Option& tolerance = command.option("--tolerance", &args->tolerances, "E,...", "Tolerances to compare");
+    tolerance.range = {kernel::kTightestTolerance, kernel::kLoosestTolerance};
+    add_repeat(command, args->repeat, "Interleaved rounds; minimum, median and maximum are over them");
+    command.flag("--box2d", args->box2d,
+                 "Also the same shot in a Box2D world stepped at 60 Hz to 10 kHz (default: off)");
+    add_reports(command, args->csv, args->plot, args->json);
+    command.run = [args] { return run(*args); };
+    add_accuracy_kernel(command);
 }
 
 }  // namespace carom::tools

@@ -86,7 +86,4 @@ std::string scene_accuracy_json(const SceneAccuracy& result);
 std::string scene_accuracy_csv(const SceneAccuracy& result);
 void plot_scene_accuracy(const SceneAccuracy& result, const std::string& scene, const std::string& path);
 
-/// Measures, writes what was asked for and prints. Returns the exit status.
-int run_accuracy_scene(const AccuracySceneArgs& args);
-
 }  // namespace carom::tools

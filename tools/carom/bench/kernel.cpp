@@ -18,8 +18,10 @@
 #include "carom/kernel/march.h"
 #include "carom/kernel/tolerance.h"
 #include "console.h"
+#include "options.h"
 #include "reference/random_impacts.h"
 #include "reference/solver.h"
+#include "setup.h"
 
 namespace carom::tools {
 namespace {
@@ -199,7 +201,7 @@ double cost_of_a_probe() {
 
 }  // namespace
 
-KernelBench measure_kernel(const BenchOptions& options) {
+KernelBench measure_kernel(const BenchKernelArgs& options) {
     if (options.random < 1) throw UsageError("--random: expected at least 1");
     const ClothSlip slip =
         options.cloth_slip == "as_published" ? ClothSlip::kAsPublished : ClothSlip::kConsistent;
@@ -255,10 +257,33 @@ KernelBench measure_kernel(const BenchOptions& options) {
     return bench;
 }
 
-int run_bench_kernel(const BenchOptions& options) {
+namespace {
+
+int run(const BenchKernelArgs& options) {
     const KernelBench bench = measure_kernel(options);
     print(options.json ? kernel_bench_json(bench) : kernel_bench_text(bench));
     return kOk;
+}
+
+}  // namespace
+
+void add_bench_kernel(Options& bench) {
+    auto args = std::make_shared<BenchKernelArgs>();
+    Options& command = bench.command(
+        "kernel", "Every form of the ball-ball march, and every tolerance, against the plain march");
+    command.flag("--json", args->json, "Print JSON (default: off)");
+    Option& random = command.option("--random", &args->random, "N",
+                                    "Seeded random impacts beside the five states of the paper");
+    random.range = {1, 1000000};
+    command.option("--seed", &args->seed, "S", "Seed of the random impacts");
+    add_repeat(command, args->repeats, "Interleaved rounds; minimum and median are over them");
+    add_cloth_slip(command, args->cloth_slip, "Sign of the cloth slip inside the impact");
+    command.flag("--no-growth", args->growth, "Leave out N = 100 and 10000 (default: measured)");
+    command.option("--only", &args->only, "NAME",
+                   "Time only this form, such as 'march reduced state', or all whose names begin with these "
+                   "words, such as 'tolerance'; may be repeated (default: all)");
+    command.footer = "Without CAROM_ISA all instruction sets that this processor has run in one call.";
+    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools

@@ -4,13 +4,23 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/render_stages.h"
-#include "commands.h"
 #include "console.h"
 #include "setup.h"
+#include "options.h"
+#include <string>
+#include <memory>
 
 namespace carom::tools {
+namespace {
 
-int run_bench_render(const BenchRenderArgs& args) {
+struct BenchRenderArgs {
+    std::string scene = "scenes/eight_ball_break.toml";
+    int frames = 120;
+    std::string gl = "osmesa";
+    bool json = false;
+};
+
+int run(const BenchRenderArgs& args) {
     const Record record = simulate_plan(plan_scene(args.scene), {});
     ProgressLine line("bench render");
     const auto rows =
@@ -45,6 +55,20 @@ int run_bench_render(const BenchRenderArgs& args) {
                           row.setup_ms, row.fps));
     }
     return kOk;
+}
+
+}  // namespace
+
+void add_bench_render(Options& bench) {
+    auto args = std::make_shared<BenchRenderArgs>();
+    Options& command = bench.command("render", "What drawing, reading back and encoding a frame costs");
+    command.argument("SCENE", args->scene, "Scene file (TOML)");
+    Option& frames =
+        command.option("--frames", &args->frames, "N", "Frames at each size, spread over the shot");
+    frames.range = {3, 100000};
+    add_gl(command, args->gl);
+    command.flag("--json", args->json, "Print JSON (default: off)");
+    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools

@@ -9,6 +9,7 @@
 #include <functional>
 #include <numeric>
 
+#include <memory>
 #include "bench/clock.h"
 #include "bench/five_states.h"
 #include "bench/machine.h"
@@ -16,6 +17,7 @@
 #include "carom/engine/simulate.h"
 #include "carom/kernel/march.h"
 #include "console.h"
+#include "options.h"
 #include "reference/random_impacts.h"
 #include "setup.h"
 
@@ -159,7 +161,7 @@ struct Gas {
 // Above this the loop through all boxes is only slow.
 constexpr int kMostDirect = 2000;
 
-std::vector<GasRow> growth_of(const BenchShotOptions& options, kernel::Isa isa) {
+std::vector<GasRow> growth_of(const BenchShotArgs& options, kernel::Isa isa) {
     std::vector<Gas> list;
     for (const ClusterModel clusters : {ClusterModel::kSequential, ClusterModel::kCompliant}) {
         const bool compliant = clusters == ClusterModel::kCompliant;
@@ -202,7 +204,7 @@ std::vector<GasRow> growth_of(const BenchShotOptions& options, kernel::Isa isa) 
 
 }  // namespace
 
-ShotBench measure_shots(const BenchShotOptions& options) {
+ShotBench measure_shots(const BenchShotArgs& options) {
     const kernel::Isa isa = chosen_isa();
     const std::vector<std::string> names = shot_names();
     std::vector<TimedShot> subjects;
@@ -239,10 +241,31 @@ ShotBench measure_shots(const BenchShotOptions& options) {
     return bench;
 }
 
-int run_bench_shot(const BenchShotOptions& options) {
+namespace {
+
+int run(const BenchShotArgs& options) {
     const ShotBench bench = measure_shots(options);
     print(options.json ? shot_bench_json(bench) : shot_bench_text(bench));
     return kOk;
+}
+
+}  // namespace
+
+void add_bench_shot(Options& bench) {
+    auto args = std::make_shared<BenchShotArgs>();
+    Options& command = bench.command(
+        "shot", "Whole breaks and shots in units of one baseline impact; growth with the number of balls");
+    command.flag("--json", args->json, "Print JSON (default: off)");
+    Option& seeds =
+        command.option("--seeds", &args->seeds, "N", "Seeds of every shot; a row is their median");
+    seeds.range = {1, 1000};
+    add_repeat(command, args->repeats,
+               "Interleaved rounds; a shot counts with its minimum (gases: a third of them)");
+    Option& events = command.option("--events", &args->events, "N", "Events of a gas at each size");
+    events.range = {10, 10000000};
+    command.flag("--no-growth", args->growth, "Leave out the gases of 16 to 10000 balls (default: measured)");
+    command.footer = "One baseline impact is the plain double march at N = 1000, timed in the same run.";
+    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools

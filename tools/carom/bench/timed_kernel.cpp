@@ -118,7 +118,7 @@ std::vector<ImpactResult> results_of(const TimedKernel& kernel, const ImpactSet&
     return results;
 }
 
-std::vector<KernelRow> kernel_rows(const BenchOptions& options) {
+std::vector<KernelRow> kernel_rows(const BenchKernelArgs& options) {
     const std::vector<TimedKernel> list = timed_kernels(options.only);
     std::vector<KernelRow> rows;
     rows.reserve(list.size());

@@ -7,11 +7,13 @@
 #include <chrono>
 #include <cstdio>
 
+#include <memory>
 #include "base/output_file.h"
 #include "base/temporary_folder.h"
 #include "bench/clock.h"
 #include "bench/rounds.h"
 #include "console.h"
+#include "options.h"
 #include "report/plot.h"
 #include "setup.h"
 
@@ -191,7 +193,9 @@ TimingCost cost_of_timing(const Plan& plan) {
     return cost;
 }
 
-int run_margin(const MarginArgs& args) {
+namespace {
+
+int run(const MarginArgs& args) {
     if (args.repeat < 1) throw UsageError("--repeat: expected at least 1");
     if (!args.size.empty()) parse_size(args.size);
     check_plot_path(args.plot);
@@ -220,6 +224,30 @@ int run_margin(const MarginArgs& args) {
     }
     print(args.json ? margin_json(margin, last) : margin_text(margin, last, args.scene));
     return kOk;
+}
+
+}  // namespace
+
+void add_margin(Options& program) {
+    auto args = std::make_shared<MarginArgs>();
+    Options& command = program.command("margin", "Real-time margin: what every frame costs against 1/fps");
+    command.argument("SCENE", args->scene, "Scene file (TOML)").required = true;
+    add_picture(command, args->fps, args->size);
+    add_repeat(command, args->repeat, "Runs; every frame's cost is the median over them");
+    command.flag("--no-render", args->no_render, "Measure the simulation only (default: off)");
+    command.flag("--sweep", args->sweep,
+                 "Every accuracy at every frame rate from 30 to 1000: where the scene stops being real time "
+                 "(default: off)");
+    add_gl(command, args->gl);
+    command.option("--trace", &args->trace, "FILE.json",
+                   "Write the frames as Chrome trace events, for chrome://tracing or Perfetto (default: not "
+                   "written)");
+    add_reports(command, args->csv, args->plot, args->json);
+    command.footer =
+        "simulate = detect + resolve + kernel + cluster. A frame costs simulate + draw + readback + encode + "
+        "write,\nmeasured one after the other on one thread; frames go to a temporary folder and are "
+        "removed.";
+    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools

@@ -2,16 +2,28 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
 #include "carom/render/sequence.h"
-#include "commands.h"
 #include "margin/frame_costs.h"
 
 namespace carom::tools {
+
+struct MarginArgs {
+    std::string scene;
+    std::optional<double> fps;
+    std::string size;
+    int repeat = 1;
+    bool no_render = false;
+    bool sweep = false;  ///< accuracy x frame rate
+    std::string gl = "osmesa";
+    std::string csv, plot, trace;  ///< file names; empty: not asked for
+    bool json = false;
+};
 
 /// What is measured of a frame. simulate is the sum of the four behind it; a frame costs simulate and the
 /// five after kCluster.

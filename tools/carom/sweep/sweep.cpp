@@ -20,14 +20,25 @@
 #include <utility>
 #include <vector>
 
-#include "commands.h"
+#include <memory>
 #include "console.h"
+#include "options.h"
 #include "setup.h"
 #include "sweep/partial_file.h"
 #include "sweep/row.h"
 
 namespace carom::tools {
 namespace {
+
+struct SweepArgs {
+    std::string scene;
+    std::vector<std::string> vary;  ///< "KEY=DISTRIBUTION"
+    std::uint64_t count = 0;
+    std::uint64_t seed = 1;
+    int jobs = 0;
+    std::string shard;  ///< "2/4"; empty: all
+    std::string output;
+};
 
 using Clock = std::chrono::steady_clock;
 
@@ -207,9 +218,7 @@ Variation read_variation(const SweepArgs& args) {
     }
 }
 
-}  // namespace
-
-int run_sweep(const SweepArgs& args) {
+int run(const SweepArgs& args) {
     if (args.count < 1 || args.count > kMostShots)
         throw UsageError(fmt::format("--count: expected 1 to {} shots", kMostShots));
     const ShotRange range = shard_range(args.shard, args.count);
@@ -242,6 +251,32 @@ int run_sweep(const SweepArgs& args) {
     message(fmt::format("{} failed while running; {} why", counted(failed, "shot"),
                         failed == 1 ? "its row says" : "their rows say"));
     return kFailed;
+}
+
+}  // namespace
+
+void add_sweep(Options& program) {
+    auto args = std::make_shared<SweepArgs>();
+    Options& command =
+        program.command("sweep", "Many shots of one scene with values that vary: a row a shot");
+    command.argument("SCENE", args->scene, "Scene file (TOML)").required = true;
+    Option& vary = command.option(
+        "--vary", &args->vary, "KEY=DISTRIBUTION",
+        "What varies and how, once per key: uniform(a,b), normal(sd) around the scene's value, "
+        "normal(mean,sd), integer(a,b) or list(v,...)");
+    vary.required = true;
+    command.option("--count", &args->count, "N", "Number of shots").required = true;
+    command.option("--seed", &args->seed, "S", "Seed of all draws");
+    Option& jobs =
+        command.option("--jobs", &args->jobs, "J", "Threads; 0: one per core; the rows do not depend on it");
+    jobs.range = {0, 256};
+    command.option("--shard", &args->shard, "I/N",
+                   "Only the I-th of N parts; the files of all parts, one behind the other, are the whole "
+                   "(default: all)");
+    command.option("-o,--output", &args->output, "FILE.csv", "Table to write").required = true;
+    command.footer =
+        "A sweep that was stopped or killed goes on when the same command is given again (docs/sweep.md).";
+    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools
