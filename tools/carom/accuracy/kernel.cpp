@@ -10,7 +10,6 @@
 #include <memory>
 #include <stdexcept>
 
-#include "base/output_file.h"
 #include "bench/clock.h"
 #include "bench/rounds.h"
 #include "carom/kernel/closed_forms.h"
@@ -20,6 +19,7 @@
 #include "reference/batch_arrays.h"
 #include "reference/solver.h"
 #include "report/plot.h"
+#include "report/table.h"
 #include "setup.h"
 
 namespace carom::tools {
@@ -261,7 +261,7 @@ std::vector<KernelReach> reach_of(const std::vector<KernelAccuracyRow>& rows) {
             return r.method == first.method && r.kind == first.kind;
         });
         if (known || first.other_model) continue;
-        for (const double error : {1e-3, 1e-6, 1e-9, 1e-12}) {
+        for (const double error : kReachedErrors) {
             KernelReach reach{first.method, first.kind, error, INFINITY, INFINITY};
             for (const KernelAccuracyRow& row : rows) {
                 if (row.method != first.method || row.kind != first.kind) continue;
@@ -317,11 +317,7 @@ namespace {
 int run(const AccuracyKernelArgs& args) {
     check_plot_path(args.plot);
     const KernelAccuracy result = measure_kernel_accuracy(args);
-    if (!args.csv.empty()) {
-        OutputFile file(args.csv);
-        file.write(kernel_accuracy_csv(result));
-        file.commit();
-    }
+    write_report(args.csv, kernel_accuracy_csv(result));
     if (!args.plot.empty()) plot_kernel_accuracy(result, args.plot);
     print(args.json ? kernel_accuracy_json(result) : kernel_accuracy_text(result));
     return kOk;

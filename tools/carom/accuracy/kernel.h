@@ -49,7 +49,9 @@ struct KernelAccuracy {
 
 KernelAccuracy measure_kernel_accuracy(const AccuracyKernelArgs& args);
 
-/// For every method the time to reach 1e-3, 1e-6, 1e-9 and 1e-12.
+inline constexpr double kReachedErrors[] = {1e-3, 1e-6, 1e-9, 1e-12};
+
+/// For every method the time to reach each of these errors.
 std::vector<KernelReach> reach_of(const std::vector<KernelAccuracyRow>& rows);
 
 /// Slope of the straight line through (log x, log y) by least squares; NaN for fewer than two points.

@@ -9,13 +9,13 @@
 #include <memory>
 #include "accuracy/box2d_shot.h"
 #include "accuracy/kernel.h"
-#include "base/output_file.h"
 #include "bench/clock.h"
 #include "bench/rounds.h"
 #include "carom/engine/simulate.h"
 #include "console.h"
 #include "options.h"
 #include "report/plot.h"
+#include "report/table.h"
 #include "setup.h"
 
 namespace carom::tools {
@@ -243,11 +243,7 @@ int run(const AccuracySceneArgs& args) {
                         "= \"mathavan\"",
                         args.scene, name(plan.scene.physics.ball_ball)));
     const SceneAccuracy result = measure_scene_accuracy(plan.scene, args);
-    if (!args.csv.empty()) {
-        OutputFile file(args.csv);
-        file.write(scene_accuracy_csv(result));
-        file.commit();
-    }
+    write_report(args.csv, scene_accuracy_csv(result));
     if (!args.plot.empty()) plot_scene_accuracy(result, args.scene, args.plot);
     print(args.json ? scene_accuracy_json(result) : scene_accuracy_text(result, args.scene));
     return kOk;

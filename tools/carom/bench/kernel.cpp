@@ -4,16 +4,14 @@
 #include <fmt/format.h>
 #include <immintrin.h>
 
+#include <memory>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <functional>
-#include <memory>
-#include <numeric>
 
 #include "bench/clock.h"
 #include "bench/five_states.h"
 #include "bench/machine.h"
+#include "bench/rounds.h"
 #include "bench/timed_kernel.h"
 #include "carom/kernel/march.h"
 #include "carom/kernel/tolerance.h"
@@ -46,7 +44,7 @@ double difference(const ImpactResult& a, const ImpactResult& b, const Impact& in
 
 constexpr int kSubsteps = 1000;
 
-/// Rounds over all subjects in a new random order each, so that no drift of the clock favours one.
+/// Times every subject on both sets.
 void time_all(std::vector<TimedKernel>& list, const ImpactSet& five, const ImpactSet& random, int repeats) {
     std::vector<ImpactResult> results(std::max(five.impacts.size(), random.impacts.size()));
     ProgressLine warming("bench kernel, warming up");
@@ -60,24 +58,15 @@ void time_all(std::vector<TimedKernel>& list, const ImpactSet& five, const Impac
         s.random_calls = std::max(1, static_cast<int>(5e6 / std::max(all, 1.0)));
         s.random_calls = std::min(s.random_calls, 4);
     }
-    reference::Generator rng(99);
-    std::vector<std::size_t> order(list.size());
-    std::iota(order.begin(), order.end(), 0u);
-    ProgressLine progress("bench kernel");
-    for (int round = 0; round < repeats; ++round) {
-        for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng.next() % i]);
-        for (std::size_t k = 0; k < order.size(); ++k) {
-            throw_if_interrupted();
-            TimedKernel& s = list[order[k]];
-            // The first run brings code and data back into the caches.
-            s.time(five, kSubsteps, 1, results);
-            s.five_ns.push_back(s.time(five, kSubsteps, s.five_calls, results));
-            if (s.random_calls > 1) s.time(random, kSubsteps, 1, results);
-            s.random_ns.push_back(s.time(random, kSubsteps, s.random_calls, results));
-            progress.show_bar(round * static_cast<long>(order.size()) + static_cast<long>(k) + 1,
-                              repeats * static_cast<long>(order.size()));
-        }
-    }
+    interleaved("bench kernel", list.size(), repeats, [&](std::size_t i) {
+        TimedKernel& s = list[i];
+        // The first run brings code and data back into the caches.
+        s.time(five, kSubsteps, 1, results);
+        s.five_ns.push_back(s.time(five, kSubsteps, s.five_calls, results));
+        if (s.random_calls > 1) s.time(random, kSubsteps, 1, results);
+        s.random_ns.push_back(s.time(random, kSubsteps, s.random_calls, results));
+        return 0.0;
+    });
 }
 
 /// Differences from the baseline and errors from the converged solution.
@@ -133,17 +122,10 @@ class Judge {
 std::vector<GrowthRow> growth_of(const std::vector<TimedKernel>& list, const ImpactSet& five) {
     std::vector<GrowthRow> rows;
     std::vector<ImpactResult> results(five.impacts.size());
-    ProgressLine progress("bench kernel, growth");
-    long done = 0;
     for (int n : {100, 1000, 10000}) {
-        std::vector<std::vector<double>> times(list.size());
-        for (int round = 0; round < 5; ++round) {
-            for (std::size_t i = 0; i < list.size(); ++i) {
-                throw_if_interrupted();
-                times[i].push_back(list[i].time(five, n, n == 100 ? 8 : 2, results));
-                progress.show_bar(++done, 3L * 5L * static_cast<long>(list.size()));
-            }
-        }
+        const auto times =
+            interleaved(fmt::format("bench kernel, growth to N = {}", n), list.size(), 5,
+                        [&](std::size_t i) { return list[i].time(five, n, n == 100 ? 8 : 2, results); });
         for (std::size_t i = 0; i < list.size(); ++i)
             rows.push_back({list[i].row.name, list[i].row.isa, n, minimum(times[i]), median(times[i])});
     }

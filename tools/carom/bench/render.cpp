@@ -3,12 +3,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include <memory>
+#include <string>
 #include "bench/render_stages.h"
 #include "console.h"
-#include "setup.h"
 #include "options.h"
-#include <string>
-#include <memory>
+#include "report/table.h"
+#include "setup.h"
 
 namespace carom::tools {
 namespace {
@@ -28,32 +29,22 @@ int run(const BenchRenderArgs& args) {
             throw_if_interrupted();
             line.show_bar(done, total);
         });
+    Table table(Column("name", "size", "<8"), Column("draw_ms", "draw", ">9.2f"),
+                Column("readback_ms", "readback", ">10.2f"),
+                Column("draw_readback_p95_ms", "both p95", ">10.2f"), Column("encode_ms", "encode", ">9.2f"),
+                Column("write_ms", "write", ">9.2f"), Column("setup_ms", "set-up", ">10.0f"),
+                Column("fps", "frames/s", ">12.1f"));
+    for (const RenderBenchRow& r : rows)
+        table.add({r.name, r.draw_ms, r.readback_ms, r.slow_ms, r.encode_ms, r.write_ms, r.setup_ms, r.fps});
     if (args.json) {
-        nlohmann::ordered_json list = nlohmann::ordered_json::array();
-        for (const RenderBenchRow& row : rows) {
-            list.push_back({{"name", row.name},
-                            {"draw_ms", row.draw_ms},
-                            {"readback_ms", row.readback_ms},
-                            {"draw_readback_p95_ms", row.slow_ms},
-                            {"encode_ms", row.encode_ms},
-                            {"write_ms", row.write_ms},
-                            {"setup_ms", row.setup_ms},
-                            {"fps", row.fps}});
-        }
-        print(nlohmann::ordered_json{{"gl", args.gl}, {"frames", args.frames}, {"rows", list}}.dump(2) +
-              "\n");
+        const nlohmann::ordered_json all = {
+            {"gl", args.gl}, {"frames", args.frames}, {"rows", table_json(table)}};
+        print(all.dump(2) + "\n");
         return kOk;
     }
     print(fmt::format(
-        "{}: {} frames at each size; CPU ms a frame, medians after the first; write is wall time\n\n",
-        args.scene, args.frames));
-    print(fmt::format("{:8}{:>9}{:>10}{:>10}{:>9}{:>9}{:>10}{:>12}\n", "size", "draw", "readback", "both p95",
-                      "encode", "write", "set-up", "frames/s"));
-    for (const RenderBenchRow& row : rows) {
-        print(fmt::format("{:8}{:>9.2f}{:>10.2f}{:>10.2f}{:>9.2f}{:>9.2f}{:>10.0f}{:>12.1f}\n", row.name,
-                          row.draw_ms, row.readback_ms, row.slow_ms, row.encode_ms, row.write_ms,
-                          row.setup_ms, row.fps));
-    }
+        "{}: {} frames at each size; CPU ms a frame, medians after the first; write is wall time\n\n{}",
+        args.scene, args.frames, table_text(table)));
     return kOk;
 }
 

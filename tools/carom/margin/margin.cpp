@@ -8,13 +8,13 @@
 #include <cstdio>
 
 #include <memory>
-#include "base/output_file.h"
 #include "base/temporary_folder.h"
 #include "bench/clock.h"
 #include "bench/rounds.h"
 #include "console.h"
 #include "options.h"
 #include "report/plot.h"
+#include "report/table.h"
 #include "setup.h"
 
 namespace carom::tools {
@@ -215,13 +215,9 @@ int run(const MarginArgs& args) {
     Margin margin = combine(runs, fps, !args.no_render);
     if (margin.rendered) margin.size = draw_options(last.record, args, fps).size;
     margin.timing = cost_of_timing(plan);
-    if (!args.csv.empty()) write_margin_csv(margin, last, args.csv);
+    write_report(args.csv, margin_csv(margin, last));
     if (!args.plot.empty()) plot_margin(margin, last, args.scene, args.plot);
-    if (!args.trace.empty()) {
-        OutputFile file(args.trace);
-        file.write(margin_trace(last, fps));
-        file.commit();
-    }
+    if (!args.trace.empty()) write_report(args.trace, margin_trace(last, fps));
     print(args.json ? margin_json(margin, last) : margin_text(margin, last, args.scene));
     return kOk;
 }

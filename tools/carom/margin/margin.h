@@ -103,7 +103,7 @@ Margin combine(const std::vector<MarginRun>& runs, double fps, bool rendered);
 
 std::string margin_json(const Margin& margin, const MarginRun& last);
 std::string margin_text(const Margin& margin, const MarginRun& last, const std::string& scene);
-void write_margin_csv(const Margin& margin, const MarginRun& last, const std::string& path);
+std::string margin_csv(const Margin& margin, const MarginRun& last);
 void plot_margin(const Margin& margin, const MarginRun& last, const std::string& scene,
                  const std::string& path);
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "base/output_file.h"
 #include "console.h"
+#include "report/table.h"
 
 namespace carom::tools {
 namespace {
@@ -231,9 +231,7 @@ std::string plot_svg(const Plot& plot) {
 }
 
 void write_plot(const Plot& plot, const std::string& path) {
-    OutputFile file(path);
-    file.write(plot_svg(plot));
-    file.commit();
+    write_report(path, plot_svg(plot));
 }
 
 void check_plot_path(const std::string& path) {

@@ -67,6 +67,30 @@ ShotRange shard_range(const std::string& text, std::uint64_t count) {
     throw UsageError(fmt::format("--shard {}: expected I/N with 1 <= I <= N, as in 2/4", text));
 }
 
+struct SweepRow {
+    std::string text;  ///< with its line end
+    ShotOutcome outcome;
+};
+
+/// What makes the rows; every thread reads it.
+struct Sweep {
+    const Variation& variation;
+    kernel::Isa isa;
+    std::vector<SweepColumn> columns = sweep_columns(variation);
+
+    std::string header() const {
+        std::vector<Cell> cells;
+        for (const SweepColumn& column : columns) cells.emplace_back(column.key);
+        return csv_line(cells);
+    }
+    SweepRow row(std::uint64_t index) const {
+        const SweptShot shot = swept_shot(variation, index, isa);
+        std::vector<Cell> cells;
+        for (const SweepColumn& column : columns) cells.push_back(column.value(shot));
+        return {csv_line(cells), shot.outcome};
+    }
+};
+
 /// Hands out shot numbers to threads, and their rows, in order, to the one that writes.
 class Queue {
   public:
@@ -120,10 +144,10 @@ class Queue {
 /// Threads that run shots; the destructor waits for the shots that have begun.
 class Workers {
   public:
-    Workers(Queue& queue, const Variation& variation, kernel::Isa isa, unsigned jobs) : queue_(queue) {
+    Workers(Queue& queue, const Sweep& sweep, unsigned jobs) : queue_(queue) {
         try {
             for (unsigned i = 0; i < jobs; ++i)
-                threads_.emplace_back([&queue, &variation, isa] { work(queue, variation, isa); });
+                threads_.emplace_back([&queue, &sweep] { work(queue, sweep); });
         } catch (const std::exception& error) {  // the system gives no more threads
             const std::size_t started = threads_.size();
             finish();
@@ -137,9 +161,9 @@ class Workers {
     Workers& operator=(const Workers&) = delete;
 
   private:
-    static void work(Queue& queue, const Variation& variation, kernel::Isa isa) noexcept {
+    static void work(Queue& queue, const Sweep& sweep) noexcept {
         try {
-            while (const auto shot = queue.claim()) queue.put(*shot, sweep_row(variation, *shot, isa));
+            while (const auto shot = queue.claim()) queue.put(*shot, sweep.row(*shot));
         } catch (...) {
             queue.stop(std::current_exception());
         }
@@ -155,14 +179,12 @@ class Workers {
 
 /// Where to go on in a file that was left behind. The last line is made again, so that the rows of another
 /// build are not continued.
-std::uint64_t take_up(const PartialFile& file, const Variation& variation, const ShotRange& range,
-                      kernel::Isa isa) {
+std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRange& range) {
     if (file.lines() == 0) return range.first;
     const std::uint64_t rows = static_cast<std::uint64_t>(file.lines()) - (range.header ? 1 : 0);
     std::string expected;
     if (rows <= range.last - range.first)
-        expected =
-            rows == 0 ? sweep_header(variation) : sweep_row(variation, range.first + rows - 1, isa).text;
+        expected = rows == 0 ? sweep.header() : sweep.row(range.first + rows - 1).text;
     if (expected != file.last_line() + '\n')
         throw std::runtime_error(fmt::format(
             "{}: its last row is not what this program computes; remove it to begin anew", file.name()));
@@ -174,13 +196,13 @@ std::uint64_t take_up(const PartialFile& file, const Variation& variation, const
 using Outcomes = std::array<std::uint64_t, kShotOutcomes>;
 
 /// Runs the shots from `from` on and writes their rows.
-Outcomes write_rows(PartialFile& file, const Variation& variation, const ShotRange& range, std::uint64_t from,
-                    kernel::Isa isa, unsigned jobs) {
+Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& range, std::uint64_t from,
+                    unsigned jobs) {
     Outcomes outcomes{};
     Queue queue(from, range.last);
     ProgressLine line("sweep");
     Clock::time_point flushed = Clock::now();
-    const Workers workers(queue, variation, isa, jobs);
+    const Workers workers(queue, sweep, jobs);
     for (std::uint64_t done = from; done < range.last;) {
         throw_if_interrupted();
         for (const SweepRow& row : queue.take()) {
@@ -230,14 +252,15 @@ int run(const SweepArgs& args) {
     const std::uint64_t id =
         variation.fingerprint() ^ (range.first * 0x9e3779b97f4a7c15u) ^ (range.last * 0xbf58476d1ce4e5b9u);
     PartialFile file(args.output, id);
-    const std::uint64_t from = take_up(file, variation, range, isa);
-    if (range.header && file.lines() == 0) file.append(sweep_header(variation));
+    const Sweep sweep{variation, isa};
+    const std::uint64_t from = take_up(file, sweep, range);
+    if (range.header && file.lines() == 0) file.append(sweep.header());
     const unsigned jobs =
         args.jobs > 0 ? static_cast<unsigned>(args.jobs) : std::max(1u, std::thread::hardware_concurrency());
     const Clock::time_point start = Clock::now();
     Outcomes outcomes{};
     try {
-        outcomes = write_rows(file, variation, range, from, isa, jobs);
+        outcomes = write_rows(file, sweep, range, from, jobs);
     } catch (const Interrupted&) {
         file.flush();
         if (file.can_be_taken_up())
