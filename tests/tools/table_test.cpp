@@ -24,7 +24,7 @@ TEST(Table, TextIsAlignedAndHasNotes) {
     EXPECT_EQ(table_text(sample()),
               "        count     time  same  only text\n"
               "a           3     0.33   yes          x\n"
-              "b           -      inf    no          y  a note\n"
+              "b           -      inf     0          y  a note\n"
               "c           5  failed: no end\n");
 }
 

@@ -130,8 +130,7 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     options.from = args.at.value_or(args.from);
     options.to = args.at ? args.at : args.to;
     options.frame = args.frame;
-    options.size =
-        args.size.empty() ? render::FrameSize{settings.width, settings.height} : parse_size(args.size);
+    options.size = args.size.empty() ? settings.size() : parse_size(args.size);
     set_view(args, settings, options);
     options.png_level = args.png_level;
     options.jobs = args.jobs;
@@ -168,7 +167,7 @@ void set_simulation_costs(const Record& record, render::SequenceOptions& options
 }
 
 int write_sheet(const RenderArgs& args, const Record& record, const render::SequenceOptions& options) {
-    const render::FrameSize grid = parse_sheet(args.sheet);
+    const FrameSize grid = parse_sheet(args.sheet);
     const std::string path = args.pattern.find('%') == std::string::npos ? args.pattern : "sheet.png";
     render::render_sheet(record, options, grid.width, grid.height, path);
     print(fmt::format(

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "carom/engine/tolerances.h"
 #include "console.h"
 
 namespace carom::tools {
@@ -14,8 +15,6 @@ namespace {
 
 /// More frames than this (46 hours at 60 fps) is a slip of the keyboard, and would fill any disk.
 constexpr double kMostFrames = 1e7;
-/// Pixels per side; what OpenGL implementations draw.
-constexpr int kLargestSide = 16384;
 constexpr double kFastestFps = 1e6;
 
 }  // namespace
@@ -101,28 +100,28 @@ Record simulate_plan(const Plan& plan, SimulateOptions options) {
 
 namespace {
 
-/// "16x9", both 1 to kLargestSide.
-std::optional<render::FrameSize> two_numbers(const std::string& text) {
-    render::FrameSize size{};
+/// "16x9", both 1 to kMaxImageSize.
+std::optional<FrameSize> two_numbers(const std::string& text) {
+    FrameSize size{};
     const char* const end = text.data() + text.size();
     const auto [middle, bad_width] = std::from_chars(text.data(), end, size.width);
     if (bad_width != std::errc() || middle == end || *middle != 'x') return std::nullopt;
     const auto [last, bad_height] = std::from_chars(middle + 1, end, size.height);
     const bool fits =
-        size.width >= 1 && size.width <= kLargestSide && size.height >= 1 && size.height <= kLargestSide;
+        size.width >= 1 && size.width <= kMaxImageSize && size.height >= 1 && size.height <= kMaxImageSize;
     if (bad_height != std::errc() || last != end || !fits) return std::nullopt;
     return size;
 }
 
 }  // namespace
 
-render::FrameSize parse_size(const std::string& text) {
+FrameSize parse_size(const std::string& text) {
     if (const auto size = two_numbers(text)) return *size;
     throw UsageError(fmt::format("--size {}: expected WIDTHxHEIGHT in pixels, 1 to {} each, as in 1280x720",
-                                 text, kLargestSide));
+                                 text, kMaxImageSize));
 }
 
-render::FrameSize parse_sheet(const std::string& text) {
+FrameSize parse_sheet(const std::string& text) {
     if (const auto grid = two_numbers(text)) return *grid;
     throw UsageError(fmt::format("--sheet {}: expected COLUMNSxROWS of pictures, as in 4x3", text));
 }

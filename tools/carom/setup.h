@@ -35,10 +35,10 @@ SimulateOptions interruptible();
 Record simulate_plan(const Plan& plan, SimulateOptions options);
 
 /// "1280x720". @throws UsageError
-render::FrameSize parse_size(const std::string& text);
+FrameSize parse_size(const std::string& text);
 
 /// "4x3": columns and rows of a contact sheet; @throws UsageError
-render::FrameSize parse_sheet(const std::string& text);
+FrameSize parse_sheet(const std::string& text);
 
 /// Frames per second: the one asked for, else the scene's. @throws UsageError
 double chosen_fps(std::optional<double> asked, const RenderSettings& settings);

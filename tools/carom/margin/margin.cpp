@@ -31,8 +31,7 @@ render::SequenceOptions draw_options(const Record& record, const MarginArgs& arg
     render::SequenceOptions options;
     options.fps = fps;
     options.jobs = 1;  // one thread: the parts of a frame do not overlap, and do not disturb each other
-    options.size =
-        args.size.empty() ? render::FrameSize{settings.width, settings.height} : parse_size(args.size);
+    options.size = args.size.empty() ? settings.size() : parse_size(args.size);
     options.camera = settings.camera;
     options.view.eye = settings.eye;
     options.view.target = settings.target;

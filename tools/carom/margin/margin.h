@@ -82,7 +82,7 @@ TimingCost cost_of_timing(const Plan& plan);
 /// All runs together: every frame with its median over them.
 struct Margin {
     double fps = 60.0, budget_ms = 0.0;
-    render::FrameSize size{};
+    FrameSize size{};
     bool rendered = true;
     std::vector<double> stage[kMarginStages];
     std::vector<double> total;
