@@ -34,9 +34,7 @@ bool takes_file(const Option& row) {
 }
 
 std::string joined(const std::vector<std::string>& words, const char* between) {
-    std::string out;
-    for (const std::string& word : words) out += (out.empty() ? "" : between) + word;
-    return out;
+    return fmt::format("{}", fmt::join(words, between));
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

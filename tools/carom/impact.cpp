@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <string>
 
-#include <memory>
 #include "carom/kernel/tolerance.h"
 #include "console.h"
 #include "impact_line.h"
@@ -114,20 +113,19 @@ int run(const ImpactArgs& args) {
 }  // namespace
 
 void add_impact(Options& program) {
-    auto args = std::make_shared<ImpactArgs>();
-    Options& command =
-        program.command("impact", "One impact per line of standard input, its result per line (JSON)");
-    Option& method = command.option("--method", &args->method, "NAME", "Ball-ball model");
-    method.choices = {"mathavan", "inelastic", "elastic"};
-    Option& substeps = command.option("--substeps", &args->substeps, "N",
-                                      "Use the published march with this N (mathavan; default: off)");
-    substeps.range = {1, 100000000};
-    Option& tolerance = command.option("--tolerance", &args->tolerance, "E",
+    auto [command, args] = program.command<ImpactArgs>(
+        "impact", "One impact per line of standard input, its result per line (JSON)", run);
+    command.option("--method", &args.method, "NAME", "Ball-ball model")
+        .one_of({"mathavan", "inelastic", "elastic"});
+    command
+        .option("--substeps", &args.substeps, "N",
+                "Use the published march with this N (mathavan; default: off)")
+        .in(1, 100000000);
+    Option& tolerance = command.option("--tolerance", &args.tolerance, "E",
                                        "Error allowed, relative to the approach speed (mathavan)");
-    tolerance.range = {kernel::kTightestTolerance, kernel::kLoosestTolerance};
+    tolerance.in(kernel::kTightestTolerance, kernel::kLoosestTolerance);
     tolerance.excludes = "--substeps";
-    add_cloth_slip(command, args->cloth_slip, "Sign of the cloth slip inside the impact (mathavan)");
-    command.run = [args] { return run(*args); };
+    add_cloth_slip(command, args.cloth_slip, "Sign of the cloth slip inside the impact (mathavan)");
 }
 
 }  // namespace carom::tools

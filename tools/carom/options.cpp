@@ -115,6 +115,16 @@ std::string Option::default_text() const {
         target);
 }
 
+Option& Option::in(double least, double most) {
+    range = {least, most};
+    return *this;
+}
+
+Option& Option::one_of(std::vector<std::string> values) {
+    choices = std::move(values);
+    return *this;
+}
+
 Options::Options(std::string command_name, std::string description)
     : name(std::move(command_name)), text(std::move(description)) {
     option("-h,--help", {}, "", "Print this help message and exit");

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <list>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,13 +31,15 @@ struct Option {
     bool required = false;
     std::string needs, excludes;  ///< name of an option that stands before this one in the table
 
+    Option& in(double least, double most);
+    Option& one_of(std::vector<std::string> values);
     bool by_place() const { return names.front().front() != '-'; }
     bool may_be_repeated() const { return std::holds_alternative<std::vector<std::string>*>(target); }
     std::string default_text()
         const;  ///< of a variable that has a value before the command line is read, else ""
 };
 
-/// A command, or the whole program: its options and the commands below it. The variables that options set must live as long.
+/// A command, or the whole program: its options and the commands below it.
 struct Options {
     Options(std::string command_name, std::string description);
 
@@ -49,6 +52,17 @@ struct Options {
         run;  ///< does the work and returns the exit status; empty: one of `commands` must be named
 
     Options& command(std::string command_name, std::string description);
+
+    /// A command that does `work`, and the variables of its options, which live as long as it.
+    template <class Args>
+    std::pair<Options&, Args&> command(std::string command_name, std::string description,
+                                       int (*work)(const Args&)) {
+        const auto args = std::make_shared<Args>();
+        Options& added = command(std::move(command_name), std::move(description));
+        added.run = [args, work] { return work(*args); };
+        return {added, *args};
+    }
+
     // Each returns the new row, for what is not said of every option. The next row may move it.
     Option& argument(std::string place, std::string& variable, std::string description);
     Option& flag(const std::string& names, bool& variable,

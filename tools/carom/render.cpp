@@ -1,7 +1,6 @@
 // carom render: numbered PNG frames of a scene or of a record.
 #include <fmt/core.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -10,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include <memory>
 #include "carom/render/sequence.h"
 #include "console.h"
 #include "margin/frame_costs.h"
@@ -81,19 +79,12 @@ void check_args(const RenderArgs& args) {
     }
 }
 
-// "x,y,z" in m.
+/// "x,y,z" in m.
 Vec3 parse_point(const char* option, const std::string& text) {
-    double x[3];
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    for (int k = 0; k < 3; ++k) {
-        const auto [rest, error] = std::from_chars(at, end, x[k]);
-        const bool separated = k < 2 ? rest != end && *rest == ',' : rest == end;
-        if (error != std::errc() || !std::isfinite(x[k]) || !separated)
-            throw UsageError(fmt::format("{}: expected three numbers in m, such as 0.6,-0.5,0.8", option));
-        at = rest + (k < 2 ? 1 : 0);
-    }
-    return {x[0], x[1], x[2]};
+    const auto x = numbers_in<double, 3>(text, ',');
+    if (x && std::isfinite((*x)[0]) && std::isfinite((*x)[1]) && std::isfinite((*x)[2]))
+        return Vec3(x->data());
+    throw UsageError(fmt::format("{}: expected three numbers in m, such as 0.6,-0.5,0.8", option));
 }
 
 render::Overlay overlay_of(const RenderArgs& args) {
@@ -223,45 +214,41 @@ int run(const RenderArgs& args) {
 }  // namespace
 
 void add_render(Options& program) {
-    auto args = std::make_shared<RenderArgs>();
-    Options& command =
-        program.command("render", "Numbered PNG frames of a scene or a record; frame k shows from + k/fps");
-    command.argument("SCENE", args->input, "Scene file (TOML), or a record (.json) of carom simulate -o")
+    auto [command, args] = program.command<RenderArgs>(
+        "render", "Numbered PNG frames of a scene or a record; frame k shows from + k/fps", run);
+    command.argument("SCENE", args.input, "Scene file (TOML), or a record (.json) of carom simulate -o")
         .required = true;
-    command.option("-o,--output", &args->pattern, "PATTERN",
+    command.option("-o,--output", &args.pattern, "PATTERN",
                    "Files to write, with one %d or %05d for the number of the frame");
-    add_picture(command, args->fps, args->size);
-    command.option("--from", &args->from, "S", "First instant in s");
-    command.option("--to", &args->to, "S", "Last instant in s (default: the end of the shot)");
-    command.option("--frame", &args->frame, "K", "Only frame K (default: all)");
-    command.option("--at", &args->at, "S", "Only this instant in s, as frame 0 (default: all)");
-    Option& camera = command.option("--camera", &args->camera, "NAME",
-                                    "Camera (default: the scene's, which is top unless it says otherwise)");
-    camera.choices = {"top", "rail", "player", "follow"};
-    command.option("--eye", &args->eye, "X,Y,Z",
+    add_picture(command, args.fps, args.size);
+    command.option("--from", &args.from, "S", "First instant in s");
+    command.option("--to", &args.to, "S", "Last instant in s (default: the end of the shot)");
+    command.option("--frame", &args.frame, "K", "Only frame K (default: all)");
+    command.option("--at", &args.at, "S", "Only this instant in s, as frame 0 (default: all)");
+    command
+        .option("--camera", &args.camera, "NAME",
+                "Camera (default: the scene's, which is top unless it says otherwise)")
+        .one_of({"top", "rail", "player", "follow"});
+    command.option("--eye", &args.eye, "X,Y,Z",
                    "Free camera: where the eye is, in m (default: a named camera)");
-    Option& target = command.option("--target", &args->target, "X,Y,Z",
+    Option& target = command.option("--target", &args.target, "X,Y,Z",
                                     "Free camera: what it looks at, in m (default: a named camera)");
     target.needs = "--eye";
-    command.option("--ball", &args->ball, "ID",
+    command.option("--ball", &args.ball, "ID",
                    "Ball that camera follow follows (default: the one that moves first)");
     command.option(
-        "--overlay", &args->overlay, "LIST",
+        "--overlay", &args.overlay, "LIST",
         "Drawn over the picture: trails, events, spin, ghost, clock, margin, or all (default: none)");
-    command.flag("--trails", args->trails, "The same as --overlay trails (default: off)");
-    command.option("--sheet", &args->sheet, "CxR",
+    command.flag("--trails", args.trails, "The same as --overlay trails (default: off)");
+    command.option("--sheet", &args.sheet, "CxR",
                    "One contact sheet of columns x rows pictures instead of frames (default: off)");
-    Option& jobs =
-        command.option("--jobs", &args->jobs, "N", "Threads that encode and write; 0: one per core");
-    jobs.range = {0, 256};
-    command.flag("--resume", args->resume, "Leave out frames whose finished file is there (default: off)");
-    command.flag("--raw", args->raw,
+    command.option("--jobs", &args.jobs, "N", "Threads that encode and write; 0: one per core").in(0, 256);
+    command.flag("--resume", args.resume, "Leave out frames whose finished file is there (default: off)");
+    command.flag("--raw", args.raw,
                  "RGB bytes on standard output instead of PNG files, for ffmpeg (default: off)");
-    add_gl(command, args->gl);
-    Option& level = command.option("--png-level", &args->png_level, "L",
-                                   "Compression, 0 (large, fast) to 9 (small, slow)");
-    level.range = {0, 9};
-    command.run = [args] { return run(*args); };
+    add_gl(command, args.gl);
+    command.option("--png-level", &args.png_level, "L", "Compression, 0 (large, fast) to 9 (small, slow)")
+        .in(0, 9);
 }
 
 }  // namespace carom::tools

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -20,9 +19,8 @@ constexpr double kFastestFps = 1e6;
 }  // namespace
 
 void add_gl(Options& command, std::string& gl) {
-    Option& option =
-        command.option("--gl", &gl, "NAME", "OpenGL without a display: osmesa, or egl (surfaceless)");
-    option.choices = {"osmesa", "egl"};
+    command.option("--gl", &gl, "NAME", "OpenGL without a display: osmesa, or egl (surfaceless)")
+        .one_of({"osmesa", "egl"});
 }
 
 void add_picture(Options& command, std::optional<double>& fps, std::string& size) {
@@ -33,12 +31,12 @@ void add_picture(Options& command, std::optional<double>& fps, std::string& size
 }
 
 void add_repeat(Options& command, int& rounds, std::string description) {
-    command.option("--repeat", &rounds, "N", std::move(description)).range = {1, 1000};
+    command.option("--repeat", &rounds, "N", std::move(description)).in(1, 1000);
 }
 
 void add_cloth_slip(Options& command, std::string& name, std::string description) {
-    Option& option = command.option("--cloth-slip", &name, "NAME", std::move(description));
-    option.choices = {"consistent", "as_published"};
+    command.option("--cloth-slip", &name, "NAME", std::move(description))
+        .one_of({"consistent", "as_published"});
 }
 
 void add_reports(Options& command, std::string& csv, std::string& plot, bool& json) {
@@ -102,15 +100,11 @@ namespace {
 
 /// "16x9", both 1 to kMaxImageSize.
 std::optional<FrameSize> two_numbers(const std::string& text) {
-    FrameSize size{};
-    const char* const end = text.data() + text.size();
-    const auto [middle, bad_width] = std::from_chars(text.data(), end, size.width);
-    if (bad_width != std::errc() || middle == end || *middle != 'x') return std::nullopt;
-    const auto [last, bad_height] = std::from_chars(middle + 1, end, size.height);
-    const bool fits =
-        size.width >= 1 && size.width <= kMaxImageSize && size.height >= 1 && size.height <= kMaxImageSize;
-    if (bad_height != std::errc() || last != end || !fits) return std::nullopt;
-    return size;
+    const auto sides = numbers_in<int, 2>(text, 'x');
+    if (!sides) return std::nullopt;
+    for (const int side : *sides)
+        if (side < 1 || side > kMaxImageSize) return std::nullopt;
+    return FrameSize{(*sides)[0], (*sides)[1]};
 }
 
 }  // namespace

@@ -1,8 +1,12 @@
 // Options that several commands have, and steps that several begin with.
 #pragma once
 
+#include <array>
+#include <charconv>
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
@@ -33,6 +37,22 @@ SimulateOptions interruptible();
 
 /// simulate() with a progress line; SIGINT ends it. @throws SimulationError, Interrupted
 Record simulate_plan(const Plan& plan, SimulateOptions options);
+
+/// Exactly kCount numbers with a separator between them, "1280x720"; nothing where the text is anything else.
+template <class Number, std::size_t kCount>
+std::optional<std::array<Number, kCount>> numbers_in(const std::string& text, char separator) {
+    std::array<Number, kCount> list{};
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (std::size_t i = 0; i < kCount; ++i) {
+        if (i > 0 && (at == end || *at++ != separator)) return std::nullopt;
+        const auto [rest, error] = std::from_chars(at, end, list[i]);
+        if (error != std::errc()) return std::nullopt;
+        at = rest;
+    }
+    if (at != end) return std::nullopt;
+    return list;
+}
 
 /// "1280x720". @throws UsageError
 FrameSize parse_size(const std::string& text);

@@ -142,24 +142,21 @@ void add_tolerances(std::vector<Subject>& list, Isa isa) {
         // Read as text, so that it is the very number that a scene file would give.
         const std::string setting = fmt::format("1e-{}", p);
         const double tolerance = std::strtod(setting.c_str(), nullptr);
-        Subject s;
-        s.row.method = "tolerance";
-        s.row.kind = "single";
-        s.row.setting = setting;
-        s.row.value = tolerance;
-        s.one = [f = tolerance_function(isa), tolerance](const Impact& i, ImpactResult& out) {
-            f(i.ball1, i.ball2, i.params, tolerance, out);
-        };
-        list.push_back(std::move(s));
-        Subject b;
-        b.row.method = "tolerance";
-        b.row.kind = "batch";
-        b.row.setting = setting;
-        b.row.value = tolerance;
-        b.many = [f = tolerance_batch_function(isa), tolerance](const BatchArrays& a) {
-            f(a.batch, tolerance, a.result);
-        };
-        list.push_back(std::move(b));
+        for (const bool batch : {false, true}) {
+            Subject& s = list.emplace_back();
+            s.row.method = "tolerance";
+            s.row.kind = batch ? "batch" : "single";
+            s.row.setting = setting;
+            s.row.value = tolerance;
+            if (batch)
+                s.many = [f = tolerance_batch_function(isa), tolerance](const BatchArrays& a) {
+                    f(a.batch, tolerance, a.result);
+                };
+            else
+                s.one = [f = tolerance_function(isa), tolerance](const Impact& i, ImpactResult& out) {
+                    f(i.ball1, i.ball2, i.params, tolerance, out);
+                };
+        }
     }
 }
 
@@ -326,17 +323,14 @@ int run(const AccuracyKernelArgs& args) {
 }  // namespace
 
 void add_accuracy_kernel(Options& accuracy) {
-    auto args = std::make_shared<AccuracyKernelArgs>();
-    Options& command = accuracy.command(
-        "kernel", "One impact: time and error of the march, of the tolerance kernel, of closed forms");
-    command.option("--count", &args->count, "N", "Seeded random impacts").range = {1, 1000000};
-    command.option("--seed", &args->seed, "S", "Seed of the random impacts");
-    add_repeat(command, args->repeat, "Interleaved rounds; minimum, median and maximum are over them");
-    Option& most = command.option("--most-substeps", &args->most_substeps, "N", "Largest N of the march");
-    most.range = {10, 100000};
-    add_reports(command, args->csv, args->plot, args->json);
+    auto [command, args] = accuracy.command<AccuracyKernelArgs>(
+        "kernel", "One impact: time and error of the march, of the tolerance kernel, of closed forms", run);
+    command.option("--count", &args.count, "N", "Seeded random impacts").in(1, 1000000);
+    command.option("--seed", &args.seed, "S", "Seed of the random impacts");
+    add_repeat(command, args.repeat, "Interleaved rounds; minimum, median and maximum are over them");
+    command.option("--most-substeps", &args.most_substeps, "N", "Largest N of the march").in(10, 100000);
+    add_reports(command, args.csv, args.plot, args.json);
     command.footer = "Errors are shares of the approach speed, from a solution on which two methods agree.";
-    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools

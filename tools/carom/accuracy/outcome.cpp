@@ -65,8 +65,7 @@ Outcome outcome_of(const Record& record) {
     const int mover = first_mover(record);
     for (const Event& event : record.events) {
         if (!is_contact(event.type)) continue;
-        const std::string a = record.tracks.at(static_cast<std::size_t>(event.a)).id,
-                          b = record.partner_id(event);
+        const std::string a = record.tracks.at(event.a).id, b = record.partner_id(event);
         outcome.contacts.push_back(fmt::format("{} {} {}", name(event.type), a, b));
         const bool balls = event.type == EventType::kBallBall || event.type == EventType::kBallCluster;
         if (balls && outcome.first_contact.empty() && (event.a == mover || event.b == mover))

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <memory>
 #include "accuracy/box2d_shot.h"
 #include "accuracy/kernel.h"
 #include "bench/clock.h"
@@ -252,21 +251,18 @@ int run(const AccuracySceneArgs& args) {
 }  // namespace
 
 void add_accuracy(Options& program) {
-    auto args = std::make_shared<AccuracySceneArgs>();
-    Options& command = program.command(
-        "accuracy", "What accuracy costs in time: of a shot (SCENE), or of one impact (kernel)");
-    command.argument("SCENE", args->scene, "Scene file (TOML)");
-    command.option("--target", &args->target, "M",
+    auto [command, args] = program.command<AccuracySceneArgs>(
+        "accuracy", "What accuracy costs in time: of a shot (SCENE), or of one impact (kernel)", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)");
+    command.option("--target", &args.target, "M",
                    "Final error allowed, in m: what the recommendation aims at");
-    Option& march = command.option("--march", &args->march, "N,...", "Settings of the march to compare, N");
-    march.range = {1, 100000000};
-    Option& tolerance = command.option("--tolerance", &args->tolerances, "E,...", "Tolerances to compare");
-    tolerance.range = {kernel::kTightestTolerance, kernel::kLoosestTolerance};
-    add_repeat(command, args->repeat, "Interleaved rounds; minimum, median and maximum are over them");
-    command.flag("--box2d", args->box2d,
+    command.option("--march", &args.march, "N,...", "Settings of the march to compare, N").in(1, 100000000);
+    command.option("--tolerance", &args.tolerances, "E,...", "Tolerances to compare")
+        .in(kernel::kTightestTolerance, kernel::kLoosestTolerance);
+    add_repeat(command, args.repeat, "Interleaved rounds; minimum, median and maximum are over them");
+    command.flag("--box2d", args.box2d,
                  "Also the same shot in a Box2D world stepped at 60 Hz to 10 kHz (default: off)");
-    add_reports(command, args->csv, args->plot, args->json);
-    command.run = [args] { return run(*args); };
+    add_reports(command, args.csv, args.plot, args.json);
     add_accuracy_kernel(command);
 }
 

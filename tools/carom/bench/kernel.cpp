@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <immintrin.h>
 
-#include <memory>
 #include <algorithm>
 #include <cmath>
 
@@ -250,22 +249,19 @@ int run(const BenchKernelArgs& options) {
 }  // namespace
 
 void add_bench_kernel(Options& bench) {
-    auto args = std::make_shared<BenchKernelArgs>();
-    Options& command = bench.command(
-        "kernel", "Every form of the ball-ball march, and every tolerance, against the plain march");
-    command.flag("--json", args->json, "Print JSON (default: off)");
-    Option& random = command.option("--random", &args->random, "N",
-                                    "Seeded random impacts beside the five states of the paper");
-    random.range = {1, 1000000};
-    command.option("--seed", &args->seed, "S", "Seed of the random impacts");
-    add_repeat(command, args->repeats, "Interleaved rounds; minimum and median are over them");
-    add_cloth_slip(command, args->cloth_slip, "Sign of the cloth slip inside the impact");
-    command.flag("--no-growth", args->growth, "Leave out N = 100 and 10000 (default: measured)");
-    command.option("--only", &args->only, "NAME",
+    auto [command, args] = bench.command<BenchKernelArgs>(
+        "kernel", "Every form of the ball-ball march, and every tolerance, against the plain march", run);
+    command.flag("--json", args.json, "Print JSON (default: off)");
+    command.option("--random", &args.random, "N", "Seeded random impacts beside the five states of the paper")
+        .in(1, 1000000);
+    command.option("--seed", &args.seed, "S", "Seed of the random impacts");
+    add_repeat(command, args.repeats, "Interleaved rounds; minimum and median are over them");
+    add_cloth_slip(command, args.cloth_slip, "Sign of the cloth slip inside the impact");
+    command.flag("--no-growth", args.growth, "Leave out N = 100 and 10000 (default: measured)");
+    command.option("--only", &args.only, "NAME",
                    "Time only this form, such as 'march reduced state', or all whose names begin with these "
                    "words, such as 'tolerance'; may be repeated (default: all)");
     command.footer = "Without CAROM_ISA all instruction sets that this processor has run in one call.";
-    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools

@@ -1,17 +1,132 @@
 // carom bench render: what a frame costs, stage by stage.
+#include "bench/render.h"
+
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
-#include <memory>
-#include <string>
-#include "bench/render_stages.h"
+#include "base/temporary_folder.h"
+#include "bench/clock.h"
+#include "carom/render/png.h"
+#include "carom/render/renderer.h"
+#include "carom/render/sequence.h"
 #include "console.h"
 #include "options.h"
 #include "report/table.h"
 #include "setup.h"
 
 namespace carom::tools {
+using namespace render;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double cpu_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+double wall_ms_since(Clock::time_point since) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
+}
+
+// Counts what is drawn, over all that is measured.
+struct Steps {
+    const std::function<void(long, long)>& progress;
+    long done = 0, total = 0;
+    void look() const {
+        if (progress) progress(done, total);
+    }
+    void next() {
+        ++done;
+        look();
+    }
+};
+
+// One frame after the other, nothing else running in the process.
+void measure_stages(const Record& record, FrameSize size, int frames, Backend backend,
+                    const std::string& file, Steps& steps, RenderBenchRow& row) {
+    const Clock::time_point start = Clock::now();
+    StageOptions options;
+    options.size = size;
+    const Stage stage(record, options);
+    Renderer renderer(backend);
+    renderer.on_table([&steps](int, int) { steps.look(); });
+    KeptImage image;
+    std::vector<std::uint8_t> bytes;
+    std::vector<double> draw, read, both, encode, write;
+    for (int i = 0; i <= frames; ++i) {
+        steps.next();
+        const double t0 = cpu_ms();
+        renderer.draw(stage.at(record.duration * i / frames));
+        renderer.finish();
+        const double t1 = cpu_ms();
+        renderer.read(image);
+        const double t2 = cpu_ms();
+        if (i == 0) row.setup_ms = wall_ms_since(start);
+        encode_png(image.image(), 1, bytes);
+        const double t3 = cpu_ms();
+        const Clock::time_point before = Clock::now();
+        write_file(file, bytes);
+        if (i < 2) continue;  // the second frame is the first of the other of two images
+        draw.push_back(t1 - t0);
+        read.push_back(t2 - t1);
+        both.push_back(t2 - t0);
+        encode.push_back(t3 - t2);
+        write.push_back(wall_ms_since(before));
+    }
+    row.draw_ms = median(draw);
+    row.readback_ms = median(read);
+    row.encode_ms = median(encode);
+    row.write_ms = median(write);
+    std::sort(both.begin(), both.end());
+    row.slow_ms = both[both.size() * 19 / 20];
+}
+
+double frames_per_second(const Record& record, FrameSize size, int frames, Backend backend,
+                         const std::string& pattern, Steps& steps) {
+    SequenceOptions options;
+    options.pattern = pattern;
+    options.size = size;
+    options.backend = backend;
+    options.fps = frames / std::max(record.duration, 1e-3);
+    Clock::time_point first;
+    long done = 0;
+    options.progress = [&](long count, long) {
+        if (count == 1) first = Clock::now();
+        done = count;
+        steps.next();
+    };
+    options.table_progress = [&steps](int, int) { steps.look(); };
+    render_sequence(record, options);
+    return 1e3 * static_cast<double>(done - 1) / wall_ms_since(first);
+}
+
+}  // namespace
+
+std::vector<RenderBenchRow> bench_render(const Record& record, int frames, Backend backend,
+                                         const std::function<void(long, long)>& progress) {
+    if (frames < 3) throw RenderError("measuring takes at least 3 frames");
+    const TemporaryFolder folder;
+    Steps steps{progress, 0, 2L * (2L * frames + 2L)};  // at two sizes: in one thread, and with one a core
+    std::vector<RenderBenchRow> rows;
+    for (const auto& [name, size] :
+         {std::pair{"720p", FrameSize{1280, 720}}, std::pair{"1080p", FrameSize{1920, 1080}}}) {
+        RenderBenchRow row;
+        row.name = name;
+        measure_stages(record, size, frames, backend, folder.file("one.png"), steps, row);
+        row.fps = frames_per_second(record, size, frames, backend, folder.file("%05d.png"), steps);
+        rows.push_back(row);
+    }
+    return rows;
+}
+
 namespace {
 
 struct BenchRenderArgs {
@@ -51,15 +166,12 @@ int run(const BenchRenderArgs& args) {
 }  // namespace
 
 void add_bench_render(Options& bench) {
-    auto args = std::make_shared<BenchRenderArgs>();
-    Options& command = bench.command("render", "What drawing, reading back and encoding a frame costs");
-    command.argument("SCENE", args->scene, "Scene file (TOML)");
-    Option& frames =
-        command.option("--frames", &args->frames, "N", "Frames at each size, spread over the shot");
-    frames.range = {3, 100000};
-    add_gl(command, args->gl);
-    command.flag("--json", args->json, "Print JSON (default: off)");
-    command.run = [args] { return run(*args); };
+    auto [command, args] = bench.command<BenchRenderArgs>(
+        "render", "What drawing, reading back and encoding a frame costs", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)");
+    command.option("--frames", &args.frames, "N", "Frames at each size, spread over the shot").in(3, 100000);
+    add_gl(command, args.gl);
+    command.flag("--json", args.json, "Print JSON (default: off)");
 }
 
 }  // namespace carom::tools

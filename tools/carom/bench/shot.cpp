@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <numeric>
 
-#include <memory>
 #include "bench/clock.h"
 #include "bench/five_states.h"
 #include "bench/machine.h"
@@ -222,20 +221,16 @@ int run(const BenchShotArgs& options) {
 }  // namespace
 
 void add_bench_shot(Options& bench) {
-    auto args = std::make_shared<BenchShotArgs>();
-    Options& command = bench.command(
-        "shot", "Whole breaks and shots in units of one baseline impact; growth with the number of balls");
-    command.flag("--json", args->json, "Print JSON (default: off)");
-    Option& seeds =
-        command.option("--seeds", &args->seeds, "N", "Seeds of every shot; a row is their median");
-    seeds.range = {1, 1000};
-    add_repeat(command, args->repeats,
+    auto [command, args] = bench.command<BenchShotArgs>(
+        "shot", "Whole breaks and shots in units of one baseline impact; growth with the number of balls",
+        run);
+    command.flag("--json", args.json, "Print JSON (default: off)");
+    command.option("--seeds", &args.seeds, "N", "Seeds of every shot; a row is their median").in(1, 1000);
+    add_repeat(command, args.repeats,
                "Interleaved rounds; a shot counts with its minimum (gases: a third of them)");
-    Option& events = command.option("--events", &args->events, "N", "Events of a gas at each size");
-    events.range = {10, 10000000};
-    command.flag("--no-growth", args->growth, "Leave out the gases of 16 to 10000 balls (default: measured)");
+    command.option("--events", &args.events, "N", "Events of a gas at each size").in(10, 10000000);
+    command.flag("--no-growth", args.growth, "Leave out the gases of 16 to 10000 balls (default: measured)");
     command.footer = "One baseline impact is the plain double march at N = 1000, timed in the same run.";
-    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools

@@ -35,18 +35,14 @@ std::vector<TimedKernel> subjects(const std::vector<Isa>& isas) {
     } asked[] = {{"tolerance 1e-3", 1e-3}, {"tolerance 1e-6", 1e-6}, {"tolerance 1e-10", 1e-10}};
     for (Isa isa : isas) {
         for (const auto& a : asked) {
-            TimedKernel s;
-            s.row = {a.name, "past it", "single", isa, true};
-            s.one = [f = tolerance_function(isa), t = a.tolerance](const Impact& i, int, ImpactResult& out) {
+            list.emplace_back().row = {a.name, "past it", "single", isa, true};
+            list.back().one = [f = tolerance_function(isa), t = a.tolerance](const Impact& i, int,
+                                                                             ImpactResult& out) {
                 f(i.ball1, i.ball2, i.params, t, out);
             };
-            list.push_back(std::move(s));
-            TimedKernel b;
-            b.row = {a.name, "past it", "batch", isa, true};
-            b.many = [f = tolerance_batch_function(isa), t = a.tolerance](const BatchArrays& arrays, int) {
-                f(arrays.batch, t, arrays.result);
-            };
-            list.push_back(std::move(b));
+            list.emplace_back().row = {a.name, "past it", "batch", isa, true};
+            list.back().many = [f = tolerance_batch_function(isa), t = a.tolerance](
+                                   const BatchArrays& arrays, int) { f(arrays.batch, t, arrays.result); };
         }
     }
     return list;

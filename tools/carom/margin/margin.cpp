@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdio>
 
-#include <memory>
 #include "base/temporary_folder.h"
 #include "bench/clock.h"
 #include "bench/rounds.h"
@@ -224,25 +223,24 @@ int run(const MarginArgs& args) {
 }  // namespace
 
 void add_margin(Options& program) {
-    auto args = std::make_shared<MarginArgs>();
-    Options& command = program.command("margin", "Real-time margin: what every frame costs against 1/fps");
-    command.argument("SCENE", args->scene, "Scene file (TOML)").required = true;
-    add_picture(command, args->fps, args->size);
-    add_repeat(command, args->repeat, "Runs; every frame's cost is the median over them");
-    command.flag("--no-render", args->no_render, "Measure the simulation only (default: off)");
-    command.flag("--sweep", args->sweep,
+    auto [command, args] =
+        program.command<MarginArgs>("margin", "Real-time margin: what every frame costs against 1/fps", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
+    add_picture(command, args.fps, args.size);
+    add_repeat(command, args.repeat, "Runs; every frame's cost is the median over them");
+    command.flag("--no-render", args.no_render, "Measure the simulation only (default: off)");
+    command.flag("--sweep", args.sweep,
                  "Every accuracy at every frame rate from 30 to 1000: where the scene stops being real time "
                  "(default: off)");
-    add_gl(command, args->gl);
-    command.option("--trace", &args->trace, "FILE.json",
+    add_gl(command, args.gl);
+    command.option("--trace", &args.trace, "FILE.json",
                    "Write the frames as Chrome trace events, for chrome://tracing or Perfetto (default: not "
                    "written)");
-    add_reports(command, args->csv, args->plot, args->json);
+    add_reports(command, args.csv, args.plot, args.json);
     command.footer =
         "simulate = detect + resolve + kernel + cluster. A frame costs simulate + draw + readback + encode + "
         "write,\nmeasured one after the other on one thread; frames go to a temporary folder and are "
         "removed.";
-    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools

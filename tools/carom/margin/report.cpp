@@ -29,7 +29,7 @@ Json event_json(const Record& record, std::size_t i) {
     const EventCost& cost = record.costs.at(i);
     return {{"time", event.time},
             {"type", name(event.type)},
-            {"a", record.tracks.at(static_cast<std::size_t>(event.a)).id},
+            {"a", record.tracks.at(event.a).id},
             {"b", record.partner_id(event)},
             {"detect_ns", cost.detect_ns},
             {"resolve_ns", cost.resolve_ns},
@@ -141,8 +141,7 @@ std::string margin_text(const Margin& margin, const MarginRun& last, const std::
     for (const std::size_t i : events) {
         const Event& event = last.record.events[i];
         fmt::format_to(line, "  {:.6f} s  {:<21} {} {}\n", event.time, name(event.type),
-                       last.record.tracks.at(static_cast<std::size_t>(event.a)).id,
-                       last.record.partner_id(event));
+                       last.record.tracks.at(event.a).id, last.record.partner_id(event));
     }
     return fmt::to_string(out);
 }

@@ -20,7 +20,7 @@ void write_events_csv(const Record& record, OutputFile& file) {
     file.write(profiled ? "time,type,a,b,detect_ns,resolve_ns,kernel_ns,steps,method\n" : "time,type,a,b\n");
     for (std::size_t i = 0; i < record.events.size(); ++i) {
         const Event& event = record.events[i];
-        const std::string& ball = record.tracks.at(static_cast<std::size_t>(event.a)).id;
+        const std::string& ball = record.tracks.at(event.a).id;
         std::string row =
             fmt::format("{},{},{},{}", event.time, name(event.type), ball, record.partner_id(event));
         if (profiled) {

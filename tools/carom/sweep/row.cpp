@@ -46,27 +46,13 @@ std::string first_contact(const Record& record, int ball) {
         if (!cluster && e.type != EventType::kBallBall && e.type != EventType::kBallBallHold) continue;
         int other = e.a == ball ? e.b : e.b == ball ? e.a : -1;
         if (other < 0 && cluster) {
-            const std::vector<int>& members = record.clusters.at(static_cast<std::size_t>(e.detail));
+            const std::vector<int>& members = record.clusters.at(e.detail);
             if (std::find(members.begin(), members.end(), ball) != members.end())
                 other = nearest(record, members, ball, e.time);
         }
-        if (other >= 0) return record.tracks.at(static_cast<std::size_t>(other)).id;
+        if (other >= 0) return record.tracks.at(other).id;
     }
     return "";
-}
-
-ShotOutcome outcome_of(StopReason reason) {
-    switch (reason) {
-        case StopReason::kAtRest:
-            return ShotOutcome::kAtRest;
-        case StopReason::kTime:
-            return ShotOutcome::kTime;
-        case StopReason::kEndless:
-            return ShotOutcome::kEndless;
-        case StopReason::kEvents:
-            break;
-    }
-    return ShotOutcome::kEvents;
 }
 
 /// The ids of the balls that were pocketed, in order.
@@ -125,7 +111,7 @@ SweptShot swept_shot(const Variation& variation, std::uint64_t index, kernel::Is
     if (!shot.varied.scene) return shot;
     try {
         shot.record = simulate(make_plan(*shot.varied.scene, isa), interruptible());
-        shot.outcome = outcome_of(shot.record->stopped);
+        shot.outcome = static_cast<ShotOutcome>(shot.record->stopped);
         for (std::size_t i = 0; i < shot.record->tracks.size(); ++i)
             shot.end.push_back(shot.record->state_at(static_cast<int>(i), shot.record->duration));
     } catch (const SceneError& error) {  // [effects] refuses what these values need

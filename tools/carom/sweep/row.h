@@ -14,9 +14,10 @@
 
 namespace carom::tools {
 
-/// How a shot ended.
+/// How a shot ended: a reason to stop, or why there is no record.
 enum class ShotOutcome : unsigned char { kAtRest, kTime, kEvents, kEndless, kInvalid, kRunFailed };
 inline constexpr int kShotOutcomes = 6;
+static_assert(static_cast<int>(ShotOutcome::kEndless) == static_cast<int>(StopReason::kEndless));
 const char* name(ShotOutcome outcome);
 
 /// What became of one shot.

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -20,7 +19,6 @@
 #include <utility>
 #include <vector>
 
-#include <memory>
 #include "console.h"
 #include "options.h"
 #include "setup.h"
@@ -56,13 +54,9 @@ struct ShotRange {
 
 ShotRange shard_range(const std::string& text, std::uint64_t count) {
     if (text.empty()) return {0, count, true};
-    std::uint64_t i = 0, n = 0;
-    const char* const end = text.data() + text.size();
-    const auto [slash, bad_i] = std::from_chars(text.data(), end, i);
-    if (bad_i == std::errc() && slash != end && *slash == '/') {
-        const auto [rest, bad_n] = std::from_chars(slash + 1, end, n);
-        if (bad_n == std::errc() && rest == end && i >= 1 && i <= n && n <= kMostShards)
-            return {count * (i - 1) / n, count * i / n, i == 1};
+    if (const auto part = numbers_in<std::uint64_t, 2>(text, '/')) {
+        const auto [i, n] = *part;
+        if (i >= 1 && i <= n && n <= kMostShards) return {count * (i - 1) / n, count * i / n, i == 1};
     }
     throw UsageError(fmt::format("--shard {}: expected I/N with 1 <= I <= N, as in 2/4", text));
 }
@@ -279,27 +273,24 @@ int run(const SweepArgs& args) {
 }  // namespace
 
 void add_sweep(Options& program) {
-    auto args = std::make_shared<SweepArgs>();
-    Options& command =
-        program.command("sweep", "Many shots of one scene with values that vary: a row a shot");
-    command.argument("SCENE", args->scene, "Scene file (TOML)").required = true;
+    auto [command, args] = program.command<SweepArgs>(
+        "sweep", "Many shots of one scene with values that vary: a row a shot", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
     Option& vary = command.option(
-        "--vary", &args->vary, "KEY=DISTRIBUTION",
+        "--vary", &args.vary, "KEY=DISTRIBUTION",
         "What varies and how, once per key: uniform(a,b), normal(sd) around the scene's value, "
         "normal(mean,sd), integer(a,b) or list(v,...)");
     vary.required = true;
-    command.option("--count", &args->count, "N", "Number of shots").required = true;
-    command.option("--seed", &args->seed, "S", "Seed of all draws");
-    Option& jobs =
-        command.option("--jobs", &args->jobs, "J", "Threads; 0: one per core; the rows do not depend on it");
-    jobs.range = {0, 256};
-    command.option("--shard", &args->shard, "I/N",
+    command.option("--count", &args.count, "N", "Number of shots").required = true;
+    command.option("--seed", &args.seed, "S", "Seed of all draws");
+    command.option("--jobs", &args.jobs, "J", "Threads; 0: one per core; the rows do not depend on it")
+        .in(0, 256);
+    command.option("--shard", &args.shard, "I/N",
                    "Only the I-th of N parts; the files of all parts, one behind the other, are the whole "
                    "(default: all)");
-    command.option("-o,--output", &args->output, "FILE.csv", "Table to write").required = true;
+    command.option("-o,--output", &args.output, "FILE.csv", "Table to write").required = true;
     command.footer =
         "A sweep that was stopped or killed goes on when the same command is given again (docs/sweep.md).";
-    command.run = [args] { return run(*args); };
 }
 
 }  // namespace carom::tools
