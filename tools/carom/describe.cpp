@@ -21,7 +21,7 @@ std::vector<Option> rows_of(const Options& command, bool by_place) {
     return found;
 }
 
-/// What an option is for, with its default.
+/// The description of an option, with its default.
 std::string meaning(const Option& row) {
     const std::string initial = row.default_text();
     return initial.empty() ? row.text : row.text + " (default: " + initial + ")";
@@ -45,7 +45,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 // ---- man -------------------------------------------------------------------------------------------------
 
-/// Text that troff prints as it is.
+/// Escapes text so that troff prints it unchanged.
 std::string roff(std::string text) {
     text = replaced(replaced(std::move(text), "\\", "\\e"), "-", "\\-");
     if (!text.empty() && (text[0] == '.' || text[0] == '\'')) text.insert(0, "\\&");
@@ -204,7 +204,7 @@ std::string zsh_completion(const Options& program) {
 
 // ---- the command -----------------------------------------------------------------------------------------
 
-/// What can be printed.
+/// What the command can print: one row for each format.
 constexpr struct {
     const char* name;
     std::string (*text)(const Options& program);

@@ -1,5 +1,5 @@
-// carom impact: one impact per line of standard input, its result per line of standard output. Every answer
-// is flushed, so that another program can ask over a pipe and wait for it.
+// carom impact: reads one impact from each line of standard input and writes its result to a line of standard output. Every
+// result is flushed, so that another program can send an impact through a pipe and wait for the result.
 #include <unistd.h>
 
 #include <cerrno>
@@ -24,8 +24,8 @@ struct ImpactArgs {
     std::string cloth_slip = "consistent";
 };
 
-/// Lines of standard input, of bounded length. Not std::getline:
-/// that neither returns on SIGINT nor stops at a length.
+/// Reads lines of bounded length from standard input. std::getline cannot be used: it neither returns on SIGINT nor limits
+/// the length.
 class LineReader {
   public:
     enum class Got : unsigned char { kLine, kTooLong, kEnd };
@@ -97,7 +97,7 @@ int run(const ImpactArgs& args) {
     for (;;) {
         const LineReader::Got got = reader.next(line);
         if (got == LineReader::Got::kEnd) break;
-        // A blank line, such as one at the end of a file, asks for nothing.
+        // A blank line, such as the last one of a file, has no result.
         if (got == LineReader::Got::kLine && is_blank(line)) continue;
         const ImpactAnswer answer =
             got == LineReader::Got::kTooLong

@@ -16,10 +16,10 @@ constexpr bool kIsList = false;
 template <class T>
 constexpr bool kIsList<std::vector<T>> = true;
 
-/// How --help shows an option: alike with every release of CLI11, whose own form differs (2.1: "S=0", 2.4: "S [0]").
+/// Shows options in --help in one form with every release of CLI11, whose own forms differ (2.1: "S=0", 2.4: "S [0]").
 class HelpFormatter : public CLI::Formatter {
   public:
-    /// What stands behind the name: type and choices, default, how often it may come, what it goes with.
+    /// The text after the name: type and choices, default, whether it may be repeated, which options it needs or excludes.
     std::string make_option_opts(const CLI::Option* option) const override {
         if (option->get_type_size() == 0) return "";
         std::string text;
@@ -62,7 +62,8 @@ void add_option(CLI::App& app, const Option& row, const std::string& names, T& v
 /// Gives a command's table to CLI11. `named` becomes the command that the command line names.
 void fill(CLI::App& app, const Options& command, const Options*& named) {
     if (!command.footer.empty()) app.footer(command.footer);
-    app.require_subcommand(0, 1);  // naming none is an error too, but one with a better message than CLI11's
+    app.require_subcommand(
+        0, 1);  // if none is named, run_command_line reports it with a better message than that of CLI11
     for (const Option& row : command.rows) {
         const auto names = fmt::format("{}", fmt::join(row.names, ","));
         std::visit(
@@ -90,7 +91,7 @@ std::string listed(const std::list<Options>& commands) {
     return text;
 }
 
-/// "carom bench", as far as the command line named commands.
+/// The program and the commands that the command line names: "carom bench".
 std::string path_of(const CLI::App& app) {
     const std::vector<CLI::App*> named = app.get_subcommands();
     return app.get_name() + (named.empty() ? "" : " " + path_of(*named.front()));

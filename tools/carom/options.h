@@ -1,5 +1,5 @@
-// The commands of the program and their options, as one table: it is parsed, shown by --help, and written as a man page and as
-// completions. Only options.cpp knows CLI11, which takes seconds to compile.
+// The commands of the program and their options as one table. From it the command line is parsed, and --help, the man page and
+// the completions are written. Only options.cpp includes CLI11, which takes seconds to compile.
 #pragma once
 
 #include <cstdint>
@@ -14,29 +14,29 @@
 
 namespace carom::tools {
 
-/// The variable that an option sets; nothing for --help and --version. A list of strings is an option that may be repeated,
-/// a list of numbers is written with commas.
+/// The variable that an option sets; nothing for --help and --version. An option for a list of strings may be repeated; a list
+/// of numbers is written with commas.
 using OptionTarget = std::variant<std::monostate, bool*, int*, long*, std::uint64_t*, double*, std::string*,
                                   std::optional<int>*, std::optional<long>*, std::optional<double>*,
                                   std::vector<int>*, std::vector<double>*, std::vector<std::string>*>;
 
-/// One row of the table.
+/// One row of the table: an option, a flag, or an argument that is known by its place.
 struct Option {
-    std::vector<std::string> names;  ///< "-o", "--output"; of an argument that is known by its place "SCENE"
+    std::vector<std::string> names;  ///< "-o", "--output"; of an argument "SCENE"
     OptionTarget target;
-    std::string value;  ///< what it takes, "FILE.csv"; empty: it is a flag, or known by its place
+    std::string value;  ///< what the option takes, "FILE.csv"; empty for flags and arguments
     std::string text;
-    std::vector<std::string> choices;                ///< the only values, if there are any
+    std::vector<std::string> choices;                ///< all values that are allowed; empty: any
     std::optional<std::pair<double, double>> range;  ///< of the value, both ends included
     bool required = false;
-    std::string needs, excludes;  ///< name of an option that stands before this one in the table
+    std::string needs, excludes;  ///< the name of another option, whose row stands before this one
 
     Option& in(double least, double most);
     Option& one_of(std::vector<std::string> values);
     bool by_place() const { return names.front().front() != '-'; }
     bool may_be_repeated() const { return std::holds_alternative<std::vector<std::string>*>(target); }
-    std::string default_text()
-        const;  ///< of a variable that has a value before the command line is read, else ""
+    /// The value of the variable before the command line is read; "" if it has none.
+    std::string default_text() const;
 };
 
 /// A command, or the whole program: its options and the commands below it.
@@ -44,16 +44,16 @@ struct Options {
     Options(std::string command_name, std::string description);
 
     std::string name, text;
-    std::string footer;   ///< behind the options in --help; empty: that of the program
+    std::string footer;   ///< stands after the options in --help; empty: that of the program
     std::string version;  ///< of the program
     std::vector<Option> rows;
     std::list<Options> commands;
-    std::function<int()>
-        run;  ///< does the work and returns the exit status; empty: one of `commands` must be named
+    /// Does the work and returns the exit status; empty: one of `commands` must be named.
+    std::function<int()> run;
 
     Options& command(std::string command_name, std::string description);
 
-    /// A command that does `work`, and the variables of its options, which live as long as it.
+    /// Adds a command that does `work`. Returns it, and the variables of its options, which live as long as the command.
     template <class Args>
     std::pair<Options&, Args&> command(std::string command_name, std::string description,
                                        int (*work)(const Args&)) {
@@ -63,15 +63,15 @@ struct Options {
         return {added, *args};
     }
 
-    // Each returns the new row, for what is not said of every option. The next row may move it.
+    // These add a row and return it, so that the members that few options use can be set. The next row may move it. A flag
+    // negates its variable.
     Option& argument(std::string place, std::string& variable, std::string description);
-    Option& flag(const std::string& names, bool& variable,
-                 std::string description);  ///< turns its variable over
+    Option& flag(const std::string& names, bool& variable, std::string description);
     Option& option(const std::string& names, OptionTarget variable, std::string value,
                    std::string description);
 };
 
-/// Reads the command line and runs the command that it names; prints help or version where they are asked for.
+/// Reads the command line and runs the command that it names, or prints the help or the version.
 /// @returns the exit status  @throws UsageError
 int run_command_line(Options& program, int argc, char** argv);
 

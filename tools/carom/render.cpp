@@ -31,7 +31,7 @@ struct RenderArgs {
     std::string gl = "osmesa";
     int png_level = 1;
     std::string eye, target;  ///< "x,y,z"; empty: a named camera
-    std::string ball;         ///< that camera follow follows; empty: the one that moves first
+    std::string ball;         ///< followed by the camera "follow"; empty: the ball that moves first
     std::string overlay;      ///< list of names
     bool trails = false;      ///< --overlay trails
     std::string sheet;        ///< "4x3"; empty: frames
@@ -46,7 +46,7 @@ bool is_record_file(const std::string& path) {
            path.compare(path.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
 }
 
-/// Reads a record; what it lacks goes to standard error.
+/// Reads a record. Notes about missing parts are written to standard error.
 Record record_from(const std::string& path) {
     std::vector<std::string> notes;
     Record record = read_record(path, &notes);
@@ -143,11 +143,11 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     return options;
 }
 
-// The margin bar's share of the simulation: what the events cost that fall between a frame and the next one.
-// A record that was not profiled has no costs: then the bar shows drawing, reading back and encoding alone.
+/// Tells the margin bar what the simulation of each frame cost: the sum over the events between the frame and the next one.
+/// A record that was not profiled has no costs; its bar shows drawing, reading back and encoding only.
 void set_simulation_costs(const Record& record, render::SequenceOptions& options) {
     if (record.costs.empty()) return;
-    // Frames before the first and after the last take the events there, which are none of those that are shown.
+    // Events before the first and after the last frame that is shown belong to frames that are not shown.
     const double before = std::ceil(options.from * options.fps);
     const auto first = static_cast<long>(before);
     const long frames = render::frame_count(options.from, options.to.value_or(record.duration), options.fps);

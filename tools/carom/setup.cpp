@@ -12,7 +12,7 @@
 namespace carom::tools {
 namespace {
 
-/// More frames than this (46 hours at 60 fps) is a slip of the keyboard, and would fill any disk.
+/// More frames than this (46 hours at 60 fps) is taken for a typing error: it would fill any disk.
 constexpr double kMostFrames = 1e7;
 constexpr double kFastestFps = 1e6;
 

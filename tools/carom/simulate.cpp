@@ -32,7 +32,7 @@ struct SimulateArgs {
     bool verify = false;  ///< check the laws after every event
 };
 
-/// What the events of a profiled run cost, kind by kind: sums, of which the text shows the mean.
+/// What the events of a profiled run cost, by kind: the sums. The text shows the means.
 Table costs_by_kind(const Record& record) {
     Table table(Column("type", "", "<24"), Column("count", "count", ">6"),
                 Column("detect_ns", "detect", ">12"), Column("resolve_ns", "resolve", ">12"),
@@ -185,8 +185,7 @@ int run(const SimulateArgs& args) {
     const Record record = simulate_plan(plan, options);
     write_files(args, record);
     const int status = args.verify ? verified(record, plan) : kOk;
-    // --hash stands for the summary, so that alone it is one line and nothing else; --json holds the hash
-    // anyway.
+    // --hash replaces the summary, so that the output is one line. The JSON contains the hash in any case.
     if (args.json) {
         print(result_json(record));
         return status;

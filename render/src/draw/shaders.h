@@ -39,8 +39,8 @@ inline constexpr const char* kTheRest = "#define REST\n";
 /// A line before the sources of balls and shadows: nothing but cloth is near, so they do not look.
 inline constexpr const char* kPlain = "#define PLAIN\n";
 
-/// Compiles and links a program: the version of the language, the shared numbers, `defines` (whole lines), the camera and the lamp
-/// (shaders/common.glsl), then each source. The first of `samplers` reads the texture of unit 0, and so on.
+/// Compiles and links a program: the version of the language, the shared numbers, `defines` (whole lines), the camera and the
+/// lamp (shaders/common.glsl), then each source. The first of `samplers` reads the texture of unit 0, and so on.
 /// @throws RenderError with the compiler's log
 GLuint make_program(const gl::Api& api, const char* vertex, const char* fragment,
                     std::initializer_list<const char*> samplers = {}, const std::string& defines = "");

@@ -1,4 +1,4 @@
-// carom accuracy kernel: measures.
+// carom accuracy kernel: the measurement.
 #include "accuracy/kernel.h"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ using namespace kernel;
 using reference::BatchArrays;
 using reference::Impact;
 
-/// Processor time that one sample should take at least [ns]: far above what reading the clock costs.
+/// Least processor time of one sample [ns]: much more than reading the clock takes.
 constexpr double kSample = 2e6;
 
 /// One method at one setting, for impacts one by one or as arrays.
@@ -37,7 +37,8 @@ struct Subject {
     KernelAccuracyRow row;
     std::function<void(const Impact&, ImpactResult&)> one;
     std::function<void(const BatchArrays&)> many;
-    std::size_t timed = 1;  ///< impacts in a sample: the first ones; a march takes equally long on all
+    std::size_t timed =
+        1;  ///< number of impacts in a sample, which are the first ones: a march takes the same time for all
     int calls = 1;
     std::unique_ptr<BatchArrays> arrays;
 
@@ -53,7 +54,7 @@ struct Subject {
         return (thread_ns() - start) / (static_cast<double>(timed) * calls);
     }
 
-    /// Chooses how much a sample holds; warms the code up.
+    /// Chooses the size of a sample, and runs the code once before it is timed.
     void prepare(const std::vector<Impact>& impacts) {
         const std::size_t least = one ? 8 : 64;
         timed = std::min(least, impacts.size());
@@ -139,7 +140,7 @@ void add_marches(std::vector<Subject>& list, Isa isa, long most, const std::vect
 
 void add_tolerances(std::vector<Subject>& list, Isa isa) {
     for (int p = 2; p <= 12; ++p) {
-        // Read as text, so that it is the very number that a scene file would give.
+        // Read from text, so that it is exactly the number that a scene file would give.
         const std::string setting = fmt::format("1e-{}", p);
         const double tolerance = std::strtod(setting.c_str(), nullptr);
         for (const bool batch : {false, true}) {

@@ -30,8 +30,8 @@ struct KernelAccuracyRow {
     double error_median = 0.0, error_p99 = 0.0, error_max = 0.0;
 };
 
-/// What a method takes to reach an error: the cheapest of its settings that does, for half of all impacts and
-/// for all of them; infinite where none does.
+/// The time that a method needs to reach an error: that of its fastest setting which reaches it for half of all impacts, and
+/// for all of them. Infinite if no setting does.
 struct KernelReach {
     std::string method, kind;
     double error = 0.0, ns_median = 0.0, ns_all = 0.0;
@@ -40,7 +40,7 @@ struct KernelReach {
 struct KernelAccuracy {
     std::string isa;
     int count = 0;                 ///< impacts on which the two converged methods agree: these are judged
-    int disagreeing = 0;           ///< the others: nothing is called an error on them
+    int disagreeing = 0;           ///< the other impacts, for which no error is given
     double worst_agreement = 0.0;  ///< largest difference of the two, share of the approach speed
     double slope = 0.0;            ///< of log median error over log N, plain march, N >= 100
     std::vector<KernelAccuracyRow> rows;

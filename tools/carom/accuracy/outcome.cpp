@@ -1,4 +1,4 @@
-// What a shot came to, how it compares with another run of it, and how much it amplifies.
+// The outcome of a shot, its difference from another run of the shot, and its gain.
 #include <fmt/format.h>
 
 #include <algorithm>

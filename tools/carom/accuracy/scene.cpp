@@ -1,4 +1,4 @@
-// carom accuracy SCENE: measures.
+// carom accuracy SCENE: the measurement.
 #include "accuracy/scene.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@
 namespace carom::tools {
 namespace {
 
-/// The converged runs must agree this much better than the target before anything is called an error.
+/// The converged runs must agree within this part of the target; otherwise differences from them are not called errors.
 constexpr double kAgreement = 0.1;
 
 /// One setting: how to run it once, and what it gave.

@@ -1,4 +1,4 @@
-// carom bench kernel: measures.
+// carom bench kernel: the measurement.
 #include "bench/kernel.h"
 
 #include <fmt/format.h>
@@ -47,12 +47,12 @@ constexpr int kSubsteps = 1000;
 void time_all(std::vector<TimedKernel>& list, const ImpactSet& five, const ImpactSet& random, int repeats) {
     std::vector<ImpactResult> results(std::max(five.impacts.size(), random.impacts.size()));
     ProgressLine warming("bench kernel, warming up");
-    for (TimedKernel& s : list) {  // warm up, and find how many calls make a block worth a probe
+    for (TimedKernel& s : list) {  // warm up, and find how many calls take much longer than reading the clock
         throw_if_interrupted();
         warming.show_bar(&s - list.data(), static_cast<long>(list.size()));
         const double once = s.time(five, kSubsteps, 2, results) * static_cast<double>(s.size(five));
         s.five_calls = std::max(1, static_cast<int>(3e5 / std::max(once, 1.0)));
-        // Random impacts likewise. A run so long that one will do needs no warming either.
+        // The same for random impacts. If one call is enough, no run before it is needed to fill the caches.
         const double all = s.time(random, kSubsteps, 1, results) * static_cast<double>(s.size(random));
         s.random_calls = std::max(1, static_cast<int>(5e6 / std::max(all, 1.0)));
         s.random_calls = std::min(s.random_calls, 4);
@@ -140,7 +140,7 @@ void evict_caches() {
 
 ShareRow shares_of(const TimedKernel& s, const ImpactSet& five, double probe_ns) {
     std::vector<ImpactResult> results(five.impacts.size());
-    // Balls that separate leave after validation and projection: what comes before the loop.
+    // The call for balls that separate ends after validation and projection, which is the part before the loop.
     ImpactSet apart(five.impacts, five.impacts[0].params.cloth_slip, 8);
     for (Impact& i : apart.impacts) {
         for (double& v : i.ball1.v) v = -v;
@@ -154,7 +154,7 @@ ShareRow shares_of(const TimedKernel& s, const ImpactSet& five, double probe_ns)
     const double before = least(apart, 1000, 400), at_1000 = least(five, 1000, 20),
                  at_2000 = least(five, 2000, 20);
     ShareRow row{s.row.name, s.row.isa, before, 0.0, 0.0, 0.0, at_1000};
-    // Time is linear in N; what does not grow with it is before and after.
+    // The time is linear in N; the part that does not grow with N is spent before and after the loop.
     row.loop = std::min(at_2000 - at_1000, at_1000 - before);
     row.after = std::max(0.0, at_1000 - before - row.loop);
     std::vector<double> cold;

@@ -39,7 +39,7 @@ struct GrowthRow {
     double ns_min, ns_median;
 };
 
-/// Where the time of one call goes [ns], and what it costs when nothing of it is in a cache.
+/// The parts of the time of one call [ns], and its time when neither code nor data are in a cache.
 struct ShareRow {
     std::string name;
     kernel::Isa isa;

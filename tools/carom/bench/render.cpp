@@ -36,7 +36,7 @@ double wall_ms_since(Clock::time_point since) {
     return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
 }
 
-// Counts what is drawn, over all that is measured.
+// Counts the frames that are drawn in all measurements together.
 struct Steps {
     const std::function<void(long, long)>& progress;
     long done = 0, total = 0;
@@ -49,7 +49,7 @@ struct Steps {
     }
 };
 
-// One frame after the other, nothing else running in the process.
+// Measures one frame after the other, while nothing else runs in the process.
 void measure_stages(const Record& record, FrameSize size, int frames, Backend backend,
                     const std::string& file, Steps& steps, RenderBenchRow& row) {
     const Clock::time_point start = Clock::now();

@@ -1,4 +1,4 @@
-// carom bench shot: measures.
+// carom bench shot: the measurement.
 #include "bench/shot.h"
 
 #include <malloc.h>
@@ -22,7 +22,7 @@
 namespace carom::tools {
 namespace {
 
-/// What costs are counted in: one impact of the published march at N = 1000, on the five states of the paper [ns].
+/// The unit of all costs [ns]: one impact of the published march at N = 1000, the mean over the five states of the paper.
 double baseline_impact(kernel::Isa isa) {
     const kernel::MarchFunction march = kernel::march_function(isa);
     kernel::ImpactResult result;
@@ -109,7 +109,7 @@ struct Gas {
         std::size_t first = 0;
         const double before = heap_bytes();
         SimulateOptions options;
-        // The first call comes after the first event: set-up is over, and its memory is taken.
+        // The first call comes after the first event, when the set-up is finished and its memory is allocated.
         options.progress_rounds = 1;
         options.progress = [&](std::size_t events, double) {
             if (begin != 0.0) return;
@@ -128,7 +128,7 @@ struct Gas {
     }
 };
 
-// Above this the loop through all boxes is only slow.
+// For more balls than this the search through all boxes is not measured: it is far slower.
 constexpr int kMostDirect = 2000;
 
 std::vector<GasRow> growth_of(const BenchShotArgs& options, kernel::Isa isa) {

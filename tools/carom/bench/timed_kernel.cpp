@@ -48,7 +48,7 @@ std::vector<TimedKernel> subjects(const std::vector<Isa>& isas) {
     return list;
 }
 
-/// Whether a name is meant: the name itself, or its first words, unless another row has just these.
+/// Whether `wanted` is the name itself (exact), or consists of its first words.
 bool is_meant(const std::string& name, const std::string& wanted, bool exact) {
     return exact ? name == wanted : name.rfind(wanted + " ", 0) == 0;
 }

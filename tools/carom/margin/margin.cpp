@@ -1,4 +1,4 @@
-// carom margin: measures. Stages: margin.h.
+// carom margin: the measurement. The stages of a frame are those of margin.h.
 #include "margin/margin.h"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ render::SequenceOptions draw_options(const Record& record, const MarginArgs& arg
     const RenderSettings& settings = record.render;
     render::SequenceOptions options;
     options.fps = fps;
-    options.jobs = 1;  // one thread: the parts of a frame do not overlap, and do not disturb each other
+    options.jobs = 1;  // with one thread the parts of a frame cannot overlap
     options.size = args.size.empty() ? settings.size() : parse_size(args.size);
     options.camera = settings.camera;
     options.view.eye = settings.eye;
@@ -62,7 +62,7 @@ void draw(MarginRun& run, const MarginArgs& args, double fps, const std::string&
     }
 }
 
-/// A frame without what only makes files of it.
+/// The cost of a frame that is shown but not written to a file.
 double shown_ms(const Margin& margin, std::size_t frame) {
     return margin.total[frame] - margin.stage[kEncode][frame] - margin.stage[kWrite][frame];
 }

@@ -52,7 +52,7 @@ std::vector<double> slacks(const Margin& margin) {
 std::string margin_json(const Margin& margin, const MarginRun& last) {
     Json stages = Json::object();
     for (std::size_t s = 0; s < kMarginStages; ++s) {
-        // Not measured is not 0.
+        // A stage that was not measured is null and not 0.
         stages[name(static_cast<MarginStage>(s))] =
             margin.has(s) ? spread_json(margin.stage[s]) : Json(nullptr);
     }

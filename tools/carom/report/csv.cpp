@@ -10,7 +10,7 @@
 namespace carom::tools {
 namespace {
 
-/// 1e9 rows are more than 100 GB: a slip of the keyboard.
+/// 1e9 rows are more than 100 GB, which is taken for a typing error.
 constexpr double kMostRows = 1e9;
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace carom::tools {
 namespace {
 
-/// The value itself; "" where there is none.
+/// The value as text; "" if there is none.
 std::string plain(const Cell& cell) {
     if (const auto* words = std::get_if<std::string>(&cell.value)) return *words;
     if (const auto* count = std::get_if<long>(&cell.value)) return fmt::format("{}", *count);

@@ -10,7 +10,7 @@
 
 namespace carom::tools {
 
-/// One value: nothing, a truth value, a count, a number or words; `text` is how the text shows it, if not simply so.
+/// One value: nothing, a truth value, a count, a number or words. The text shows `text` in its place, unless that is empty.
 struct Cell {
     Cell() = default;
     template <class T>
@@ -28,8 +28,9 @@ struct Cell {
     std::string text;
 };
 
-/// `key` stands in CSV and JSON, `title` in the text. `format` is that of the text: alignment, width and how numbers look,
-/// ">8.2f". A column without a key is in the text alone, one without a format is not in it.
+/// `key` is the name in CSV and JSON, `title` the heading in the text. `format` is the format in the text as fmt writes it:
+/// alignment, width and the form of numbers, ">8.2f". A column without a key is in the text only, one without a format is not
+/// in the text.
 struct Column {
     explicit Column(std::string of_key, std::string of_title = "", std::string of_format = "",
                     bool is_in_csv = true)
@@ -41,15 +42,15 @@ struct Column {
     bool in_csv;
 };
 
-/// A row may end before its last column, as that of a measurement that failed: then text and JSON have the values that are
-/// there, and a CSV file does not have the row.
+/// A row may have fewer values than columns, as when a measurement failed: then text and JSON contain these values, and CSV does
+/// not contain the row.
 struct Table {
     template <class... Columns>
     explicit Table(Columns... list) : columns{std::move(list)...} {}
 
     struct Row {
         std::vector<Cell> cells;
-        std::string note;  ///< behind the row in the text
+        std::string note;  ///< stands after the row in the text
     };
     void add(std::vector<Cell> cells, std::string note = "") {
         rows.push_back({std::move(cells), std::move(note)});
@@ -62,8 +63,8 @@ struct Table {
 /// Titles and rows, each with a line end. What has no value is "-".
 std::string table_text(const Table& table);
 
-/// Keys and rows, each with a line end. Numbers read back to the same bits; truth is 1 or 0; words stand on one line, in quotes
-/// where they need them.
+/// Keys and rows, each with a line end. Numbers read back to the same bits; a truth value is 1 or 0; words are in quotes where
+/// CSV needs it, and control characters in them become blanks.
 std::string table_csv(const Table& table);
 std::string csv_line(const std::vector<Cell>& cells);
 

@@ -14,7 +14,7 @@
 namespace carom::tools {
 namespace {
 
-/// The ball that is struck, or else the first one that moves; -1 where none does.
+/// The ball that is struck, or else the first one that moves; -1 if no ball moves.
 int shooter(const Scene& scene) {
     for (std::size_t i = 0; i < scene.ball.size(); ++i) {
         const BallStart& ball = scene.ball[i];

@@ -1,7 +1,7 @@
-// carom sweep: many shots of one scene, a row a shot.
+// carom sweep: simulates many shots of one scene and writes one row for each shot.
 //
-// A row depends on the scene, the rules, the seed and its number alone; threads only decide when it is
-// computed. Rows are written in their order, so that what a kill leaves behind is a beginning of the whole.
+// A row depends only on the scene, the rules, the seed and its number; threads only decide when it is computed. Rows are
+// written in order: if the program is killed, the file contains the first rows of the whole table.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kMostShots = 1000000000;
 constexpr std::uint64_t kMostShards = 1000000;
-/// Rows that may wait for an earlier one that takes long; bounds the memory.
+/// Largest number of finished rows that wait for an earlier one; it limits the memory.
 constexpr std::uint64_t kMostWaiting = 4096;
 constexpr std::chrono::milliseconds kFlushEvery(200);
 
@@ -85,7 +85,7 @@ struct Sweep {
     }
 };
 
-/// Hands out shot numbers to threads, and their rows, in order, to the one that writes.
+/// Gives shot numbers to the threads that compute, and the rows in order to the thread that writes.
 class Queue {
   public:
     Queue(std::uint64_t first, std::uint64_t last) : next_(first), last_(last), wanted_(first) {}
@@ -171,8 +171,8 @@ class Workers {
     std::vector<std::thread> threads_;
 };
 
-/// Where to go on in a file that was left behind. The last line is made again, so that the rows of another
-/// build are not continued.
+/// The shot at which an incomplete file of an earlier run is continued. Its last row is computed again: if another build gives
+/// another row, the file is not continued.
 std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRange& range) {
     if (file.lines() == 0) return range.first;
     const std::uint64_t rows = static_cast<std::uint64_t>(file.lines()) - (range.header ? 1 : 0);
@@ -242,7 +242,7 @@ int run(const SweepArgs& args) {
     const Variation variation = read_variation(args);
     for (const std::string& warning : make_plan(variation.base(), isa).warnings)
         message("warning: " + warning);
-    // Another range of shots is another file.
+    // Each range of shots has a file of its own.
     const std::uint64_t id =
         variation.fingerprint() ^ (range.first * 0x9e3779b97f4a7c15u) ^ (range.last * 0xbf58476d1ce4e5b9u);
     PartialFile file(args.output, id);
