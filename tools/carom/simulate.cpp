@@ -19,6 +19,8 @@
 namespace carom::tools {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct SimulateArgs {
     std::string scene;
     std::string record;  ///< file names; empty: not asked for
@@ -56,7 +58,6 @@ Table costs_by_kind(const Record& record) {
 }
 
 std::string result_json(const Record& record) {
-    using Json = nlohmann::ordered_json;
     const auto numbers = [](const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); };
     Json balls = Json::array();
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {

@@ -9,6 +9,8 @@
 namespace carom::tools {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 /// The value as text; "" if there is none.
 std::string plain(const Cell& cell) {
     if (const auto* words = std::get_if<std::string>(&cell.value)) return *words;
@@ -73,7 +75,6 @@ std::string table_csv(const Table& table) {
 }
 
 nlohmann::ordered_json table_json(const Table& table) {
-    using Json = nlohmann::ordered_json;
     const auto json = [](const auto& value) {
         if constexpr (std::is_same_v<decltype(value), const std::monostate&>)
             return Json(nullptr);
