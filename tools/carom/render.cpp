@@ -40,12 +40,6 @@ struct RenderArgs {
     bool raw = false;
 };
 
-bool is_record_file(const std::string& path) {
-    constexpr std::string_view kEnding = ".json";
-    return path.size() >= kEnding.size() &&
-           path.compare(path.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
-}
-
 /// Reads a record. Notes about missing parts are written to standard error.
 Record record_from(const std::string& path) {
     std::vector<std::string> notes;
@@ -175,8 +169,8 @@ int run(const RenderArgs& args) {
     if (!args.size.empty()) parse_size(args.size);
     SimulateOptions simulation;
     simulation.profile = overlay_of(args).margin;
-    const Record record = is_record_file(args.input) ? record_from(args.input)
-                                                     : simulate_plan(plan_scene(args.input), simulation);
+    const Record record = args.input.ends_with(".json") ? record_from(args.input)
+                                                        : simulate_plan(plan_scene(args.input), simulation);
     render::SequenceOptions options = sequence_options(args, record);
     if (options.overlay.margin) set_simulation_costs(record, options);
     ProgressLine line("rendering:");

@@ -32,25 +32,20 @@ struct SceneSubject {
 std::vector<SceneSubject> subjects(const Scene& scene, const AccuracySceneArgs& args,
                                    std::optional<double> recommended) {
     std::vector<SceneSubject> list;
-    for (const int n : args.march) {
-        SceneSubject s{{}, with_substeps(scene, n)};
-        s.row.method = "march";
-        s.row.setting = fmt::format("N={}", n);
-        s.row.value = n;
-        list.push_back(std::move(s));
-    }
+    const auto add = [&list](const char* method, std::string setting, double value, Plan plan) {
+        SceneSubject& s = list.emplace_back(SceneSubject{{}, std::move(plan)});
+        s.row.method = method;
+        s.row.setting = std::move(setting);
+        s.row.value = value;
+    };
+    for (const int n : args.march) add("march", fmt::format("N={}", n), n, with_substeps(scene, n));
     std::vector<double> tolerances = args.tolerances;
     if (recommended && std::find(tolerances.begin(), tolerances.end(), *recommended) == tolerances.end())
         tolerances.insert(std::find_if(tolerances.begin(), tolerances.end(),
                                        [&](double tolerance) { return tolerance < *recommended; }),
                           *recommended);
-    for (const double tolerance : tolerances) {
-        SceneSubject s{{}, with_tolerance(scene, tolerance)};
-        s.row.method = "tolerance";
-        s.row.setting = fmt::format("{:g}", tolerance);
-        s.row.value = tolerance;
-        list.push_back(std::move(s));
-    }
+    for (const double tolerance : tolerances)
+        add("tolerance", fmt::format("{:g}", tolerance), tolerance, with_tolerance(scene, tolerance));
     return list;
 }
 

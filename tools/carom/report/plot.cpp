@@ -221,10 +221,7 @@ void write_plot(const Plot& plot, const std::string& path) {
 }
 
 void check_plot_path(const std::string& path) {
-    constexpr std::string_view kEnding = ".svg";
-    const bool named = path.size() > kEnding.size() &&
-                       path.compare(path.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
-    if (!path.empty() && !named)
+    if (!path.empty() && (path.size() <= 4 || !path.ends_with(".svg")))
         throw UsageError(fmt::format("--plot {}: plots are SVG; give a name that ends in .svg", path));
 }
 
