@@ -144,7 +144,7 @@ Image draw(const Picture& picture, Backend backend) {
     StageOptions options = picture.options;
     if (options.size == FrameSize{}) options.size = {320, 180};
     Renderer renderer(backend);
-    renderer.draw(Stage(picture.record, options).at(picture.time, FrameCost{5.0, 16.7}));
+    renderer.draw(Stage(picture.record, options).at(picture.time, FrameBudget{5.0, 16.7}));
     Image image;
     renderer.read(image);
     for (std::size_t i = 3; i < image.rgbx.size(); i += 4) image.rgbx[i] = 0xFF;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -145,7 +146,10 @@ TEST(RedrawWork, OnlyWhatMovedIsDrawn) {
     const Stage stage = stage_of("top");
     const ClothMap none;
     const FrameSize size{480, 270};
-    const auto picture = [&](double t) { return DrawnPicture{1, false, visible_balls(stage.at(t), none)}; };
+    const auto table = std::make_shared<TableDrawing>();
+    const auto picture = [&](double t) {
+        return DrawnPicture{table, false, visible_balls(stage.at(t), none)};
+    };
     const double end = broken_rack().duration;
     EXPECT_TRUE(differing_boxes(picture(end), picture(end + 1.0), size).empty());
     const DrawnPicture rack = picture(0.0), cue_moved = picture(0.01);
@@ -159,7 +163,7 @@ TEST(RedrawWork, OnlyWhatMovedIsDrawn) {
     EXPECT_EQ(std::count(all.begin(), all.end(), true), 15);
     // Another table, or lines that reach anywhere: everything.
     DrawnPicture other = rack;
-    other.table = 2;
+    other.table = std::make_shared<TableDrawing>();
     EXPECT_EQ(differing_boxes(rack, other, size), (std::vector<PixelBox>{{0, 0, 480, 270}}));
     other = rack;
     other.overlay = true;

@@ -156,7 +156,7 @@ DrawList overlaid(const std::string& overlay, double t) {
     static const Record record = shot();
     StageOptions options = view("top");
     options.overlay = parse_overlay(overlay);
-    return Stage(record, options).at(t, FrameCost{20.0, 10.0});
+    return Stage(record, options).at(t, FrameBudget{20.0, 10.0});
 }
 
 TEST(Overlays, TrailsReachTheBallAndNoFurther) {

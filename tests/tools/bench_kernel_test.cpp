@@ -24,7 +24,7 @@ class BenchKernel : public testing::Test {
 };
 
 std::multiset<Form> forms(const std::vector<std::string>& only) {
-    BenchOptions options;
+    BenchKernelArgs options;
     options.only = only;
     std::multiset<Form> all;
     for (const KernelRow& row : kernel_rows(options)) all.insert({row.name, row.kind, row.isa});

@@ -71,10 +71,10 @@ TEST(CliDescribe, ZshReadsItsCompletion) {
     const ProcessResult seen =
         shell("zsh",
               "_arguments() { print -l -- \"$@\"; }; _describe() { print -l -- ${(P)2}; }\n"
-              "words=(x); state=command; source ./_carom; _carom_render; _carom_sweep",
+              "words=(x); state=command; source ./_carom; _carom_render; _carom_sweep; _carom_bench_kernel",
               folder.path().string());
     EXPECT_EQ(seen.status, 0) << seen.err;
-    for (const char* line : {"*--vary[What varies and how", ":SCENE:_files",
+    for (const char* line : {"*--vary[What varies and how", "*--only[Time only", ":SCENE:_files",
                              "(--camera)--camera[Camera (default", ":NAME:(top rail player follow)"})
         EXPECT_NE(seen.out.find(line), std::string::npos) << line << "\n" << seen.out;
 }
@@ -83,9 +83,10 @@ TEST(CliDescribe, TheManPageHasEveryCommandAndIsCleanRoff) {
     const TemporaryFolder folder;
     const std::string page = described("man");
     EXPECT_EQ(page.rfind(".TH CAROM 1 ", 0), 0u);
-    for (const char* text : {".SS \"carom simulate SCENE [options]\"", ".SS \"carom bench kernel [options]\"",
-                             "\\fB\\-o, \\-\\-output\\fR \\fIPATTERN\\fR", "\\-\\-vary KEY=DISTRIBUTION",
-                             "One of top, rail, player, follow."})
+    for (const char* text :
+         {".SS \"carom simulate SCENE [options]\"", ".SS \"carom bench kernel [options]\"",
+          ".SS \"carom accuracy SCENE [options]\"", "\\fB\\-o, \\-\\-output\\fR \\fIPATTERN\\fR",
+          "\\-\\-vary KEY=DISTRIBUTION", "One of top, rail, player, follow."})
         EXPECT_NE(page.find(text), std::string::npos) << text;
     folder.write("carom.1", page);
     if (run_process({"groff", "--version"}).status != 0) GTEST_SKIP() << "groff is not installed";

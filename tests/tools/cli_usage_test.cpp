@@ -21,6 +21,9 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
          "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or describe; "
          "see carom "
          "--help"},
+        {{"bench"}, "a command is missing: kernel, render or shot; see carom bench --help"},
+        {{"bench", "kernel", "--seed", "x"}, "see carom bench kernel --help"},
+        {{"accuracy"}, "accuracy: a scene file or the word kernel is required; see carom accuracy --help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
         {{"simulate"}, "SCENE is required; see carom simulate --help"},

@@ -5,12 +5,16 @@
 #include <limits>
 #include <string>
 
-#include "commands.h"
 #include "console.h"
+#include "options.h"
 #include "setup.h"
 
 namespace carom::tools {
 namespace {
+
+struct CheckArgs {
+    std::string scene;
+};
 
 template <class List>
 std::string ids(const List& list) {
@@ -21,18 +25,12 @@ std::string ids(const List& list) {
 
 std::string kernel_line(const Plan& plan) {
     const Physics& physics = plan.scene.physics;
-    switch (physics.ball_ball) {
-        case BallBallModel::kMathavan:
-            if (physics.substeps)
-                return fmt::format("published march, {} substeps, cloth slip {}", *physics.substeps,
-                                   name(physics.cloth_slip));
-            return fmt::format("by tolerance {}: closed forms, else collocation; cloth slip {}",
-                               physics.tolerance, name(physics.cloth_slip));
-        case BallBallModel::kInelastic:
-        case BallBallModel::kElastic:
-            return "closed form";
-    }
-    return "";
+    if (physics.ball_ball != BallBallModel::kMathavan) return "closed form";
+    if (physics.substeps)
+        return fmt::format("published march, {} substeps, cloth slip {}", *physics.substeps,
+                           name(physics.cloth_slip));
+    return fmt::format("by tolerance {}: closed forms, else collocation; cloth slip {}", physics.tolerance,
+                       name(physics.cloth_slip));
 }
 
 std::string stop_line(const Stop& stop) {
@@ -45,7 +43,7 @@ std::string stop_line(const Stop& stop) {
 
 std::string report(const Plan& plan) {
     const Scene& scene = plan.scene;
-    const Table& table = scene.table;
+    const carom::Table& table = scene.table;
     const BallParams& p = plan.balls;
     fmt::memory_buffer out;
     const auto line = std::back_inserter(out);
@@ -95,11 +93,17 @@ std::string report(const Plan& plan) {
     return fmt::to_string(out);
 }
 
-}  // namespace
-
-int run_check(const CheckArgs& args) {
+int run(const CheckArgs& args) {
     print(report(plan_scene(args.scene)));
     return kOk;
+}
+
+}  // namespace
+
+void add_check(Options& program) {
+    auto [command, args] = program.command<CheckArgs>(
+        "check", "Validate a scene; print its plan: effects, models, kernel, names", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
 }
 
 }  // namespace carom::tools

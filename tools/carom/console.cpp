@@ -16,7 +16,7 @@
 namespace carom::tools {
 namespace {
 
-/// What is done sooner than this shows no progress: a line that flashes by is noise.
+/// Work that takes less time than this shows no progress line.
 constexpr std::chrono::milliseconds kPatience(300);
 
 /// Written by the handler, read by every thread that works.
@@ -27,30 +27,30 @@ volatile std::sig_atomic_t g_signal = SIGINT;
 void on_interrupt(int signal) {
     g_signal = signal;
     ++g_interrupts;
-    // Whoever presses Ctrl-C a third time wants out now, whatever it leaves behind.
+    // A third Ctrl-C ends the program at once, even if incomplete files are left.
     if (g_interrupts >= 3) ::_exit(128 + signal);
 }
 
 void catch_interrupt(int signal) {
-    // A shell starts background jobs with SIGINT ignored: so it stays.
+    // A shell starts background jobs with SIGINT ignored; then it remains ignored.
     struct sigaction before {};
     ::sigaction(signal, nullptr, &before);
     if (before.sa_handler == SIG_IGN) return;
-    // No SA_RESTART: a read that waits for input must return.
+    // SA_RESTART is not set, because a read that waits for input must return.
     struct sigaction action {};
     action.sa_handler = on_interrupt;
     ::sigaction(signal, &action, nullptr);
 }
 
-/// A terminal has one such line, whoever wrote it.
+/// Whether a progress line is on the terminal: there is one at most, whichever object wrote it.
 std::atomic<bool> g_line_stands = false;
 
 void wipe_line() {
     if (g_line_stands.exchange(false)) std::fputs("\r\033[K", stderr);
 }
 
-/// That the terminal has for the line, now: people pull at its corner. What does not say is as wide as terminals
-/// were. A line that reaches the edge would be two, and only one is wiped; Ctrl-C shows as "^C" behind it.
+/// Columns that a progress line may have now; the window may have been resized. A terminal that does not tell its width is
+/// taken to have 80. Three columns stay free: a line that is wrapped could not be removed, and Ctrl-C is shown as "^C".
 std::size_t columns() {
     struct winsize size {};
     constexpr std::size_t kUsual = 80, kFree = 3;
@@ -67,14 +67,14 @@ std::size_t columns() {
 }  // namespace
 
 void prepare_process() {
-    // A closed standard stream must not lend its number to the first file that is opened. Opened the wrong
-    // way round, so that using it fails as if it were closed.
+    // If a standard stream is closed, the first file that is opened would get its number. So /dev/null is opened in its place, in
+    // the wrong direction, so that using the stream fails as if it were closed.
     for (int fd = 0; fd <= 2; ++fd) {
         if (::fcntl(fd, F_GETFD) != -1) continue;
         if (::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY) < 0) ::_exit(kFailed);
     }
-    std::signal(SIGPIPE, SIG_IGN);  // a closed pipe shows as a failed write
-    std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow, too: the half that stands is removed
+    std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is seen as a failed write
+    std::signal(SIGXFSZ, SIG_IGN);  // so is the limit of a file's size; the incomplete file is removed
     catch_interrupt(SIGINT);
     catch_interrupt(SIGTERM);
 }
@@ -84,7 +84,7 @@ std::string counted(std::size_t count, std::string_view what) {
 }
 
 void print(std::string_view text) {
-    // What goes into a file or a pipe leaves the line alone: it may be the work that the line tells of.
+    // Output to a file or a pipe does not remove the line: it may be the very work whose progress the line shows.
     static const bool on_terminal = ::isatty(1) == 1;
     if (on_terminal) wipe_line();
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) output_failed();
@@ -145,7 +145,7 @@ void ProgressLine::show_bar(long done, long total) {
     const double part =
         total > 0 ? std::clamp(static_cast<double>(done) / static_cast<double>(total), 0.0, 1.0) : 1.0;
     const std::string numbers = fmt::format("{} of {}", done, total);
-    // The title, a blank, the bar in its brackets, a blank, the numbers.
+    // The line consists of the title, a blank, the bar in brackets, a blank, and the numbers.
     const std::size_t other = title_.size() + numbers.size() + 4, all = columns();
     const std::size_t width = std::min(kWidest, all - std::min(all, other));
     if (width < kNarrowest) {

@@ -1,4 +1,4 @@
-// What every sub-command shares at the edge to the person or program that called it: output, progress, interruption.
+// What every command uses to talk to the person or program that called it: output, progress, interruption.
 #pragma once
 
 #include <chrono>
@@ -12,54 +12,54 @@ namespace carom::tools {
 inline constexpr int kOk = 0;
 inline constexpr int kFailed = 1;
 inline constexpr int kBadUsage = 2;
-// Interrupted by a signal: 128 + its number, interrupted_status().
+// A run that a signal interrupted returns 128 + the number of the signal: interrupted_status().
 
-/// A bad option, or bad input other than a scene: exit status 2.
+/// An option is wrong, or input other than a scene is. The exit status is 2.
 class UsageError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/// SIGINT or SIGTERM came: exit status 130 or 143.
+/// SIGINT or SIGTERM was received. The exit status is 130 or 143.
 class Interrupted : public std::exception {};
 
-/// The reader of standard output has gone (`carom ... | head -1`): exit status 1, without a word.
+/// The reader of standard output has ended (`carom ... | head -1`). The exit status is 1, and no message is printed.
 class OutputClosed : public std::exception {};
 
-/// Sets up signals and the three standard streams; call once, first.
+/// Sets up signals and the three standard streams. Must be called once, before anything else.
 void prepare_process();
 
 /// "1 frame", "2 frames".
 std::string counted(std::size_t count, std::string_view what);
 
-/// Results. A progress line that stands on the terminal is wiped first. Failures to write are errors, not
-/// lost output. @throws OutputClosed, std::runtime_error
+/// Writes results to standard output. A progress line on the terminal is removed first. A failure to write is an error.
+/// @throws OutputClosed, std::runtime_error
 void print(std::string_view text);
 void flush_output();
 
-/// One line on standard error, with the program's name in front.
+/// Writes one line to standard error, which begins with the name of the program.
 void message(std::string_view text);
 
-/// SIGINT and SIGTERM only set a flag, so that nothing half-written stays; long work asks here now and then.
+/// SIGINT and SIGTERM only set a flag, so that no incomplete file is left. Long work must ask for it regularly.
 bool interrupted() noexcept;
 void throw_if_interrupted();
 int interrupted_status() noexcept;
 
-/// A line on standard error that renews itself while work goes on; silent when that is no terminal. It is as
-/// long as the terminal is wide, at most, and gone when anything else is written.
+/// A line on standard error that is renewed while work goes on. Nothing is written if standard error is not a terminal. The
+/// line is not longer than the terminal is wide, and it is removed before anything else is written.
 class ProgressLine {
   public:
     explicit ProgressLine(std::string title);
-    ~ProgressLine();  ///< wipes the line
+    ~ProgressLine();  ///< removes the line
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    /// Whether it is time to renew the line; if so, not again for a while. Cheap, so that callers build their
-    /// text only then.
+    /// Whether it is time to renew the line; if so, the next true answer comes 0.1 s later. The call is cheap, so that
+    /// callers can make their text only when it is needed.
     bool due();
     void show_text(std::string_view text);
 
-    void show_bar(long done, long total);  ///< asks due() itself
+    void show_bar(long done, long total);  ///< calls due() itself
 
   private:
     std::string title_;

@@ -1,75 +1,40 @@
-#include "describe.h"
+// carom describe: the program described for others to read, a man page and completions for bash and zsh. They are written from
+// the table of options that is parsed, so that they cannot differ from it.
+#include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
+#include <list>
+#include <memory>
+#include <string>
 #include <vector>
+
+#include "console.h"
+#include "options.h"
 
 namespace carom::tools {
 namespace {
 
-using Apps = std::vector<const CLI::App*>;
-
-/// The commands of a program or of a command, in the order of its help.
-Apps commands_of(const CLI::App& app) {
-    return app.get_subcommands([](const CLI::App* sub) { return !sub->get_name().empty(); });
-}
-
-struct Described {
-    std::vector<std::string> names;  ///< "-o", "--output"; empty for a positional argument
-    std::string positional;          ///< its name
-    std::string text;
-    std::string value;                 ///< what it takes, "" for a flag
-    std::vector<std::string> choices;  ///< of its value, where there are few
-    bool required = false;
-};
-
-/// "a", "b" of "NAME:{a,b}".
-std::vector<std::string> choices_in(const std::string& type) {
-    std::vector<std::string> found;
-    const std::size_t open = type.find('{'), close = type.find('}');
-    if (open == type.npos || close == type.npos) return found;
-    std::string rest = type.substr(open + 1, close - open - 1) + ',';
-    for (std::size_t comma; (comma = rest.find(',')) != rest.npos; rest.erase(0, comma + 1))
-        found.push_back(rest.substr(0, comma));
+/// The rows of a command that are known by their place, or the others.
+std::vector<Option> rows_of(const Options& command, bool by_place) {
+    std::vector<Option> found;
+    for (const Option& row : command.rows)
+        if (row.by_place() == by_place) found.push_back(row);
     return found;
 }
 
-Described describe(const CLI::Option& option) {
-    Described d;
-    for (const std::string& name : option.get_snames()) d.names.push_back("-" + name);
-    for (const std::string& name : option.get_lnames()) d.names.push_back("--" + name);
-    if (d.names.empty()) d.positional = option.get_name(true);
-    d.text = option.get_description();
-    d.required = option.get_required();
-    if (option.get_items_expected_max() == 0) return d;
-    const std::string type = option.get_type_name();
-    d.choices = choices_in(type);
-    d.value = type.substr(0, type.find(':'));
-    // Checks stand behind the name: "N:INT in [0 - 256]".
-    d.value = d.value.substr(0, d.value.find(' '));
-    if (!option.get_default_str().empty()) d.text += " (default: " + option.get_default_str() + ")";
-    return d;
+/// The description of an option, with its default.
+std::string meaning(const Option& row) {
+    const std::string initial = row.default_text();
+    return initial.empty() ? row.text : row.text + " (default: " + initial + ")";
 }
 
-std::vector<Described> options_of(const CLI::App& app, bool positional) {
-    std::vector<Described> found;
-    for (const CLI::Option* option : app.get_options()) {
-        Described d = describe(*option);
-        if (d.positional.empty() != positional) found.push_back(std::move(d));
-    }
-    return found;
-}
-
-bool takes_file(const Described& d) {
+bool takes_file(const Option& row) {
     for (const char* word : {"FILE", "SCENE", "PATTERN"})
-        if ((d.value + " " + d.positional).find(word) != std::string::npos) return true;
+        if ((row.value + " " + row.names.front()).find(word) != std::string::npos) return true;
     return false;
 }
 
 std::string joined(const std::vector<std::string>& words, const char* between) {
-    std::string out;
-    for (const std::string& word : words) out += (out.empty() ? "" : between) + word;
-    return out;
+    return fmt::format("{}", fmt::join(words, between));
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -80,41 +45,36 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 // ---- man -------------------------------------------------------------------------------------------------
 
-/// Text that troff prints as it is.
+/// Escapes text so that troff prints it unchanged.
 std::string roff(std::string text) {
     text = replaced(replaced(std::move(text), "\\", "\\e"), "-", "\\-");
     if (!text.empty() && (text[0] == '.' || text[0] == '\'')) text.insert(0, "\\&");
     return replaced(std::move(text), "\n", "\n.br\n");
 }
 
-void man_command(std::string& out, const CLI::App& command, const std::string& path,
-                 const std::string& common_footer) {
-    const Apps inner = commands_of(command);
-    const std::string name = path + " " + command.get_name();
-    for (const CLI::App* sub : inner) man_command(out, *sub, name, common_footer);
-    if (!inner.empty()) return;
+void man_command(std::string& out, const Options& command, const std::string& path) {
+    const std::string name = path + " " + command.name;
+    for (const Options& inner : command.commands) man_command(out, inner, name);
+    if (!command.run) return;
     std::string synopsis = name;
-    for (const Described& d : options_of(command, true)) synopsis += " " + d.positional;
-    for (const Described& d : options_of(command, false))
-        if (d.required) synopsis += " " + d.names.back() + " " + d.value;
-    out += ".SS \"" + roff(synopsis) + " [options]\"\n" + roff(command.get_description()) + ".\n";
-    for (const bool positional : {true, false}) {
-        for (const Described& d : options_of(command, positional)) {
-            if (!positional && d.names.back() == "--help") continue;
-            out += ".TP\n\\fB" + roff(positional ? d.positional : joined(d.names, ", ")) + "\\fR";
-            if (!positional && !d.value.empty()) out += " \\fI" + roff(d.value) + "\\fR";
-            out += "\n" + roff(d.text) + "\n";
-            if (!d.choices.empty()) out += ".br\nOne of " + roff(joined(d.choices, ", ")) + ".\n";
+    for (const Option& row : rows_of(command, true)) synopsis += " " + row.names.front();
+    for (const Option& row : rows_of(command, false))
+        if (row.required) synopsis += " " + row.names.back() + " " + row.value;
+    out += ".SS \"" + roff(synopsis) + " [options]\"\n" + roff(command.text) + ".\n";
+    for (const bool by_place : {true, false}) {
+        for (const Option& row : rows_of(command, by_place)) {
+            if (row.names.back() == "--help") continue;
+            out += fmt::format(".TP\n\\fB{}\\fR", roff(joined(row.names, ", ")));
+            if (!row.value.empty()) out += fmt::format(" \\fI{}\\fR", roff(row.value));
+            out += fmt::format("\n{}\n", roff(meaning(row)));
+            if (!row.choices.empty()) out += ".br\nOne of " + roff(joined(row.choices, ", ")) + ".\n";
         }
     }
-    // A command without a footer of its own has the program's.
-    if (command.get_footer() != common_footer) out += ".PP\n" + roff(command.get_footer()) + "\n";
+    if (!command.footer.empty()) out += ".PP\n" + roff(command.footer) + "\n";
 }
 
-}  // namespace
-
-std::string man_page(const CLI::App& app, const std::string& version) {
-    std::string out = ".TH CAROM 1 \"\" \"carom " + version + "\" \"User Commands\"\n";
+std::string man_page(const Options& program) {
+    std::string out = ".TH CAROM 1 \"\" \"carom " + program.version + "\" \"User Commands\"\n";
     out +=
         ".SH NAME\ncarom \\- event\\-based billiards simulator\n.SH SYNOPSIS\n\\fBcarom\\fR \\fICOMMAND\\fR "
         "[options]\n";
@@ -123,7 +83,7 @@ std::string man_page(const CLI::App& app, const std::string& version) {
         "to event, draws "
         "what happened without a display, and says what every frame cost.\n";
     out += ".SH COMMANDS\n";
-    for (const CLI::App* command : commands_of(app)) man_command(out, *command, "carom", app.get_footer());
+    for (const Options& command : program.commands) man_command(out, command, program.name);
     out +=
         ".SH ENVIRONMENT\n.TP\n\\fBCAROM_ISA\\fR\nscalar, v3 or v4 forces the instruction set; all give the "
         "same bits. Left "
@@ -140,41 +100,34 @@ std::string man_page(const CLI::App& app, const std::string& version) {
 
 // ---- bash ------------------------------------------------------------------------------------------------
 
-namespace {
-
 /// One case per command: the words that may follow, and what the value of an option may be.
-void bash_cases(std::string& out, const CLI::App& app, const std::string& path) {
-    const Apps inner = commands_of(app);
-    std::vector<std::string> words, files;
+void bash_cases(std::string& out, const Options& command, const std::string& path) {
+    std::vector<std::string> words;
     std::string values;
-    for (const CLI::App* sub : inner) words.push_back(sub->get_name());
-    for (const Described& d : options_of(app, false)) {
-        words.insert(words.end(), d.names.begin(), d.names.end());
-        if (d.value.empty()) continue;
-        const std::string action = !d.choices.empty() ? "words='" + joined(d.choices, " ") + "'"
-                                   : takes_file(d)    ? "files=1"
-                                                      : ":";
-        values += "            " + joined(d.names, "|") + ") " + action + " ;;\n";
+    for (const Options& inner : command.commands) words.push_back(inner.name);
+    for (const Option& row : rows_of(command, false)) {
+        words.insert(words.end(), row.names.begin(), row.names.end());
+        if (row.value.empty()) continue;
+        const std::string action = !row.choices.empty() ? "words='" + joined(row.choices, " ") + "'"
+                                   : takes_file(row)    ? "files=1"
+                                                        : ":";
+        values += "            " + joined(row.names, "|") + ") " + action + " ;;\n";
     }
-    bool positional_file = false;
-    std::vector<std::string> choices;
-    for (const Described& d : options_of(app, true)) {
-        positional_file = positional_file || takes_file(d);
-        choices.insert(choices.end(), d.choices.begin(), d.choices.end());
+    bool any_file = false;
+    for (const Option& row : rows_of(command, true)) {
+        any_file = any_file || takes_file(row);
+        words.insert(words.end(), row.choices.begin(), row.choices.end());
     }
     out += "    '" + path + "')\n        case \"$before\" in\n" + values + "        *) words='" +
-           joined(words, " ") + (choices.empty() ? "" : " " + joined(choices, " ")) + "'" +
-           (positional_file ? " files=1" : "") + " ;;\n        esac ;;\n";
-    for (const CLI::App* sub : inner)
-        bash_cases(out, *sub, path.empty() ? sub->get_name() : path + " " + sub->get_name());
+           joined(words, " ") + "'" + (any_file ? " files=1" : "") + " ;;\n        esac ;;\n";
+    for (const Options& inner : command.commands)
+        bash_cases(out, inner, path.empty() ? inner.name : path + " " + inner.name);
 }
 
-}  // namespace
-
-std::string bash_completion(const CLI::App& app) {
+std::string bash_completion(const Options& program) {
     std::string groups;
-    for (const CLI::App* command : commands_of(app))
-        if (!commands_of(*command).empty()) groups += (groups.empty() ? "" : "|") + command->get_name();
+    for (const Options& command : program.commands)
+        if (!command.commands.empty()) groups += (groups.empty() ? "" : "|") + command.name;
     std::string out =
         "# Completion of carom for bash; made by: carom describe bash\n_carom() {\n"
         "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
@@ -185,7 +138,7 @@ std::string bash_completion(const CLI::App& app) {
         groups +
         ") [ \"$COMP_CWORD\" -gt 2 ] && command=\"$command ${COMP_WORDS[2]}\" ;;\n        esac\n    fi\n"
         "    case \"$command\" in\n";
-    bash_cases(out, app, "");
+    bash_cases(out, program, "");
     out +=
         "    esac\n"
         "    COMPREPLY=()\n"
@@ -201,57 +154,82 @@ std::string bash_completion(const CLI::App& app) {
 
 // ---- zsh -------------------------------------------------------------------------------------------------
 
-namespace {
-
 /// Text inside '...[text]...' of _arguments.
 std::string zsh_text(std::string text) {
     for (const char* c : {"\\", "[", "]", ":"}) text = replaced(std::move(text), c, std::string("\\") + c);
     return replaced(std::move(text), "'", "'\\''");
 }
 
-std::string zsh_value(const Described& d) {
-    if (!d.choices.empty()) return "(" + joined(d.choices, " ") + ")";
-    return takes_file(d) ? "_files" : " ";
+std::string zsh_value(const Option& row) {
+    if (!row.choices.empty()) return fmt::format("({})", joined(row.choices, " "));
+    return takes_file(row) ? "_files" : " ";
 }
 
-void zsh_function(std::string& out, const CLI::App& app, const std::string& name) {
-    const Apps inner = commands_of(app);
-    for (const CLI::App* sub : inner) zsh_function(out, *sub, name + "_" + sub->get_name());
+void zsh_function(std::string& out, const Options& command, const std::string& name) {
+    const std::list<Options>& inner = command.commands;
+    for (const Options& sub : inner) zsh_function(out, sub, name + "_" + sub.name);
     out += name + "() {\n";
     if (!inner.empty()) out += "    local curcontext=\"$curcontext\" state line\n    local -a commands\n";
     out += inner.empty() ? "    _arguments" : "    _arguments -C";
-    for (const Described& d : options_of(app, false)) {
-        const std::string value = d.value.empty() ? "" : ":" + zsh_text(d.value) + ":" + zsh_value(d);
-        const std::string body = "'[" + zsh_text(d.text) + "]" + value + "'";
-        const std::string excluded =
-            d.text.find("once per key") == d.text.npos ? "(" + joined(d.names, " ") + ")" : "*";
-        out += " \\\n        '" + excluded + "'";
-        out += d.names.size() == 1 ? d.names[0] + body : "{" + joined(d.names, ",") + "}" + body;
+    for (const Option& row : rows_of(command, false)) {
+        const std::string names = joined(row.names, ",");
+        const bool one = row.names.size() == 1;
+        out += fmt::format(" \\\n        '{}'{}'[{}]",
+                           row.may_be_repeated() ? "*" : fmt::format("({})", joined(row.names, " ")),
+                           one ? names : fmt::format("{{{}}}", names), zsh_text(meaning(row)));
+        if (!row.value.empty()) out += fmt::format(":{}:{}", zsh_text(row.value), zsh_value(row));
+        out += "'";
     }
     if (inner.empty()) {
-        for (const Described& d : options_of(app, true))
-            out += " \\\n        ':" + zsh_text(d.positional) + ":" + zsh_value(d) + "'";
+        for (const Option& row : rows_of(command, true))
+            out += fmt::format(" \\\n        ':{}:{}'", zsh_text(row.names.front()), zsh_value(row));
         out += "\n}\n";
         return;
     }
     out +=
         " \\\n        '1:command:->command' '*::argument:->argument'\n    case $state in\n    command)\n     "
         "   commands=(";
-    for (const CLI::App* sub : inner)
-        out +=
-            "\n            '" + sub->get_name() + ":" + replaced(sub->get_description(), "'", "'\\''") + "'";
+    for (const Options& sub : inner)
+        out += "\n            '" + sub.name + ":" + replaced(sub.text, "'", "'\\''") + "'";
     out += ")\n        _describe command commands ;;\n    argument)\n        case $words[1] in\n";
-    for (const CLI::App* sub : inner)
-        out += "        " + sub->get_name() + ") " + name + "_" + sub->get_name() + " ;;\n";
+    for (const Options& sub : inner) out += "        " + sub.name + ") " + name + "_" + sub.name + " ;;\n";
     out += "        esac ;;\n    esac\n}\n";
+}
+
+std::string zsh_completion(const Options& program) {
+    std::string out = "#compdef carom\n# Completion of carom for zsh; made by: carom describe zsh\n";
+    zsh_function(out, program, "_carom");
+    return out + "_carom \"$@\"\n";
+}
+
+// ---- the command -----------------------------------------------------------------------------------------
+
+/// What the command can print: one row for each format.
+constexpr struct {
+    const char* name;
+    std::string (*text)(const Options& program);
+} kFormats[] = {{"man", man_page}, {"bash", bash_completion}, {"zsh", zsh_completion}};
+
+struct DescribeArgs {
+    std::string format;
+};
+
+int run(const DescribeArgs& args, const Options& program) {
+    for (const auto& format : kFormats)
+        if (args.format == format.name) print(format.text(program));
+    return kOk;
 }
 
 }  // namespace
 
-std::string zsh_completion(const CLI::App& app) {
-    std::string out = "#compdef carom\n# Completion of carom for zsh; made by: carom describe zsh\n";
-    zsh_function(out, app, "_carom");
-    return out + "_carom \"$@\"\n";
+void add_describe(Options& program) {
+    auto args = std::make_shared<DescribeArgs>();
+    Options& command =
+        program.command("describe", "This program as a man page, or as completions for a shell");
+    Option& format = command.argument("FORMAT", args->format, "What to print");
+    format.required = true;
+    for (const auto& known : kFormats) format.choices.emplace_back(known.name);
+    command.run = [args, &program] { return run(*args, program); };
 }
 
 }  // namespace carom::tools

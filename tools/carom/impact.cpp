@@ -1,22 +1,31 @@
-// carom impact: one impact per line of standard input, its result per line of standard output. Every answer
-// is flushed, so that another program can ask over a pipe and wait for it.
+// carom impact: reads one impact from each line of standard input and writes its result to a line of standard output. Every
+// result is flushed, so that another program can send an impact through a pipe and wait for the result.
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
-#include "commands.h"
+#include "carom/kernel/tolerance.h"
 #include "console.h"
 #include "impact_line.h"
+#include "options.h"
 #include "setup.h"
 
 namespace carom::tools {
 namespace {
 
-/// Lines of standard input, of bounded length. Not std::getline:
-/// that neither returns on SIGINT nor stops at a length.
+struct ImpactArgs {
+    std::string method = "mathavan";
+    std::optional<int> substeps;
+    double tolerance = 1e-6;
+    std::string cloth_slip = "consistent";
+};
+
+/// Reads lines of bounded length from standard input. std::getline cannot be used: it neither returns on SIGINT nor limits
+/// the length.
 class LineReader {
   public:
     enum class Got : unsigned char { kLine, kTooLong, kEnd };
@@ -80,9 +89,7 @@ bool is_blank(const std::string& line) {
     return line.find_first_not_of(" \t\r") == std::string::npos;
 }
 
-}  // namespace
-
-int run_impact(const ImpactArgs& args) {
+int run(const ImpactArgs& args) {
     const ImpactSettings settings = settings_of(args);
     LineReader reader;
     std::string line;
@@ -90,7 +97,7 @@ int run_impact(const ImpactArgs& args) {
     for (;;) {
         const LineReader::Got got = reader.next(line);
         if (got == LineReader::Got::kEnd) break;
-        // A blank line, such as one at the end of a file, asks for nothing.
+        // A blank line, such as the last one of a file, has no result.
         if (got == LineReader::Got::kLine && is_blank(line)) continue;
         const ImpactAnswer answer =
             got == LineReader::Got::kTooLong
@@ -101,6 +108,24 @@ int run_impact(const ImpactArgs& args) {
         flush_output();
     }
     return all_computed ? kOk : kFailed;
+}
+
+}  // namespace
+
+void add_impact(Options& program) {
+    auto [command, args] = program.command<ImpactArgs>(
+        "impact", "One impact per line of standard input, its result per line (JSON)", run);
+    command.option("--method", &args.method, "NAME", "Ball-ball model")
+        .one_of({"mathavan", "inelastic", "elastic"});
+    command
+        .option("--substeps", &args.substeps, "N",
+                "Use the published march with this N (mathavan; default: off)")
+        .in(1, 100000000);
+    Option& tolerance = command.option("--tolerance", &args.tolerance, "E",
+                                       "Error allowed, relative to the approach speed (mathavan)");
+    tolerance.in(kernel::kTightestTolerance, kernel::kLoosestTolerance);
+    tolerance.excludes = "--substeps";
+    add_cloth_slip(command, args.cloth_slip, "Sign of the cloth slip inside the impact (mathavan)");
 }
 
 }  // namespace carom::tools

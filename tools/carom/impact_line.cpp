@@ -1,5 +1,4 @@
-// One line of carom impact: JSON in, JSON out. Keys are those
-// of the design, section 7, and "id", which is handed back.
+// Reads one line of carom impact, which is JSON, and computes the answer, which is JSON too. "id" is copied to the answer.
 #include "impact_line.h"
 
 #include <fmt/core.h>
@@ -19,9 +18,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Impacts nest three deep; deeper is no impact.
+/// The JSON of an impact nests three deep; anything deeper than this is refused.
 constexpr int kDeepest = 8;
-/// A normal typed with four digits is a unit vector; one that is further off is a mistake.
+/// A normal written with four digits is accepted as a unit vector; a larger difference from 1 is an error.
 constexpr double kUnitSlack = 1e-3;
 
 /// What is wrong with a line.
@@ -36,7 +35,7 @@ const Json& need(const Json& object, const char* key) {
     return *it;
 }
 
-/// A key that nothing reads is a slip that would change the result silently.
+/// Refuses a key that is not read: a misspelt key would silently give another result.
 void refuse_unknown(const Json& object, std::initializer_list<const char*> known) {
     for (const auto& item : object.items()) {
         bool found = false;
@@ -153,7 +152,7 @@ Vec2 unit_normal(const Json& line) {
     if (!(std::abs(length - 1.0) <= kUnitSlack)) {
         throw LineError(fmt::format("\"normal\": expected a vector of length 1, this one has {}", length));
     }
-    // Already as good as doubles get: left alone, so that the result has the bits that the caller expects.
+    // A vector that is a unit vector up to rounding is used as it is, so that the result has the bits that the caller expects.
     if (std::abs(length - 1.0) <= 4.0 * std::numeric_limits<double>::epsilon()) return {n[0], n[1]};
     return {n[0] / length, n[1] / length};
 }

@@ -18,7 +18,7 @@ inline constexpr std::size_t kLongestImpactLine = 1 << 20;
 struct ImpactSettings {
     enum class Method : unsigned char { kMathavan, kInelastic, kElastic };
     Method method = Method::kMathavan;
-    std::optional<int> substeps;  ///< set: the published march; else by tolerance
+    std::optional<int> substeps;  ///< of the published march; empty: the impact is solved by tolerance
     double tolerance = 1e-6;
     kernel::ClothSlip cloth_slip = kernel::ClothSlip::kConsistent;
     kernel::MarchFunction march = nullptr;

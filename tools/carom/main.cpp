@@ -1,83 +1,50 @@
-// The program: reads the command line, runs one command, turns what it throws into an exit status.
-#include <CLI/CLI.hpp>
-
-#include <cstdlib>
+// The program: the list of its commands, and what becomes of an error.
 #include <exception>
-#include <memory>
 #include <new>
 #include <string>
-#include <vector>
 
 #include "carom/engine/scene.h"
-#include "commands.h"
 #include "console.h"
-#include "describe.h"
-#include "options/help_formatter.h"
-#include "options/options.h"
+#include "options.h"
 
 namespace carom::tools {
+
+// A command is one file, which adds itself to the table of options; those that measure stand in folders.
+void add_simulate(Options& program);
+void add_render(Options& program);
+void add_margin(Options& program);
+void add_accuracy(Options& program);
+void add_sweep(Options& program);
+void add_check(Options& program);
+void add_impact(Options& program);
+void add_bench_kernel(Options& bench);
+void add_bench_render(Options& bench);
+void add_bench_shot(Options& bench);
+void add_describe(Options& program);
+
 namespace {
 
-void add_describe(CLI::App& app, Action& action) {
-    auto format = std::make_shared<std::string>();
-    CLI::App* sub =
-        app.add_subcommand("describe", "This program as a man page, or as completions for a shell");
-    sub->add_option("FORMAT", *format, "What to print")
-        ->type_name("NAME")
-        ->check(CLI::IsMember({"man", "bash", "zsh"}))
-        ->required();
-    sub->callback([format, &app, &action] {
-        action = [format, &app] {
-            print(*format == "man"    ? man_page(app, CAROM_VERSION)
-                  : *format == "bash" ? bash_completion(app)
-                                      : zsh_completion(app));
-            return kOk;
-        };
-    });
-}
-
-void add_commands(CLI::App& app, Action& action) {
-    add_simulate(app, action);
-    add_render(app, action);
-    add_margin(app, action);
-    add_accuracy(app, action);
-    add_sweep(app, action);
-    add_check(app, action);
-    add_impact(app, action);
-    add_bench(app, action);
-    add_describe(app, action);
-}
-
 int run(int argc, char** argv) {
-    CLI::App app("carom, a billiards table simulator", "carom");
-    app.formatter(std::make_shared<HelpFormatter>());
-    app.set_version_flag("--version", "carom " CAROM_VERSION);
-    app.require_subcommand(0, 1);  // none is an error too, but one with a better message than CLI11's
-    app.footer(
+    Options program("carom", "carom, a billiards table simulator");
+    program.version = CAROM_VERSION;
+    program.option("--version", {}, "", "Display program version information and exit");
+    program.footer =
         "CAROM_ISA=scalar|v3|v4 in the environment forces the instruction set (default: the widest "
         "available).\n"
-        "Exit status: 0, 1 failed while running, 2 bad usage or bad scene, 130 interrupted.");
-    Action action;
-    add_commands(app, action);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::CallForHelp&) {
-        print(app.help());
-        return kOk;
-    } catch (const CLI::CallForVersion& version) {
-        print(std::string(version.what()) + "\n");
-        return kOk;
-    } catch (const CLI::ParseError& error) {
-        const std::vector<CLI::App*> named = app.get_subcommands();
-        const std::string command = named.empty() ? "" : " " + named.front()->get_name();
-        throw UsageError(std::string(error.what()) + "; see carom" + command + " --help");
-    }
-    if (!action)
-        throw UsageError(
-            "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or "
-            "describe; see carom "
-            "--help");
-    return action();
+        "Exit status: 0, 1 failed while running, 2 bad usage or bad scene, 130 interrupted.";
+    add_simulate(program);
+    add_render(program);
+    add_margin(program);
+    add_accuracy(program);
+    add_sweep(program);
+    add_check(program);
+    add_impact(program);
+    Options& bench = program.command("bench", "Ratios measured side by side in one run");
+    add_bench_kernel(bench);
+    add_bench_render(bench);
+    add_bench_shot(bench);
+    add_describe(program);
+    return run_command_line(program, argc, argv);
 }
 
 /// Runs, and turns what was thrown into a message and an exit status.

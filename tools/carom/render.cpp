@@ -1,7 +1,6 @@
 // carom render: numbered PNG frames of a scene or of a record.
 #include <fmt/core.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -11,21 +10,37 @@
 #include <vector>
 
 #include "carom/render/sequence.h"
-#include "commands.h"
 #include "console.h"
 #include "margin/frame_costs.h"
+#include "options.h"
 #include "setup.h"
 
 namespace carom::tools {
 namespace {
 
-bool is_record_file(const std::string& path) {
-    constexpr std::string_view kEnding = ".json";
-    return path.size() >= kEnding.size() &&
-           path.compare(path.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
-}
+struct RenderArgs {
+    std::string input;  ///< a scene, or a record (.json)
+    std::string pattern = "frames/%05d.png";
+    std::optional<double> fps;
+    std::string size;  ///< "1280x720"; empty: the scene's
+    double from = 0.0;
+    std::optional<double> to;
+    std::optional<long> frame;
+    std::optional<double> at;
+    std::string camera;  ///< empty: the scene's
+    std::string gl = "osmesa";
+    int png_level = 1;
+    std::string eye, target;  ///< "x,y,z"; empty: a named camera
+    std::string ball;         ///< followed by the camera "follow"; empty: the ball that moves first
+    std::string overlay;      ///< list of names
+    bool trails = false;      ///< --overlay trails
+    std::string sheet;        ///< "4x3"; empty: frames
+    int jobs = 0;
+    bool resume = false;
+    bool raw = false;
+};
 
-/// Reads a record; what it lacks goes to standard error.
+/// Reads a record. Notes about missing parts are written to standard error.
 Record record_from(const std::string& path) {
     std::vector<std::string> notes;
     Record record = read_record(path, &notes);
@@ -58,19 +73,12 @@ void check_args(const RenderArgs& args) {
     }
 }
 
-// "x,y,z" in m.
+/// "x,y,z" in m.
 Vec3 parse_point(const char* option, const std::string& text) {
-    double x[3];
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    for (int k = 0; k < 3; ++k) {
-        const auto [rest, error] = std::from_chars(at, end, x[k]);
-        const bool separated = k < 2 ? rest != end && *rest == ',' : rest == end;
-        if (error != std::errc() || !std::isfinite(x[k]) || !separated)
-            throw UsageError(fmt::format("{}: expected three numbers in m, such as 0.6,-0.5,0.8", option));
-        at = rest + (k < 2 ? 1 : 0);
-    }
-    return {x[0], x[1], x[2]};
+    const auto x = numbers_in<double, 3>(text, ',');
+    if (x && std::isfinite((*x)[0]) && std::isfinite((*x)[1]) && std::isfinite((*x)[2]))
+        return Vec3(x->data());
+    throw UsageError(fmt::format("{}: expected three numbers in m, such as 0.6,-0.5,0.8", option));
 }
 
 render::Overlay overlay_of(const RenderArgs& args) {
@@ -107,8 +115,7 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     options.from = args.at.value_or(args.from);
     options.to = args.at ? args.at : args.to;
     options.frame = args.frame;
-    options.size =
-        args.size.empty() ? render::FrameSize{settings.width, settings.height} : parse_size(args.size);
+    options.size = args.size.empty() ? settings.size() : parse_size(args.size);
     set_view(args, settings, options);
     options.png_level = args.png_level;
     options.jobs = args.jobs;
@@ -130,13 +137,11 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     return options;
 }
 
-}  // namespace
-
-// The margin bar's share of the simulation: what the events cost that fall between a frame and the next one.
-// A record that was not profiled has no costs: then the bar shows drawing, reading back and encoding alone.
+/// Tells the margin bar what the simulation of each frame cost: the sum over the events between the frame and the next one.
+/// A record that was not profiled has no costs; its bar shows drawing, reading back and encoding only.
 void set_simulation_costs(const Record& record, render::SequenceOptions& options) {
     if (record.costs.empty()) return;
-    // Frames before the first and after the last take the events there, which are none of those that are shown.
+    // Events before the first and after the last frame that is shown belong to frames that are not shown.
     const double before = std::ceil(options.from * options.fps);
     const auto first = static_cast<long>(before);
     const long frames = render::frame_count(options.from, options.to.value_or(record.duration), options.fps);
@@ -147,7 +152,7 @@ void set_simulation_costs(const Record& record, render::SequenceOptions& options
 }
 
 int write_sheet(const RenderArgs& args, const Record& record, const render::SequenceOptions& options) {
-    const render::FrameSize grid = parse_sheet(args.sheet);
+    const FrameSize grid = parse_sheet(args.sheet);
     const std::string path = args.pattern.find('%') == std::string::npos ? args.pattern : "sheet.png";
     render::render_sheet(record, options, grid.width, grid.height, path);
     print(fmt::format(
@@ -157,15 +162,15 @@ int write_sheet(const RenderArgs& args, const Record& record, const render::Sequ
     return kOk;
 }
 
-int run_render(const RenderArgs& args) {
+int run(const RenderArgs& args) {
     check_args(args);
     if (args.raw && (args.resume || !args.sheet.empty()))
         throw UsageError("--raw goes with neither --resume nor --sheet");
     if (!args.size.empty()) parse_size(args.size);
     SimulateOptions simulation;
     simulation.profile = overlay_of(args).margin;
-    const Record record = is_record_file(args.input) ? record_from(args.input)
-                                                     : simulate_plan(plan_scene(args.input), simulation);
+    const Record record = args.input.ends_with(".json") ? record_from(args.input)
+                                                        : simulate_plan(plan_scene(args.input), simulation);
     render::SequenceOptions options = sequence_options(args, record);
     if (options.overlay.margin) set_simulation_costs(record, options);
     ProgressLine line("rendering:");
@@ -198,6 +203,46 @@ int run_render(const RenderArgs& args) {
     print(fmt::format("to make a film of them: ffmpeg -framerate {} -i {} -pix_fmt yuv420p shot.mp4\n",
                       options.fps, options.pattern));
     return kOk;
+}
+
+}  // namespace
+
+void add_render(Options& program) {
+    auto [command, args] = program.command<RenderArgs>(
+        "render", "Numbered PNG frames of a scene or a record; frame k shows from + k/fps", run);
+    command.argument("SCENE", args.input, "Scene file (TOML), or a record (.json) of carom simulate -o")
+        .required = true;
+    command.option("-o,--output", &args.pattern, "PATTERN",
+                   "Files to write, with one %d or %05d for the number of the frame");
+    add_picture(command, args.fps, args.size);
+    command.option("--from", &args.from, "S", "First instant in s");
+    command.option("--to", &args.to, "S", "Last instant in s (default: the end of the shot)");
+    command.option("--frame", &args.frame, "K", "Only frame K (default: all)");
+    command.option("--at", &args.at, "S", "Only this instant in s, as frame 0 (default: all)");
+    command
+        .option("--camera", &args.camera, "NAME",
+                "Camera (default: the scene's, which is top unless it says otherwise)")
+        .one_of({"top", "rail", "player", "follow"});
+    command.option("--eye", &args.eye, "X,Y,Z",
+                   "Free camera: where the eye is, in m (default: a named camera)");
+    Option& target = command.option("--target", &args.target, "X,Y,Z",
+                                    "Free camera: what it looks at, in m (default: a named camera)");
+    target.needs = "--eye";
+    command.option("--ball", &args.ball, "ID",
+                   "Ball that camera follow follows (default: the one that moves first)");
+    command.option(
+        "--overlay", &args.overlay, "LIST",
+        "Drawn over the picture: trails, events, spin, ghost, clock, margin, or all (default: none)");
+    command.flag("--trails", args.trails, "The same as --overlay trails (default: off)");
+    command.option("--sheet", &args.sheet, "CxR",
+                   "One contact sheet of columns x rows pictures instead of frames (default: off)");
+    command.option("--jobs", &args.jobs, "N", "Threads that encode and write; 0: one per core").in(0, 256);
+    command.flag("--resume", args.resume, "Leave out frames whose finished file is there (default: off)");
+    command.flag("--raw", args.raw,
+                 "RGB bytes on standard output instead of PNG files, for ffmpeg (default: off)");
+    add_gl(command, args.gl);
+    command.option("--png-level", &args.png_level, "L", "Compression, 0 (large, fast) to 9 (small, slow)")
+        .in(0, 9);
 }
 
 }  // namespace carom::tools

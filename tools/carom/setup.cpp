@@ -1,24 +1,48 @@
-// Steps that several sub-commands begin with.
 #include "setup.h"
 
 #include <fmt/core.h>
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 
+#include "carom/engine/tolerances.h"
 #include "console.h"
 
 namespace carom::tools {
 namespace {
 
-/// More frames than this (46 hours at 60 fps) is a slip of the keyboard, and would fill any disk.
+/// More frames than this (46 hours at 60 fps) is taken for a typing error: it would fill any disk.
 constexpr double kMostFrames = 1e7;
-/// Pixels per side; what OpenGL implementations draw.
-constexpr int kLargestSide = 16384;
 constexpr double kFastestFps = 1e6;
 
 }  // namespace
+
+void add_gl(Options& command, std::string& gl) {
+    command.option("--gl", &gl, "NAME", "OpenGL without a display: osmesa, or egl (surfaceless)")
+        .one_of({"osmesa", "egl"});
+}
+
+void add_picture(Options& command, std::optional<double>& fps, std::string& size) {
+    command.option("--fps", &fps, "F",
+                   "Frames per second (default: the scene's, which is 60 unless it says otherwise)");
+    command.option("--size", &size, "WxH",
+                   "Pixels (default: the scene's, which is 1280x720 unless it says otherwise)");
+}
+
+void add_repeat(Options& command, int& rounds, std::string description) {
+    command.option("--repeat", &rounds, "N", std::move(description)).in(1, 1000);
+}
+
+void add_cloth_slip(Options& command, std::string& name, std::string description) {
+    command.option("--cloth-slip", &name, "NAME", std::move(description))
+        .one_of({"consistent", "as_published"});
+}
+
+void add_reports(Options& command, std::string& csv, std::string& plot, bool& json) {
+    command.option("--csv", &csv, "FILE.csv", "Write the table (default: not written)");
+    command.option("--plot", &plot, "FILE.svg", "Draw it (default: not drawn)");
+    command.flag("--json", json, "Print JSON (default: off)");
+}
 
 kernel::Isa chosen_isa() {
     const auto [isa, problem] = kernel::isa_from_environment();
@@ -52,28 +76,24 @@ Record simulate_plan(const Plan& plan, SimulateOptions options) {
 
 namespace {
 
-/// "16x9", both 1 to kLargestSide.
-std::optional<render::FrameSize> two_numbers(const std::string& text) {
-    render::FrameSize size{};
-    const char* const end = text.data() + text.size();
-    const auto [middle, bad_width] = std::from_chars(text.data(), end, size.width);
-    if (bad_width != std::errc() || middle == end || *middle != 'x') return std::nullopt;
-    const auto [last, bad_height] = std::from_chars(middle + 1, end, size.height);
-    const bool fits =
-        size.width >= 1 && size.width <= kLargestSide && size.height >= 1 && size.height <= kLargestSide;
-    if (bad_height != std::errc() || last != end || !fits) return std::nullopt;
-    return size;
+/// "16x9", both 1 to kMaxImageSize.
+std::optional<FrameSize> two_numbers(const std::string& text) {
+    const auto sides = numbers_in<int, 2>(text, 'x');
+    if (!sides) return std::nullopt;
+    for (const int side : *sides)
+        if (side < 1 || side > kMaxImageSize) return std::nullopt;
+    return FrameSize{(*sides)[0], (*sides)[1]};
 }
 
 }  // namespace
 
-render::FrameSize parse_size(const std::string& text) {
+FrameSize parse_size(const std::string& text) {
     if (const auto size = two_numbers(text)) return *size;
     throw UsageError(fmt::format("--size {}: expected WIDTHxHEIGHT in pixels, 1 to {} each, as in 1280x720",
-                                 text, kLargestSide));
+                                 text, kMaxImageSize));
 }
 
-render::FrameSize parse_sheet(const std::string& text) {
+FrameSize parse_sheet(const std::string& text) {
     if (const auto grid = two_numbers(text)) return *grid;
     throw UsageError(fmt::format("--sheet {}: expected COLUMNSxROWS of pictures, as in 4x3", text));
 }

@@ -1,38 +1,67 @@
-// Steps that several sub-commands begin with.
+// Options that several commands have, and steps that several begin with.
 #pragma once
 
+#include <array>
+#include <charconv>
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
 #include "carom/engine/simulate.h"
 #include "carom/render/sequence.h"
+#include "options.h"
 
 namespace carom::tools {
 
-/// CAROM_ISA, or the widest one. @throws UsageError for an unknown or unavailable name
+// Each of these adds options. The variables hold the defaults; those of add_picture are empty, and the scene has the defaults.
+void add_gl(Options& command, std::string& gl);
+void add_picture(Options& command, std::optional<double>& fps, std::string& size);
+void add_repeat(Options& command, int& rounds, std::string description);
+void add_cloth_slip(Options& command, std::string& name, std::string description);
+void add_reports(Options& command, std::string& csv, std::string& plot, bool& json);
+
+/// The instruction set that CAROM_ISA names, or else the widest available one.
+/// @throws UsageError for an unknown or unavailable name
 kernel::Isa chosen_isa();
 
 /// Reads a scene and plans it; its warnings go to standard error. @throws SceneError
 Plan plan_scene(const std::string& path);
 
-/// For a run without a line of its own: SIGINT ends it.
+/// Options of a run that shows no progress line. SIGINT ends the run.
 SimulateOptions interruptible();
 
-/// simulate() with a progress line; SIGINT ends it. @throws SimulationError, Interrupted
+/// Calls simulate() and shows a progress line. SIGINT ends the run. @throws SimulationError, Interrupted
 Record simulate_plan(const Plan& plan, SimulateOptions options);
 
-/// "1280x720". @throws UsageError
-render::FrameSize parse_size(const std::string& text);
+/// Reads exactly kCount numbers with a separator between them: "1280x720". Returns nothing if the text is anything else.
+template <class Number, std::size_t kCount>
+std::optional<std::array<Number, kCount>> numbers_in(const std::string& text, char separator) {
+    std::array<Number, kCount> list{};
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (std::size_t i = 0; i < kCount; ++i) {
+        if (i > 0 && (at == end || *at++ != separator)) return std::nullopt;
+        const auto [rest, error] = std::from_chars(at, end, list[i]);
+        if (error != std::errc()) return std::nullopt;
+        at = rest;
+    }
+    if (at != end) return std::nullopt;
+    return list;
+}
 
-/// "4x3": columns and rows of a contact sheet; @throws UsageError
-render::FrameSize parse_sheet(const std::string& text);
+/// Reads width and height, "1280x720". @throws UsageError
+FrameSize parse_size(const std::string& text);
 
-/// Frames per second: the one asked for, else the scene's. @throws UsageError
+/// Reads the columns and rows of a contact sheet, "4x3". @throws UsageError
+FrameSize parse_sheet(const std::string& text);
+
+/// The frames per second that the user asked for, or else those of the scene. @throws UsageError
 double chosen_fps(std::optional<double> asked, const RenderSettings& settings);
 
-/// Frames k with from + k / fps <= to; more than this program can number is a UsageError.
+/// The number of frames k with from + k / fps <= to. @throws UsageError if that is more than the program can number
 long checked_frame_count(double from, double to, double fps);
 
 }  // namespace carom::tools

@@ -10,40 +10,60 @@
 
 #include "base/output_file.h"
 #include "carom/engine/verify.h"
-#include "commands.h"
 #include "console.h"
+#include "options.h"
 #include "report/csv.h"
+#include "report/table.h"
 #include "setup.h"
 
 namespace carom::tools {
 namespace {
 
-/// Sums of a profiled run over the events of one kind [ns].
-struct CostSum {
-    long count = 0;
-    double detect = 0.0, resolve = 0.0, kernel = 0.0;
+using Json = nlohmann::ordered_json;
+
+struct SimulateArgs {
+    std::string scene;
+    std::string record;  ///< file names; empty: not asked for
+    std::string events;
+    std::string samples;
+    std::optional<double> sample_dt;  ///< [s]
+    std::optional<double> until;      ///< [s]
+    bool hash = false;
+    bool profile = false;
+    bool json = false;
+    bool verify = false;  ///< check the laws after every event
 };
 
-std::array<CostSum, kEventTypes> costs_by_kind(const Record& record) {
-    std::array<CostSum, kEventTypes> sums{};
-    for (std::size_t i = 0; i < record.costs.size(); ++i) {
-        CostSum& sum = sums[static_cast<std::size_t>(record.events.at(i).type)];
-        ++sum.count;
-        sum.detect += record.costs[i].detect_ns;
-        sum.resolve += record.costs[i].resolve_ns;
-        sum.kernel += record.costs[i].kernel_ns;
+/// What the events of a profiled run cost, by kind: the sums. The text shows the means.
+Table costs_by_kind(const Record& record) {
+    Table table(Column("type", "", "<24"), Column("count", "count", ">6"),
+                Column("detect_ns", "detect", ">12"), Column("resolve_ns", "resolve", ">12"),
+                Column("kernel_ns", "kernel", ">12"));
+    for (int type = 0; type < kEventTypes; ++type) {
+        long count = 0;
+        double detect = 0.0, resolve = 0.0, kernel = 0.0;
+        for (std::size_t i = 0; i < record.costs.size(); ++i) {
+            if (record.events.at(i).type != static_cast<EventType>(type)) continue;
+            ++count;
+            detect += record.costs[i].detect_ns;
+            resolve += record.costs[i].resolve_ns;
+            kernel += record.costs[i].kernel_ns;
+        }
+        if (count == 0) continue;
+        const auto mean = [count](double sum) { return Cell(sum, fmt::format("{:.0f}", sum / count)); };
+        const std::string title = name(static_cast<EventType>(type));
+        table.add({{title, "  " + title}, count, mean(detect), mean(resolve), mean(kernel)});
     }
-    return sums;
+    return table;
 }
 
 std::string result_json(const Record& record) {
-    using Json = nlohmann::ordered_json;
     const auto numbers = [](const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); };
     Json balls = Json::array();
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         const BallState s = record.state_at(static_cast<int>(i), record.duration);
         Json pocket = nullptr;
-        if (s.pocket >= 0) pocket = record.table.pockets.at(static_cast<std::size_t>(s.pocket)).id;
+        if (s.pocket >= 0) pocket = record.table.pockets.at(s.pocket).id;
         balls.push_back({{"id", record.tracks[i].id},
                          {"state", name(s.state)},
                          {"position", numbers(s.position)},
@@ -56,34 +76,17 @@ std::string result_json(const Record& record) {
                 {"hash", record.hash()},
                 {"balls", balls}};
     if (!record.costs.empty()) {
-        Json kinds = Json::array();
-        const std::array<CostSum, kEventTypes> sums = costs_by_kind(record);
-        for (int type = 0; type < kEventTypes; ++type) {
-            const CostSum& sum = sums[type];
-            if (sum.count == 0) continue;
-            kinds.push_back({{"type", name(static_cast<EventType>(type))},
-                             {"count", sum.count},
-                             {"detect_ns", sum.detect},
-                             {"resolve_ns", sum.resolve},
-                             {"kernel_ns", sum.kernel}});
-        }
-        all["profile"] = {{"setup_detect_ns", record.setup_detect_ns}, {"kinds", kinds}};
+        all["profile"] = {{"setup_detect_ns", record.setup_detect_ns},
+                          {"kinds", table_json(costs_by_kind(record))}};
     }
     return all.dump() + "\n";
 }
 
 const char* reason(StopReason stopped) {
-    switch (stopped) {
-        case StopReason::kAtRest:
-            return "everything is at rest";
-        case StopReason::kTime:
-            return "stopped at its time";
-        case StopReason::kEvents:
-            return "stopped at its number of events";
-        case StopReason::kEndless:
-            return "nothing more happens, but balls move for ever";
-    }
-    return "";
+    constexpr const char* kReasons[] = {"everything is at rest", "stopped at its time",
+                                        "stopped at its number of events",
+                                        "nothing more happens, but balls move for ever"};
+    return kReasons[static_cast<int>(stopped)];
 }
 
 std::string summary(const Record& record, const std::string& scene) {
@@ -102,9 +105,8 @@ std::string summary(const Record& record, const std::string& scene) {
     for (const Event& event : record.events) {
         if (event.type != EventType::kBallPocket) continue;
         ++pocketed;
-        fmt::format_to(line, "  {:<6} in {} at {:.4f} s\n",
-                       record.tracks.at(static_cast<std::size_t>(event.a)).id, record.partner_id(event),
-                       event.time);
+        fmt::format_to(line, "  {:<6} in {} at {:.4f} s\n", record.tracks.at(event.a).id,
+                       record.partner_id(event), event.time);
     }
     if (pocketed == 0) fmt::format_to(line, "  none\n");
     fmt::format_to(line, "\nballs at the end (m)\n");
@@ -118,34 +120,22 @@ std::string summary(const Record& record, const std::string& scene) {
 
 /// Where the time of a profiled run went.
 std::string profile_report(const Record& record) {
-    fmt::memory_buffer out;
-    const auto line = std::back_inserter(out);
-    const std::array<CostSum, kEventTypes> sums = costs_by_kind(record);
-    fmt::format_to(line, "\ncost by kind of event (mean ns; kernel is a part of resolve)\n");
-    fmt::format_to(line, "  {:<22}{:>6}{:>12}{:>12}{:>12}\n", "", "count", "detect", "resolve", "kernel");
     double total = record.setup_detect_ns;
-    for (int type = 0; type < kEventTypes; ++type) {
-        const CostSum& sum = sums[type];
-        if (sum.count == 0) continue;
-        const auto n = static_cast<double>(sum.count);
-        total += sum.detect + sum.resolve;
-        fmt::format_to(line, "  {:<22}{:>6}{:>12.0f}{:>12.0f}{:>12.0f}\n", name(static_cast<EventType>(type)),
-                       sum.count, sum.detect / n, sum.resolve / n, sum.kernel / n);
-    }
-    fmt::format_to(line, "  first detection of all pairs: {:.0f} ns; all together: {:.3f} ms\n",
-                   record.setup_detect_ns, total * 1e-6);
-    fmt::format_to(line, "\nkernel by ball-ball event and cluster\n  {:>12}  {:<12}{:>12}{:>8}  {}\n",
-                   "time (s)", "balls", "ns", "steps", "method");
+    for (const EventCost& cost : record.costs) total += cost.detect_ns + cost.resolve_ns;
+    Table kernels(Column("", "  time (s)", ">14.6f"), Column("", "  balls", "<14"),
+                  Column("", "ns", ">12.0f"), Column("", "steps", ">8"), Column("", "  method", "<"));
     for (std::size_t i = 0; i < record.costs.size(); ++i) {
         const Event& event = record.events[i];
         if (!balls_collide(event.type)) continue;
         const EventCost& cost = record.costs[i];
-        fmt::format_to(
-            line, "  {:>12.6f}  {:<12}{:>12.0f}{:>8}  {}\n", event.time,
-            record.tracks.at(static_cast<std::size_t>(event.a)).id + " " + record.partner_id(event),
-            cost.kernel_ns, cost.steps, cost.method);
+        kernels.add({event.time, "  " + record.tracks.at(event.a).id + " " + record.partner_id(event),
+                     cost.kernel_ns, cost.steps, fmt::format("  {}", cost.method)});
     }
-    return fmt::to_string(out);
+    return fmt::format(
+        "\ncost by kind of event (mean ns; kernel is a part of resolve)\n{}"
+        "  first detection of all pairs: {:.0f} ns; all together: {:.3f} ms\n"
+        "\nkernel by ball-ball event and cluster\n{}",
+        table_text(costs_by_kind(record)), record.setup_detect_ns, total * 1e-6, table_text(kernels));
 }
 
 void check_args(const SimulateArgs& args) {
@@ -181,16 +171,13 @@ int verified(const Record& record, const Plan& plan) {
     if (violation->event < record.events.size()) {
         const Event& event = record.events[violation->event];
         where = fmt::format("event {} ({} {} {}, t = {:.17g} s)", violation->event, name(event.type),
-                            record.tracks.at(static_cast<std::size_t>(event.a)).id, record.partner_id(event),
-                            event.time);
+                            record.tracks.at(event.a).id, record.partner_id(event), event.time);
     }
     message(fmt::format("{} broken at {}: {}", violation->law, where, violation->message));
     return kFailed;
 }
 
-}  // namespace
-
-int run_simulate(const SimulateArgs& args) {
+int run(const SimulateArgs& args) {
     check_args(args);
     const Plan plan = plan_scene(args.scene);
     SimulateOptions options;
@@ -199,8 +186,7 @@ int run_simulate(const SimulateArgs& args) {
     const Record record = simulate_plan(plan, options);
     write_files(args, record);
     const int status = args.verify ? verified(record, plan) : kOk;
-    // --hash stands for the summary, so that alone it is one line and nothing else; --json holds the hash
-    // anyway.
+    // --hash replaces the summary, so that the output is one line. The JSON contains the hash in any case.
     if (args.json) {
         print(result_json(record));
         return status;
@@ -208,6 +194,31 @@ int run_simulate(const SimulateArgs& args) {
     print(args.hash ? record.hash() + "\n" : summary(record, args.scene));
     if (args.profile) print(profile_report(record));
     return status;
+}
+
+}  // namespace
+
+void add_simulate(Options& program) {
+    auto [command, args] = program.command<SimulateArgs>(
+        "simulate", "Run a scene: what happened, events, record, sampled states, hash", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
+    command.option("-o,--output", &args.record, "FILE.json",
+                   "Write the record, for carom render (default: not written)");
+    command.option("--events", &args.events, "FILE.csv", "Write the events (default: not written)");
+    command.option("--samples", &args.samples, "FILE.csv",
+                   "Write sampled states; needs --sample-dt (default: not written)");
+    command.option("--sample-dt", &args.sample_dt, "S", "Time between samples in s (default: none)");
+    command.option("--until", &args.until, "S",
+                   "Stop at this time in s at the latest (default: the scene's end)");
+    command.flag("--hash", args.hash,
+                 "Print the hash of all bits of the record instead of the summary (default: off)");
+    command.flag("--profile", args.profile,
+                 "Time every event: cost by kind, kernel by ball-ball event, columns in the events file "
+                 "(default: off)");
+    command.flag("--json", args.json, "Print JSON (default: off)");
+    command.flag(
+        "--verify", args.verify,
+        "Check the laws after every event; a broken one is named, and the exit status is 1 (default: off)");
 }
 
 }  // namespace carom::tools

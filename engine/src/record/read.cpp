@@ -25,9 +25,6 @@ using detail::JsonObject;
 using detail::JsonText;
 using detail::JsonValue;
 
-/// Pixels per side; the largest that OpenGL implementations draw.
-constexpr int kLargestSide = 16384;
-
 /// Names of methods that a file gives; they stay where they are while more come.
 using Names = std::set<std::string, std::less<>>;
 
@@ -96,7 +93,7 @@ RenderSettings read_render(const JsonValue& value) {
     const JsonValue size = all.at("size");
     if (size.size() != 2) size.fail("expected [width, height]");
     size.each([&](const JsonValue& side, std::size_t i) {
-        (i == 0 ? render.width : render.height) = static_cast<int>(side.integer(1, kLargestSide));
+        (i == 0 ? render.width : render.height) = static_cast<int>(side.integer(1, kMaxImageSize));
     });
     render.camera = all.at("camera").text();
     if (all.has("eye") || all.has("target")) {

@@ -4,15 +4,14 @@
 #include <cstddef>
 #include <optional>
 
+#include "draw/shaders.h"
+
 namespace carom::render {
 
 namespace {
 
-// How far a shadow's quad reaches, in radii; the shader has the same number.
-constexpr double kShadowReach = 2.5;
-
 float linear(float srgb) {
-    return srgb * srgb;  // the shaders' gamma
+    return srgb * srgb;  // as from_screen() of shaders/common.glsl
 }
 
 BallInstance make_instance(const DrawBall& ball, const Vec3& origin, double distance) {
@@ -33,7 +32,7 @@ PixelBox whole(FrameSize size) {
 
 // The whole image if part of the ball is behind the eye.
 PixelBox box_of(const DrawBall& ball, const Camera& camera) {
-    const double reach = (ball.in_pocket ? 1.0 : kShadowReach) * ball.radius;
+    const double reach = (ball.in_pocket ? 1.0 : shaders::kShadowReach) * ball.radius;
     const PixelBox all = whole(camera.size);
     Vec2 low(1e9, 1e9), high(-1e9, -1e9);
     for (int i = 0; i < 8; ++i) {
@@ -110,8 +109,7 @@ std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth
 }
 
 std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPicture& after, FrameSize size) {
-    if (before.table == 0 || before.table != after.table || before.overlay || after.overlay)
-        return {whole(size)};
+    if (!before.table || before.table != after.table || before.overlay || after.overlay) return {whole(size)};
     std::vector<PixelBox> boxes;
     const auto add_missing = [&boxes](const DrawnPicture& from, const DrawnPicture& in) {
         for (const DrawnBall& ball : from.balls) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "carom/render/draw_list.h"
@@ -38,11 +39,14 @@ struct DrawnBall {
     bool operator==(const DrawnBall&) const = default;
 };
 
+/// Stands for one drawing of the table: pictures that share it show the same table.
+struct TableDrawing {};
+
 /// One picture: which table lies under it, and what is over it.
 struct DrawnPicture {
-    std::uint64_t table = 0;       ///< number of the drawing of the table, never used twice; 0: none
-    bool overlay = false;          ///< lines and boxes reach anywhere
-    std::vector<DrawnBall> balls;  ///< far ones first, as they are drawn
+    std::shared_ptr<const TableDrawing> table;  ///< which drawing of it; nothing: none
+    bool overlay = false;                       ///< lines and boxes reach anywhere
+    std::vector<DrawnBall> balls;               ///< far ones first, as they are drawn
 };
 
 /// Where nothing but cloth is seen, by squares of pixels.

@@ -25,8 +25,8 @@ float f(double value) {
 }  // namespace
 
 OverlayLayer::OverlayLayer(const gl::Api& api, GLuint glyphs) : api_(api), glyphs_(glyphs) {
-    line_program_ = shaders::make_program(api, shaders::kLineVertex, shaders::kLineFragment);
-    box_program_ = shaders::make_program(api, shaders::kBoxVertex, shaders::kBoxFragment);
+    line_program_ = shaders::make_program(api, shaders::kLineVertex, shaders::kLineFragment, {"u_occluders"});
+    box_program_ = shaders::make_program(api, shaders::kBoxVertex, shaders::kBoxFragment, {"u_glyphs"});
     const auto make = [&](GLuint& array, GLuint& buffer) {
         api.GenVertexArrays(1, &array);
         api.GenBuffers(1, &buffer);
@@ -50,7 +50,7 @@ OverlayLayer::OverlayLayer(const gl::Api& api, GLuint glyphs) : api_(api), glyph
     attribute(2, 1, sizeof(BoxInstance), offsetof(BoxInstance, glyph));
 }
 
-void OverlayLayer::draw_lines(const DrawList& list, const View& view, GLuint occluders, LineLayer layer) {
+void OverlayLayer::draw_lines(const DrawList& list, GLuint occluders, LineLayer layer) {
     const Vec3 origin(list.table->origin.x(), list.table->origin.y(), 0.0);
     std::vector<LineInstance> instances;
     for (const DrawLine& line : list.lines) {
@@ -67,12 +67,12 @@ void OverlayLayer::draw_lines(const DrawList& list, const View& view, GLuint occ
     api_.BindBuffer(GL_ARRAY_BUFFER, line_buffer_);
     api_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(instances.size() * sizeof(LineInstance)),
                     instances.data(), GL_STREAM_DRAW);
-    view.set(api_, line_program_);
-    gl::bind_texture(api_, line_program_, 0, "u_occluders", occluders);
+    api_.UseProgram(line_program_);
+    gl::bind_texture(api_, 0, occluders);
     api_.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(instances.size()));
 }
 
-void OverlayLayer::draw_boxes(const DrawList& list, const View& view) {
+void OverlayLayer::draw_boxes(const DrawList& list) {
     if (list.boxes.empty()) return;
     std::vector<BoxInstance> instances;
     for (const DrawBox& box : list.boxes) {
@@ -85,8 +85,8 @@ void OverlayLayer::draw_boxes(const DrawList& list, const View& view) {
     api_.BindBuffer(GL_ARRAY_BUFFER, box_buffer_);
     api_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(instances.size() * sizeof(BoxInstance)),
                     instances.data(), GL_STREAM_DRAW);
-    view.set(api_, box_program_);
-    gl::bind_texture(api_, box_program_, 0, "u_glyphs", glyphs_);
+    api_.UseProgram(box_program_);
+    gl::bind_texture(api_, 0, glyphs_);
     api_.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(instances.size()));
 }
 

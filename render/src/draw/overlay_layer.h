@@ -1,7 +1,7 @@
 // Draws the lines and boxes of a draw list.
 #pragma once
 
-#include "draw/view.h"
+#include "carom/render/draw_list.h"
 #include "gl/api.h"
 
 namespace carom::render {
@@ -11,8 +11,8 @@ class OverlayLayer {
     OverlayLayer(const gl::Api& api, GLuint glyphs);
 
     /// The lines of one layer.
-    void draw_lines(const DrawList& list, const View& view, GLuint occluders, LineLayer layer);
-    void draw_boxes(const DrawList& list, const View& view);
+    void draw_lines(const DrawList& list, GLuint occluders, LineLayer layer);
+    void draw_boxes(const DrawList& list);
 
   private:
     const gl::Api& api_;

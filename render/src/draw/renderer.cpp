@@ -1,7 +1,6 @@
 #include "carom/render/renderer.h"
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "draw/overlay_layer.h"
 #include "draw/shaders.h"
 #include "draw/static_layer.h"
+#include "draw/view.h"
 #include "font/glyphs.h"
 #include "gl/context.h"
 #include "gl/objects.h"
@@ -29,7 +29,7 @@ struct Renderer::Impl {
         std::vector<BallInstance> instances;
     };
     BallBatch plain, other;
-    GLuint glyphs = 0;
+    GLuint glyphs = 0, view_buffer = 0;
     // Two images in turn: one can be read while the next is drawn.
     struct Target {
         GLuint color = 0, framebuffer = 0;
@@ -42,7 +42,7 @@ struct Renderer::Impl {
     Camera camera;
     int table_samples = 0;
     std::function<void(int, int)> on_table;
-    std::uint64_t table_number = 0;  // of the static layer
+    std::shared_ptr<const TableDrawing> drawn_table;  // of the static layer
     ClothMap cloth;
     std::vector<std::uint8_t> table_pixels;
 
@@ -54,15 +54,16 @@ struct Renderer::Impl {
         glyphs = gl::make_texture(api, kGlyphColumns * kGlyphWidth, kGlyphRows * kGlyphHeight, GL_R8, GL_RED,
                                   GL_UNSIGNED_BYTE, atlas.data(), true);
         overlay_layer = std::make_unique<OverlayLayer>(api, glyphs);
+        api.GenBuffers(1, &view_buffer);
         make_batch(plain, shaders::kPlain);
         make_batch(other, "");
     }
 
     void make_batch(BallBatch& batch, const char* defines) {
-        batch.shadow_program =
-            shaders::make_program(api, shaders::kShadowVertex, shaders::kShadowFragment, defines);
-        batch.ball_program =
-            shaders::make_program(api, shaders::kBallVertex, shaders::kBallFragment, defines);
+        batch.shadow_program = shaders::make_program(api, shaders::kShadowVertex, shaders::kShadowFragment,
+                                                     {"u_background"}, defines);
+        batch.ball_program = shaders::make_program(api, shaders::kBallVertex, shaders::kBallFragment,
+                                                   {"u_occluders", "u_glyphs"}, defines);
         api.GenVertexArrays(1, &batch.array);
         api.GenBuffers(1, &batch.buffer);
         api.BindVertexArray(batch.array);
@@ -118,32 +119,31 @@ struct Renderer::Impl {
                                 static_cast<GLsizei>(batch.instances.size()));
     }
 
-    void draw_shadows(const BallBatch& batch, const View& view) {
+    void draw_shadows(const BallBatch& batch) {
         if (batch.instances.empty()) return;
-        view.set(api, batch.shadow_program);
-        gl::bind_texture(api, batch.shadow_program, 0, "u_background", table_layer->color());
+        api.UseProgram(batch.shadow_program);
+        gl::bind_texture(api, 0, table_layer->color());
         draw_round(batch);
     }
 
-    void draw_balls(const BallBatch& batch, const View& view) {
+    void draw_balls(const BallBatch& batch) {
         if (batch.instances.empty()) return;
-        view.set(api, batch.ball_program);
-        gl::bind_texture(api, batch.ball_program, 0, "u_occluders", table_layer->occluders());
-        gl::bind_texture(api, batch.ball_program, 1, "u_glyphs", glyphs);
+        api.UseProgram(batch.ball_program);
+        gl::bind_texture(api, 0, table_layer->occluders());
+        gl::bind_texture(api, 1, glyphs);
         draw_round(batch);
     }
 
-    void draw_table(const DrawList& list, const View& view) {
+    void draw_table(const DrawList& list) {
         if (table == list.table && camera == list.camera && table_samples == list.table_samples) return;
         // A camera that moves needs its map for one frame only: not worth making.
         const bool stays = list.table_samples > kMovingSamples;
         table = nullptr;  // until it is whole: on_table may throw
-        table_layer->draw(*list.table, view, list.table_samples, !stays, on_table);
+        table_layer->draw(*list.table, size, list.table_samples, !stays, on_table);
         table = list.table;
         camera = list.camera;
         table_samples = list.table_samples;
-        static std::atomic<std::uint64_t> last_number{0};
-        table_number = ++last_number;
+        drawn_table = std::make_shared<TableDrawing>();
         cloth = ClothMap();
         if (!stays) return;
         table_pixels.resize(std::size_t{4} * static_cast<std::size_t>(size.width) *
@@ -166,13 +166,15 @@ struct Renderer::Impl {
     void draw(const DrawList& list) {
         context->make_current();
         const View view = make_view(list.camera, *list.table);
+        api.BindBufferBase(GL_UNIFORM_BUFFER, 0, view_buffer);
+        api.BufferData(GL_UNIFORM_BUFFER, sizeof view, &view, GL_STREAM_DRAW);
         resize(list.camera.size);
-        draw_table(list, view);
+        draw_table(list);
         api.Viewport(0, 0, size.width, size.height);
         current = 1 - current;
         Target& target = targets[current];
         auto next = std::make_shared<DrawnPicture>();
-        next->table = table_number;
+        next->table = drawn_table;
         next->overlay = !list.lines.empty() || !list.boxes.empty();
         next->balls = visible_balls(list, cloth);
         std::vector<PixelBox> boxes = differing_boxes(*target.shows, *next, size);
@@ -185,14 +187,14 @@ struct Renderer::Impl {
         api.Enable(GL_BLEND);
         // Shadows only darken: one factor for all channels is the driver's fast way.
         api.BlendFuncSeparate(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
-        draw_shadows(plain, view);
-        draw_shadows(other, view);
+        draw_shadows(plain);
+        draw_shadows(other);
         api.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-        overlay_layer->draw_lines(list, view, table_layer->occluders(), LineLayer::kUnderBalls);
-        draw_balls(plain, view);
-        draw_balls(other, view);
-        overlay_layer->draw_lines(list, view, table_layer->occluders(), LineLayer::kOverBalls);
-        overlay_layer->draw_boxes(list, view);
+        overlay_layer->draw_lines(list, table_layer->occluders(), LineLayer::kUnderBalls);
+        draw_balls(plain);
+        draw_balls(other);
+        overlay_layer->draw_lines(list, table_layer->occluders(), LineLayer::kOverBalls);
+        overlay_layer->draw_boxes(list);
     }
 
     void read_boxes(GLuint framebuffer, const std::vector<PixelBox>& boxes, std::uint8_t* rgba) {

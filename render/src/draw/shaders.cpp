@@ -1,5 +1,7 @@
 #include "draw/shaders.h"
 
+#include <fmt/core.h>
+
 #include <array>
 
 #include "gl/objects.h"
@@ -12,9 +14,12 @@ namespace {
 constexpr const char* kVersion = "#version 330 core\n";
 }
 
-GLuint make_program(const gl::Api& api, const char* vertex, const char* fragment, const char* defines) {
-    const std::array<const char*, 3> prologue{kVersion, defines, kCommon};
-    return gl::make_program(api, prologue, vertex, fragment);
+GLuint make_program(const gl::Api& api, const char* vertex, const char* fragment,
+                    std::initializer_list<const char*> samplers, const std::string& defines) {
+    const std::string numbers =
+        fmt::format("#define SHADOW_REACH {:.3f}\n#define MAX_HOLES {}\n", kShadowReach, kMaxHoles);
+    const std::array<const char*, 4> prologue{kVersion, numbers.c_str(), defines.c_str(), kCommon};
+    return gl::make_program(api, prologue, vertex, fragment, samplers);
 }
 
 }  // namespace carom::render::shaders

@@ -11,8 +11,6 @@ namespace carom::render {
 
 namespace {
 
-constexpr std::size_t kMaxHoles = 128;  // size of u_holes in the shader
-
 // Where pass i samples the pixel, in (-1/2, 1/2)^2: the R2 sequence, evenly spread for every count.
 double r2(int i, double step) {
     const double x = 0.5 + step * i;
@@ -56,15 +54,19 @@ struct StaticLayer::Scratch {
 
 StaticLayer::StaticLayer(const gl::Api& api) : api_(api) {
     const auto table_program = [&](const char* kind) {
-        return shaders::make_program(api, shaders::kTableVertex, shaders::kTableFragment, kind);
+        return shaders::make_program(api, shaders::kTableVertex, shaders::kTableFragment, {}, kind);
     };
     groups_[kCloth].program = table_program(shaders::kClothOnly);
     groups_[kWood].program = table_program(shaders::kWoodOnly);
     groups_[kSmall].program = groups_[kBlended].program = table_program(shaders::kTheRest);
     groups_[kFloor].program = table_program(shaders::kFloorOnly);
-    add_program_ = shaders::make_program(api, shaders::kFullscreenVertex, shaders::kAddFragment);
-    depth_program_ = shaders::make_program(api, shaders::kFullscreenVertex, shaders::kDepthFragment);
-    resolve_program_ = shaders::make_program(api, shaders::kFullscreenVertex, shaders::kResolveFragment);
+    for (Group& group : groups_) group.jitter = api.GetUniformLocation(group.program, "u_jitter");
+    add_program_ = shaders::make_program(api, shaders::kFullscreenVertex, shaders::kAddFragment, {"u_pass"});
+    add_weight_ = api.GetUniformLocation(add_program_, "u_weight");
+    depth_program_ = shaders::make_program(api, shaders::kFullscreenVertex, shaders::kDepthFragment,
+                                           {"u_depth0", "u_depth1", "u_depth2", "u_depth3"});
+    resolve_program_ =
+        shaders::make_program(api, shaders::kFullscreenVertex, shaders::kResolveFragment, {"u_pass"});
     api.GenVertexArrays(1, &empty_array_);
     api.GenVertexArrays(1, &vertex_array_);
     api.GenBuffers(1, &buffer_);
@@ -99,6 +101,7 @@ void StaticLayer::upload(const TableMesh& table) {
     attribute(0, offsetof(MeshVertex, x));
     attribute(1, offsetof(MeshVertex, nx));
     attribute(2, offsetof(MeshVertex, u));
+    for (const Group& group : groups_) set_table_uniforms(table, group.program);
     uploaded_ = &table;
 }
 
@@ -119,15 +122,12 @@ void StaticLayer::resize(int width, int height) {
     height_ = height;
 }
 
-void StaticLayer::set_table_uniforms(const TableMesh& table, const View& view, GLuint program, double jx,
-                                     double jy) {
-    view.set(api_, program);
+void StaticLayer::set_table_uniforms(const TableMesh& table, GLuint program) const {
+    api_.UseProgram(program);
     const auto at = [&](const char* uniform) { return api_.GetUniformLocation(program, uniform); };
-    api_.Uniform2f(at("u_jitter"), static_cast<float>(2.0 * jx / width_),
-                   static_cast<float>(2.0 * jy / height_));
     std::vector<float> holes;
     for (const Hole& hole : table.holes) {
-        if (holes.size() == 4 * kMaxHoles) break;
+        if (holes.size() == std::size_t{4} * shaders::kMaxHoles) break;
         const Vec2 center = hole.center - table.origin;
         holes.insert(holes.end(), {static_cast<float>(center.x()), static_cast<float>(center.y()),
                                    static_cast<float>(hole.radius), 0.0F});
@@ -150,8 +150,7 @@ void StaticLayer::set_table_uniforms(const TableMesh& table, const View& view, G
                    static_cast<float>(high.x()), static_cast<float>(high.y()));
 }
 
-void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, int pass,
-                            int samples) {
+void StaticLayer::draw_pass(const Scratch& scratch, int pass, int samples) {
     // 1 / plastic number and its square.
     const double jx = samples == 1 ? 0.0 : r2(pass, 0.75487766624669276),
                  jy = samples == 1 ? 0.0 : r2(pass, 0.56984029099805327);
@@ -170,12 +169,14 @@ void StaticLayer::draw_pass(const TableMesh& table, const View& view, const Scra
             api_.Enable(GL_BLEND);
             api_.DepthMask(GL_FALSE);
         }
-        set_table_uniforms(table, view, group.program, jx, jy);
+        api_.UseProgram(group.program);
+        api_.Uniform2f(group.jitter, static_cast<float>(2.0 * jx / width_),
+                       static_cast<float>(2.0 * jy / height_));
         api_.DrawArrays(GL_TRIANGLES, group.first, group.count);
     }
 }
 
-void StaticLayer::add_pass(const Scratch& scratch, int pass, int samples) {
+void StaticLayer::add_pass(const Scratch& scratch, int pass) {
     api_.Disable(GL_DEPTH_TEST);
     api_.BindVertexArray(empty_array_);
     api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.sum_framebuffer);
@@ -183,46 +184,41 @@ void StaticLayer::add_pass(const Scratch& scratch, int pass, int samples) {
     pass == 0 ? api_.Disable(GL_BLEND) : api_.Enable(GL_BLEND);
     api_.BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ONE);
     api_.UseProgram(add_program_);
-    gl::bind_texture(api_, add_program_, 0, "u_pass", scratch.pass);
-    api_.Uniform1f(api_.GetUniformLocation(add_program_, "u_weight"), 1.0F / static_cast<float>(samples));
+    gl::bind_texture(api_, 0, scratch.pass);
     api_.DrawArrays(GL_TRIANGLES, 0, 3);
     api_.Disable(GL_BLEND);
 }
 
 // One channel for each of the first four passes; with fewer the last fills the rest.
-void StaticLayer::keep_depths(const View& view, const Scratch& scratch, int samples) {
-    constexpr std::array<const char*, Scratch::kDepths> kNames{"u_depth0", "u_depth1", "u_depth2",
-                                                               "u_depth3"};
+void StaticLayer::keep_depths(const Scratch& scratch, int samples) {
     api_.BindFramebuffer(GL_FRAMEBUFFER, occluders_framebuffer_);
     api_.UseProgram(depth_program_);
-    for (int i = 0; i < static_cast<int>(kNames.size()); ++i) {
-        gl::bind_texture(api_, depth_program_, i, kNames[i],
-                         scratch.depth[scratch.slot(std::min(i, samples - 1))]);
-    }
-    api_.Uniform2f(api_.GetUniformLocation(depth_program_, "u_planes"), view.planes[0], view.planes[1]);
+    for (int i = 0; i < static_cast<int>(Scratch::kDepths); ++i)
+        gl::bind_texture(api_, i, scratch.depth[scratch.slot(std::min(i, samples - 1))]);
     api_.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void StaticLayer::draw(const TableMesh& table, const View& view, int samples, bool again_soon,
+void StaticLayer::draw(const TableMesh& table, FrameSize size, int samples, bool again_soon,
                        const std::function<void(int, int)>& on_pass) {
     samples = std::max(samples, 1);
     if (uploaded_ != &table) upload(table);
-    resize(static_cast<int>(view.size[0]), static_cast<int>(view.size[1]));
+    resize(size.width, size.height);
     if (!scratch_) scratch_ = std::make_unique<Scratch>(api_, width_, height_);
     const Scratch& scratch = *scratch_;
     api_.Viewport(0, 0, width_, height_);
+    api_.UseProgram(add_program_);
+    api_.Uniform1f(add_weight_, 1.0F / static_cast<float>(samples));
     for (int pass = 0; pass < samples; ++pass) {
-        draw_pass(table, view, scratch, pass, samples);
-        add_pass(scratch, pass, samples);
-        if (pass == std::min(samples, static_cast<int>(Scratch::kDepths)) - 1)
-            keep_depths(view, scratch, samples);
+        draw_pass(scratch, pass, samples);
+        add_pass(scratch, pass);
+        if (pass == std::min(samples, static_cast<int>(Scratch::kDepths)) - 1) keep_depths(scratch, samples);
         if (!on_pass) continue;
         api_.Finish();
         on_pass(pass + 1, samples);
     }
     api_.BindFramebuffer(GL_FRAMEBUFFER, color_framebuffer_);
     api_.UseProgram(resolve_program_);
-    gl::bind_texture(api_, resolve_program_, 0, "u_pass", scratch.sum);
+    gl::bind_texture(api_, 0, scratch.sum);
     api_.DrawArrays(GL_TRIANGLES, 0, 3);
     if (!again_soon) scratch_.reset();
 }

@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-#include "draw/view.h"
+#include "carom/render/draw_list.h"
 #include "gl/api.h"
 
 namespace carom::render {
@@ -20,7 +20,7 @@ class StaticLayer {
 
     /// Draws the table: `samples` jittered passes, averaged in linear light. again_soon: keep the memory that
     /// only drawing needs. `on_pass`, if there is one, is called when each of them is done, and may throw.
-    void draw(const TableMesh& table, const View& view, int samples, bool again_soon,
+    void draw(const TableMesh& table, FrameSize size, int samples, bool again_soon,
               const std::function<void(int done, int total)>& on_pass);
 
     GLuint color() const { return color_; }  ///< RGBA8; alpha: how much of the pixel is cloth
@@ -32,10 +32,10 @@ class StaticLayer {
     struct Scratch;
     void upload(const TableMesh& table);
     void resize(int width, int height);
-    void set_table_uniforms(const TableMesh& table, const View& view, GLuint program, double jx, double jy);
-    void draw_pass(const TableMesh& table, const View& view, const Scratch& scratch, int pass, int samples);
-    void add_pass(const Scratch& scratch, int pass, int samples);
-    void keep_depths(const View& view, const Scratch& scratch, int samples);
+    void set_table_uniforms(const TableMesh& table, GLuint program) const;
+    void draw_pass(const Scratch& scratch, int pass, int samples);
+    void add_pass(const Scratch& scratch, int pass);
+    void keep_depths(const Scratch& scratch, int samples);
 
     const gl::Api& api_;
     /// What is drawn one after the other; kBlended: paint and seams that lie on the cloth.
@@ -43,11 +43,13 @@ class StaticLayer {
     /// Vertices that one program draws.
     struct Group {
         GLuint program = 0;
+        GLint jitter = -1;  ///< where the program has it
         GLint first = 0;
         GLsizei count = 0;
     };
     std::array<Group, kParts> groups_;
     GLuint add_program_, depth_program_, resolve_program_;
+    GLint add_weight_;
     GLuint vertex_array_ = 0, buffer_ = 0, empty_array_ = 0;
     const TableMesh* uploaded_ = nullptr;
     int width_ = 0, height_ = 0;

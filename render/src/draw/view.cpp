@@ -2,13 +2,15 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 
 namespace carom::render {
 
 namespace {
 
-std::array<float, 3> to_float(const Vec3& v) {
-    return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+template <class Vector, std::size_t kSize>
+void put(const Vector& v, float (&out)[kSize]) {
+    for (std::size_t i = 0; i < kSize; ++i) out[i] = static_cast<float>(v[i]);
 }
 
 // Near and far planes around everything that can be seen, as tight as the eye's distance from the table allows.
@@ -47,38 +49,17 @@ View make_view(const Camera& camera, const TableMesh& table) {
     row(3, forward, -forward.dot(eye));
 
     View view;
-    for (int c = 0; c < 4; ++c) {
-        for (int r = 0; r < 4; ++r)
-            view.view_projection[4 * static_cast<std::size_t>(c) + static_cast<std::size_t>(r)] =
-                static_cast<float>(m(r, c));
-    }
-    view.eye = to_float(eye);
-    view.forward = to_float(forward);
-    view.right_scaled = to_float(right * tan_x);
-    view.up_scaled = to_float(up * tan_y);
-    view.lamp = to_float(table.lamp.center - origin);
-    view.lamp_half = {static_cast<float>(table.lamp.half.x()), static_cast<float>(table.lamp.half.y())};
+    put(m.reshaped(), view.view_projection);
+    put(eye, view.eye);
+    put(forward, view.forward);
+    put(Vec3(right * tan_x), view.right_scaled);
+    put(Vec3(up * tan_y), view.up_scaled);
+    put(Vec3(table.lamp.center - origin), view.lamp);
+    put(table.lamp.half, view.lamp_half);
     view.lamp_endless = table.lamp.endless ? 1.0F : 0.0F;
-    view.size = {static_cast<float>(camera.size.width), static_cast<float>(camera.size.height)};
-    view.planes = {static_cast<float>(near), static_cast<float>(far)};
+    put(Vec2(camera.size.width, camera.size.height), view.size);
+    put(Vec2(near, far), view.planes);
     return view;
-}
-
-void View::set(const gl::Api& api, GLuint program) const {
-    const auto at = [&](const char* uniform) { return api.GetUniformLocation(program, uniform); };
-    const auto set3 = [&](const char* uniform, const std::array<float, 3>& v) {
-        api.Uniform3f(at(uniform), v[0], v[1], v[2]);
-    };
-    api.UseProgram(program);
-    api.UniformMatrix4fv(at("u_view_projection"), 1, GL_FALSE, view_projection.data());
-    set3("u_eye", eye);
-    set3("u_forward", forward);
-    set3("u_right_scaled", right_scaled);
-    set3("u_up_scaled", up_scaled);
-    set3("u_lamp", lamp);
-    api.Uniform2f(at("u_size"), size[0], size[1]);
-    api.Uniform2f(at("u_lamp_half"), lamp_half[0], lamp_half[1]);
-    api.Uniform1f(at("u_lamp_endless"), lamp_endless);
 }
 
 }  // namespace carom::render

@@ -1,20 +1,23 @@
-// The uniforms that every shader shares: camera and lamp, relative to the origin of the table mesh.
+// What every shader reads: camera and lamp, relative to the origin of the table mesh.
 #pragma once
 
-#include <array>
-
 #include "carom/render/draw_list.h"
-#include "gl/api.h"
 
 namespace carom::render {
 
+/// The uniform block View of shaders/common.glsl: the same members in the layout std140, which begins vectors of three at
+/// multiples of 16 bytes. It is written to a buffer once a frame; programs read it at binding point 0.
 struct View {
-    std::array<float, 16> view_projection{};  ///< column by column; image row 0 is the top
-    std::array<float, 3> eye{}, forward{}, right_scaled{}, up_scaled{}, lamp{};
-    std::array<float, 2> size{}, lamp_half{}, planes{};  ///< planes: near and far
+    alignas(16) float view_projection[16] = {};  ///< column by column; image row 0 is the top
+    alignas(16) float eye[3] = {};
     float lamp_endless = 0.0F;
-
-    void set(const gl::Api& api, GLuint program) const;
+    alignas(16) float forward[3] = {};
+    alignas(16) float right_scaled[3] = {};
+    alignas(16) float up_scaled[3] = {};
+    alignas(16) float lamp[3] = {};
+    alignas(8) float size[2] = {};
+    float lamp_half[2] = {};
+    float planes[2] = {};  ///< near and far
 };
 
 View make_view(const Camera& camera, const TableMesh& table);

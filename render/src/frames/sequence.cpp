@@ -123,10 +123,10 @@ class FrameLoop {
 
   private:
     DrawList list_of(std::size_t i) {
-        std::optional<FrameCost> cost;
+        std::optional<FrameBudget> cost;
         if (options_.overlay.margin) {
             cost =
-                FrameCost{options_.frame_cost_ms ? options_.frame_cost_ms(frames_[i].frame) : last_cost_ms(i),
+                FrameBudget{options_.frame_cost_ms ? options_.frame_cost_ms(frames_[i].frame) : last_cost_ms(i),
                           1e3 / options_.fps};
         }
         return stage_.at(frames_[i].time, cost);

@@ -11,6 +11,7 @@ namespace carom::render::gl {
 #define CAROM_GL_FUNCTIONS(X) \
     X(PFNGLATTACHSHADERPROC, AttachShader) \
     X(PFNGLBINDBUFFERPROC, BindBuffer) \
+    X(PFNGLBINDBUFFERBASEPROC, BindBufferBase) \
     X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer) \
     X(PFNGLBINDTEXTUREPROC, BindTexture) \
     X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray) \
@@ -21,16 +22,12 @@ namespace carom::render::gl {
     X(PFNGLACTIVETEXTUREPROC, ActiveTexture) \
     X(PFNGLCLEARPROC, Clear) \
     X(PFNGLCLEARCOLORPROC, ClearColor) \
-    X(PFNGLCOLORMASKPROC, ColorMask) \
     X(PFNGLCOMPILESHADERPROC, CompileShader) \
     X(PFNGLCREATEPROGRAMPROC, CreateProgram) \
     X(PFNGLCREATESHADERPROC, CreateShader) \
-    X(PFNGLDELETEBUFFERSPROC, DeleteBuffers) \
     X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers) \
-    X(PFNGLDELETEPROGRAMPROC, DeleteProgram) \
     X(PFNGLDELETESHADERPROC, DeleteShader) \
     X(PFNGLDELETETEXTURESPROC, DeleteTextures) \
-    X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays) \
     X(PFNGLDEPTHFUNCPROC, DepthFunc) \
     X(PFNGLDEPTHMASKPROC, DepthMask) \
     X(PFNGLDISABLEPROC, Disable) \
@@ -45,8 +42,6 @@ namespace carom::render::gl {
     X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers) \
     X(PFNGLGENTEXTURESPROC, GenTextures) \
     X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays) \
-    X(PFNGLGETERRORPROC, GetError) \
-    X(PFNGLGETINTEGERVPROC, GetIntegerv) \
     X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog) \
     X(PFNGLGETPROGRAMIVPROC, GetProgramiv) \
     X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog) \
@@ -61,10 +56,8 @@ namespace carom::render::gl {
     X(PFNGLUNIFORM1FPROC, Uniform1f) \
     X(PFNGLUNIFORM1IPROC, Uniform1i) \
     X(PFNGLUNIFORM2FPROC, Uniform2f) \
-    X(PFNGLUNIFORM3FPROC, Uniform3f) \
     X(PFNGLUNIFORM4FPROC, Uniform4f) \
     X(PFNGLUNIFORM4FVPROC, Uniform4fv) \
-    X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv) \
     X(PFNGLUSEPROGRAMPROC, UseProgram) \
     X(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor) \
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer) \

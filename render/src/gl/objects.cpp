@@ -31,7 +31,7 @@ GLuint compile(const Api& api, GLenum stage, std::span<const char* const> prolog
 }  // namespace
 
 GLuint make_program(const Api& api, std::span<const char* const> prologue, const char* vertex,
-                    const char* fragment) {
+                    const char* fragment, std::span<const char* const> samplers) {
     const GLuint program = api.CreateProgram();
     const std::array<GLuint, 2> stages{compile(api, GL_VERTEX_SHADER, prologue, vertex),
                                        compile(api, GL_FRAGMENT_SHADER, prologue, fragment)};
@@ -47,6 +47,9 @@ GLuint make_program(const Api& api, std::span<const char* const> prologue, const
         log.resize(static_cast<std::size_t>(length));
         throw RenderError("the OpenGL driver cannot link a shader of carom: " + log);
     }
+    api.UseProgram(program);
+    for (std::size_t unit = 0; unit < samplers.size(); ++unit)
+        api.Uniform1i(api.GetUniformLocation(program, samplers[unit]), static_cast<GLint>(unit));
     return program;
 }
 
@@ -78,10 +81,9 @@ GLuint make_framebuffer(const Api& api, GLuint color, GLuint depth) {
     return framebuffer;
 }
 
-void bind_texture(const Api& api, GLuint program, int unit, const char* sampler, GLuint texture) {
+void bind_texture(const Api& api, int unit, GLuint texture) {
     api.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     api.BindTexture(GL_TEXTURE_2D, texture);
-    api.Uniform1i(api.GetUniformLocation(program, sampler), unit);
 }
 
 }  // namespace carom::render::gl

@@ -8,9 +8,10 @@
 
 namespace carom::render::gl {
 
-/// Compiles and links; the sources of `prologue` stand before each of the two. @throws RenderError with the compiler's log
+/// Compiles and links; the sources of `prologue` stand before each of the two. The first of `samplers` reads the texture of
+/// unit 0, and so on. @throws RenderError with the compiler's log
 GLuint make_program(const Api& api, std::span<const char* const> prologue, const char* vertex,
-                    const char* fragment);
+                    const char* fragment, std::span<const char* const> samplers);
 
 /// A texture without mipmaps, read texel by texel (or linearly), clamped at the edges.
 GLuint make_texture(const Api& api, int width, int height, GLenum internal_format, GLenum format, GLenum type,
@@ -25,6 +26,7 @@ inline const void* buffer_offset(std::size_t bytes) {
     return reinterpret_cast<const void*>(bytes);
 }
 
-void bind_texture(const Api& api, GLuint program, int unit, const char* sampler, GLuint texture);
+/// For the sampler of that number of every program.
+void bind_texture(const Api& api, int unit, GLuint texture);
 
 }  // namespace carom::render::gl

@@ -57,7 +57,7 @@ Stage::Stage(const Record& record, const StageOptions& options)
     }
 }
 
-DrawList Stage::at(double t, std::optional<FrameCost> cost) const {
+DrawList Stage::at(double t, std::optional<FrameBudget> cost) const {
     DrawList list;
     list.table = table_;
     list.camera = camera_.at(t);

@@ -51,14 +51,14 @@ void add_clock(DrawList& list, double t) {
     add_text(list, {2.0 * room, 2.0 * room}, height, text, kInk);
 }
 
-void add_margin_bar(DrawList& list, const FrameCost& cost) {
+void add_margin_bar(DrawList& list, const FrameBudget& cost) {
     const double height = text_height(list), room = 0.6 * height, width = 16.0 * height;
     const double right = list.camera.size.width - room, left = right - width - 2.0 * room;
-    const std::string text = fmt::format("{:.1f} OF {:.1f} MS", cost.ms, cost.budget_ms);
+    const std::string text = fmt::format("{:.1f} OF {:.1f} MS", cost.cost_ms, cost.budget_ms);
     list.boxes.push_back({{left, room}, {right, 4.0 * room + 1.7 * height}, kPanel, -1});
     add_text(list, {left + room, 2.0 * room}, height, text, kInk);
     // The whole bar is twice the budget; its middle is where a frame is missed.
-    const double top = 3.0 * room + height, share = std::clamp(0.5 * cost.ms / cost.budget_ms, 0.0, 1.0);
+    const double top = 3.0 * room + height, share = std::clamp(0.5 * cost.cost_ms / cost.budget_ms, 0.0, 1.0);
     const Rgba good{0.25F, 0.80F, 0.35F, 1.0F}, bad{0.92F, 0.25F, 0.20F, 1.0F}, mark{1.0F, 1.0F, 1.0F, 0.9F};
     const double x = left + room, bottom = top + 0.7 * height;
     list.boxes.push_back({{x, top}, {x + share * width, bottom}, share <= 0.5 ? good : bad, -1});

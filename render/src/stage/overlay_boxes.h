@@ -6,6 +6,6 @@
 namespace carom::render {
 
 void add_clock(DrawList& list, double t);
-void add_margin_bar(DrawList& list, const FrameCost& cost);
+void add_margin_bar(DrawList& list, const FrameBudget& cost);
 
 }  // namespace carom::render

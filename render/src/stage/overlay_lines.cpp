@@ -172,7 +172,7 @@ void add_ghost(DrawList& list, const Record& record, double t) {
 }  // namespace
 
 void add_overlay(DrawList& list, const Record& record, const Overlay& overlay, double t,
-                 std::optional<FrameCost> cost) {
+                 std::optional<FrameBudget> cost) {
     if (overlay.trails) {
         for (const BallTrack& track : record.tracks) add_trail(list, track, t, line_width(list, 2.0));
     }

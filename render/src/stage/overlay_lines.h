@@ -9,6 +9,6 @@ namespace carom::render {
 
 /// Adds what the overlay asks for at time t. cost: of this frame, for the margin bar.
 void add_overlay(DrawList& list, const Record& record, const Overlay& overlay, double t,
-                 std::optional<FrameCost> cost);
+                 std::optional<FrameBudget> cost);
 
 }  // namespace carom::render

@@ -42,7 +42,7 @@ class Contacts : public b2ContactListener {
     int mover_, first_ = -1;
 };
 
-void add_table(b2World& world, const Table& table) {
+void add_table(b2World& world, const carom::Table& table) {
     b2BodyDef definition;
     b2Body* ground = world.CreateBody(&definition);
     for (const Cushion& cushion : table.cushions) {

@@ -1,4 +1,4 @@
-// The same shot in a Box2D world, as a game would step it: what a time-stepped engine makes of it.
+// The same shot in a Box2D world that is stepped as in a game: the result of an engine with fixed time steps.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// carom accuracy kernel: measures.
+// carom accuracy kernel: the measurement.
 #include "accuracy/kernel.h"
 
 #include <fmt/format.h>
@@ -10,7 +10,6 @@
 #include <memory>
 #include <stdexcept>
 
-#include "base/output_file.h"
 #include "bench/clock.h"
 #include "bench/rounds.h"
 #include "carom/kernel/closed_forms.h"
@@ -20,6 +19,7 @@
 #include "reference/batch_arrays.h"
 #include "reference/solver.h"
 #include "report/plot.h"
+#include "report/table.h"
 #include "setup.h"
 
 namespace carom::tools {
@@ -29,7 +29,7 @@ using namespace kernel;
 using reference::BatchArrays;
 using reference::Impact;
 
-/// Processor time that one sample should take at least [ns]: far above what reading the clock costs.
+/// Least processor time of one sample [ns]: much more than reading the clock takes.
 constexpr double kSample = 2e6;
 
 /// One method at one setting, for impacts one by one or as arrays.
@@ -37,7 +37,8 @@ struct Subject {
     KernelAccuracyRow row;
     std::function<void(const Impact&, ImpactResult&)> one;
     std::function<void(const BatchArrays&)> many;
-    std::size_t timed = 1;  ///< impacts in a sample: the first ones; a march takes equally long on all
+    std::size_t timed =
+        1;  ///< number of impacts in a sample, which are the first ones: a march takes the same time for all
     int calls = 1;
     std::unique_ptr<BatchArrays> arrays;
 
@@ -53,7 +54,7 @@ struct Subject {
         return (thread_ns() - start) / (static_cast<double>(timed) * calls);
     }
 
-    /// Chooses how much a sample holds; warms the code up.
+    /// Chooses the size of a sample, and runs the code once before it is timed.
     void prepare(const std::vector<Impact>& impacts) {
         const std::size_t least = one ? 8 : 64;
         timed = std::min(least, impacts.size());
@@ -139,27 +140,24 @@ void add_marches(std::vector<Subject>& list, Isa isa, long most, const std::vect
 
 void add_tolerances(std::vector<Subject>& list, Isa isa) {
     for (int p = 2; p <= 12; ++p) {
-        // Read as text, so that it is the very number that a scene file would give.
+        // Read from text, so that it is exactly the number that a scene file would give.
         const std::string setting = fmt::format("1e-{}", p);
         const double tolerance = std::strtod(setting.c_str(), nullptr);
-        Subject s;
-        s.row.method = "tolerance";
-        s.row.kind = "single";
-        s.row.setting = setting;
-        s.row.value = tolerance;
-        s.one = [f = tolerance_function(isa), tolerance](const Impact& i, ImpactResult& out) {
-            f(i.ball1, i.ball2, i.params, tolerance, out);
-        };
-        list.push_back(std::move(s));
-        Subject b;
-        b.row.method = "tolerance";
-        b.row.kind = "batch";
-        b.row.setting = setting;
-        b.row.value = tolerance;
-        b.many = [f = tolerance_batch_function(isa), tolerance](const BatchArrays& a) {
-            f(a.batch, tolerance, a.result);
-        };
-        list.push_back(std::move(b));
+        for (const bool batch : {false, true}) {
+            Subject& s = list.emplace_back();
+            s.row.method = "tolerance";
+            s.row.kind = batch ? "batch" : "single";
+            s.row.setting = setting;
+            s.row.value = tolerance;
+            if (batch)
+                s.many = [f = tolerance_batch_function(isa), tolerance](const BatchArrays& a) {
+                    f(a.batch, tolerance, a.result);
+                };
+            else
+                s.one = [f = tolerance_function(isa), tolerance](const Impact& i, ImpactResult& out) {
+                    f(i.ball1, i.ball2, i.params, tolerance, out);
+                };
+        }
     }
 }
 
@@ -261,7 +259,7 @@ std::vector<KernelReach> reach_of(const std::vector<KernelAccuracyRow>& rows) {
             return r.method == first.method && r.kind == first.kind;
         });
         if (known || first.other_model) continue;
-        for (const double error : {1e-3, 1e-6, 1e-9, 1e-12}) {
+        for (const double error : kReachedErrors) {
             KernelReach reach{first.method, first.kind, error, INFINITY, INFINITY};
             for (const KernelAccuracyRow& row : rows) {
                 if (row.method != first.method || row.kind != first.kind) continue;
@@ -312,17 +310,28 @@ KernelAccuracy measure_kernel_accuracy(const AccuracyKernelArgs& args) {
     return result;
 }
 
-int run_accuracy_kernel(const AccuracyKernelArgs& args) {
+namespace {
+
+int run(const AccuracyKernelArgs& args) {
     check_plot_path(args.plot);
     const KernelAccuracy result = measure_kernel_accuracy(args);
-    if (!args.csv.empty()) {
-        OutputFile file(args.csv);
-        file.write(kernel_accuracy_csv(result));
-        file.commit();
-    }
+    write_report(args.csv, kernel_accuracy_csv(result));
     if (!args.plot.empty()) plot_kernel_accuracy(result, args.plot);
     print(args.json ? kernel_accuracy_json(result) : kernel_accuracy_text(result));
     return kOk;
+}
+
+}  // namespace
+
+void add_accuracy_kernel(Options& accuracy) {
+    auto [command, args] = accuracy.command<AccuracyKernelArgs>(
+        "kernel", "One impact: time and error of the march, of the tolerance kernel, of closed forms", run);
+    command.option("--count", &args.count, "N", "Seeded random impacts").in(1, 1000000);
+    command.option("--seed", &args.seed, "S", "Seed of the random impacts");
+    add_repeat(command, args.repeat, "Interleaved rounds; minimum, median and maximum are over them");
+    command.option("--most-substeps", &args.most_substeps, "N", "Largest N of the march").in(10, 100000);
+    add_reports(command, args.csv, args.plot, args.json);
+    command.footer = "Errors are shares of the approach speed, from a solution on which two methods agree.";
 }
 
 }  // namespace carom::tools

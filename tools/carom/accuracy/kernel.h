@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "options.h"
+
 namespace carom::tools {
 
 struct AccuracyKernelArgs {
@@ -28,8 +30,8 @@ struct KernelAccuracyRow {
     double error_median = 0.0, error_p99 = 0.0, error_max = 0.0;
 };
 
-/// What a method takes to reach an error: the cheapest of its settings that does, for half of all impacts and
-/// for all of them; infinite where none does.
+/// The time that a method needs to reach an error: that of its fastest setting which reaches it for half of all impacts, and
+/// for all of them. Infinite if no setting does.
 struct KernelReach {
     std::string method, kind;
     double error = 0.0, ns_median = 0.0, ns_all = 0.0;
@@ -38,7 +40,7 @@ struct KernelReach {
 struct KernelAccuracy {
     std::string isa;
     int count = 0;                 ///< impacts on which the two converged methods agree: these are judged
-    int disagreeing = 0;           ///< the others: nothing is called an error on them
+    int disagreeing = 0;           ///< the other impacts, for which no error is given
     double worst_agreement = 0.0;  ///< largest difference of the two, share of the approach speed
     double slope = 0.0;            ///< of log median error over log N, plain march, N >= 100
     std::vector<KernelAccuracyRow> rows;
@@ -47,7 +49,9 @@ struct KernelAccuracy {
 
 KernelAccuracy measure_kernel_accuracy(const AccuracyKernelArgs& args);
 
-/// For every method the time to reach 1e-3, 1e-6, 1e-9 and 1e-12.
+inline constexpr double kReachedErrors[] = {1e-3, 1e-6, 1e-9, 1e-12};
+
+/// For every method the time to reach each of these errors.
 std::vector<KernelReach> reach_of(const std::vector<KernelAccuracyRow>& rows);
 
 /// Slope of the straight line through (log x, log y) by least squares; NaN for fewer than two points.
@@ -58,7 +62,7 @@ std::string kernel_accuracy_json(const KernelAccuracy& result);
 std::string kernel_accuracy_csv(const KernelAccuracy& result);
 void plot_kernel_accuracy(const KernelAccuracy& result, const std::string& path);
 
-/// Measures, writes what was asked for and prints. Returns the exit status.
-int run_accuracy_kernel(const AccuracyKernelArgs& args);
+/// Adds `carom accuracy kernel`.
+void add_accuracy_kernel(Options& accuracy);
 
 }  // namespace carom::tools

@@ -9,6 +9,7 @@
 
 #include "accuracy/kernel.h"
 #include "report/plot.h"
+#include "report/table.h"
 
 namespace carom::tools {
 namespace {
@@ -18,78 +19,74 @@ std::string title_of(const KernelAccuracyRow& row) {
     return row.kind == "batch" && !said ? row.method + ", batch" : row.method;
 }
 
-/// What rounding leaves of one error: below it a logarithmic axis would only show noise.
+/// Errors below this are rounding noise, and are drawn here on a logarithmic axis.
 constexpr double kFloor = 1e-17;
+
+Table rows_of(const KernelAccuracy& result) {
+    Table table(Column("method", "method", "<28"), Column("kind", "kind", "<8"),
+                Column("setting", "setting", ">9"), Column("ns", "ns min", ">12.1f"),
+                Column("ns_median", "ns median", ">12.1f"), Column("ns_max", "ns max", ">12.1f"),
+                Column("error_median", "err median", ">11.1e"), Column("error_p99", "err 99 %", ">11.1e"),
+                Column("error_max", "err worst", ">11.1e"), Column("other_model", "", "", false));
+    for (const KernelAccuracyRow& r : result.rows)
+        table.add({r.method, r.kind, r.setting, r.ns_min, r.ns_median, r.ns_max, r.error_median, r.error_p99,
+                   r.error_max, r.other_model},
+                  r.other_model ? "  (of the simpler model)" : "");
+    return table;
+}
+
+/// A row for each error.
+Table reach_of(const KernelAccuracy& result) {
+    Table table(Column("method"), Column("kind"), Column("error"), Column("ns_median"), Column("ns_all"));
+    for (const KernelReach& r : result.reach) table.add({r.method, r.kind, r.error, r.ns_median, r.ns_all});
+    return table;
+}
+
+/// A row for each method, with a column for each error.
+Table reach_by_method(const KernelAccuracy& result) {
+    Table table(Column("", "", "<28"), Column("", "", "<8"));
+    for (const double error : kReachedErrors)
+        table.columns.emplace_back("", fmt::format("1e{:.0f}", std::log10(error)), ">22");
+    const auto ns = [](double x) { return std::isfinite(x) ? fmt::format("{:.0f}", x) : std::string("-"); };
+    for (std::size_t i = 0; i < result.reach.size(); ++i) {
+        const KernelReach& r = result.reach[i];
+        if (i % std::size(kReachedErrors) == 0) table.add({r.method, r.kind});
+        table.rows.back().cells.emplace_back(ns(r.ns_median) + " / " + ns(r.ns_all));
+    }
+    return table;
+}
 
 }  // namespace
 
 std::string kernel_accuracy_text(const KernelAccuracy& result) {
-    fmt::memory_buffer out;
-    const auto line = std::back_inserter(out);
-    fmt::format_to(line,
-                   "{} random impacts, {}. Two converged methods (power series in extended precision, "
-                   "collocation at 1e-13)\nagree on them within {:.1e} of the approach speed",
-                   result.count, result.isa, result.worst_agreement);
+    std::string text = fmt::format(
+        "{} random impacts, {}. Two converged methods (power series in extended precision, "
+        "collocation at 1e-13)\nagree on them within {:.1e} of the approach speed",
+        result.count, result.isa, result.worst_agreement);
     if (result.disagreeing > 0)
-        fmt::format_to(line, "; on {} more they do not, and nothing is said about those", result.disagreeing);
-    fmt::format_to(line, ".\n\n{:<28}{:<8}{:>9}{:>12}{:>12}{:>12}{:>11}{:>11}{:>11}\n", "method", "kind",
-                   "setting", "ns min", "ns median", "ns max", "err median", "err 99 %", "err worst");
-    for (const KernelAccuracyRow& r : result.rows)
-        fmt::format_to(line, "{:<28}{:<8}{:>9}{:>12.1f}{:>12.1f}{:>12.1f}{:>11.1e}{:>11.1e}{:>11.1e}{}\n",
-                       r.method, r.kind, r.setting, r.ns_min, r.ns_median, r.ns_max, r.error_median,
-                       r.error_p99, r.error_max, r.other_model ? "  (of the simpler model)" : "");
-    fmt::format_to(line, "\nns to reach an error, for half of the impacts / for all of them\n{:<36}", "");
-    for (const char* error : {"1e-3", "1e-6", "1e-9", "1e-12"}) fmt::format_to(line, "{:>22}", error);
-    const auto ns = [](double x) { return std::isfinite(x) ? fmt::format("{:.0f}", x) : std::string("-"); };
-    for (std::size_t i = 0; i < result.reach.size(); ++i) {
-        const KernelReach& r = result.reach[i];
-        if (i % 4 == 0) fmt::format_to(line, "\n{:<28}{:<8}", r.method, r.kind);
-        fmt::format_to(line, "{:>22}", ns(r.ns_median) + " / " + ns(r.ns_all));
-    }
-    fmt::format_to(line,
-                   "\n- means that no setting measured here reaches it. The march's median error falls with "
-                   "N to the power {:.2f}.\n",
-                   result.slope);
-    return fmt::to_string(out);
+        text += fmt::format("; on {} more they do not, and nothing is said about those", result.disagreeing);
+    return text + ".\n\n" + table_text(rows_of(result)) +
+           "\nns to reach an error, for half of the impacts / for all of them\n" +
+           table_text(reach_by_method(result)) +
+           fmt::format(
+               "- means that no setting measured here reaches it. The march's median error falls with "
+               "N to the power {:.2f}.\n",
+               result.slope);
 }
 
 std::string kernel_accuracy_json(const KernelAccuracy& result) {
-    using Json = nlohmann::ordered_json;
-    Json rows = Json::array(), reach = Json::array();
-    for (const KernelAccuracyRow& r : result.rows)
-        rows.push_back({{"method", r.method},
-                        {"kind", r.kind},
-                        {"setting", r.setting},
-                        {"ns", r.ns_min},
-                        {"ns_median", r.ns_median},
-                        {"ns_max", r.ns_max},
-                        {"error_median", r.error_median},
-                        {"error_p99", r.error_p99},
-                        {"error_max", r.error_max},
-                        {"other_model", r.other_model}});
-    const auto number = [](double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); };
-    for (const KernelReach& r : result.reach)
-        reach.push_back({{"method", r.method},
-                         {"kind", r.kind},
-                         {"error", r.error},
-                         {"ns_median", number(r.ns_median)},
-                         {"ns_all", number(r.ns_all)}});
-    const Json all = {{"isa", result.isa},
-                      {"impacts", result.count},
-                      {"disagreeing", result.disagreeing},
-                      {"agreement", result.worst_agreement},
-                      {"slope", number(result.slope)},
-                      {"rows", rows},
-                      {"reach", reach}};
+    const nlohmann::ordered_json all = {{"isa", result.isa},
+                                        {"impacts", result.count},
+                                        {"disagreeing", result.disagreeing},
+                                        {"agreement", result.worst_agreement},
+                                        {"slope", result.slope},
+                                        {"rows", table_json(rows_of(result))},
+                                        {"reach", table_json(reach_of(result))}};
     return all.dump(1) + "\n";
 }
 
 std::string kernel_accuracy_csv(const KernelAccuracy& result) {
-    std::string text = "method,kind,setting,ns,ns_median,ns_max,error_median,error_p99,error_max\n";
-    for (const KernelAccuracyRow& r : result.rows)
-        text += fmt::format("{},{},{},{},{},{},{},{},{}\n", r.method, r.kind, r.setting, r.ns_min,
-                            r.ns_median, r.ns_max, r.error_median, r.error_p99, r.error_max);
-    return text;
+    return table_csv(rows_of(result));
 }
 
 void plot_kernel_accuracy(const KernelAccuracy& result, const std::string& path) {

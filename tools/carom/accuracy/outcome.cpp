@@ -1,4 +1,4 @@
-// What a shot came to, how it compares with another run of it, and how much it amplifies.
+// The outcome of a shot, its difference from another run of the shot, and its gain.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -52,8 +52,7 @@ Outcome outcome_of(const Record& record) {
     const int mover = first_mover(record);
     for (const Event& event : record.events) {
         if (kind(event.type).phase != EventPhase::kImpact) continue;
-        const std::string a = record.tracks.at(static_cast<std::size_t>(event.a)).id,
-                          b = record.partner_id(event);
+        const std::string a = record.tracks.at(event.a).id, b = record.partner_id(event);
         outcome.contacts.push_back(fmt::format("{} {} {}", name(event.type), a, b));
         const bool balls = balls_collide(event.type);
         if (balls && outcome.first_contact.empty() && (event.a == mover || event.b == mover))

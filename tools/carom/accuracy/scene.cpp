@@ -1,4 +1,4 @@
-// carom accuracy SCENE: measures.
+// carom accuracy SCENE: the measurement.
 #include "accuracy/scene.h"
 
 #include <fmt/format.h>
@@ -7,18 +7,20 @@
 #include <cmath>
 
 #include "accuracy/box2d_shot.h"
-#include "base/output_file.h"
+#include "accuracy/kernel.h"
 #include "bench/clock.h"
 #include "bench/rounds.h"
 #include "carom/engine/simulate.h"
 #include "console.h"
+#include "options.h"
 #include "report/plot.h"
+#include "report/table.h"
 #include "setup.h"
 
 namespace carom::tools {
 namespace {
 
-/// The converged runs must agree this much better than the target before anything is called an error.
+/// The converged runs must agree within this part of the target; otherwise differences from them are not called errors.
 constexpr double kAgreement = 0.1;
 
 /// One setting: how to run it once, and what it gave.
@@ -30,25 +32,20 @@ struct SceneSubject {
 std::vector<SceneSubject> subjects(const Scene& scene, const AccuracySceneArgs& args,
                                    std::optional<double> recommended) {
     std::vector<SceneSubject> list;
-    for (const int n : args.march) {
-        SceneSubject s{{}, with_substeps(scene, n)};
-        s.row.method = "march";
-        s.row.setting = fmt::format("N={}", n);
-        s.row.value = n;
-        list.push_back(std::move(s));
-    }
+    const auto add = [&list](const char* method, std::string setting, double value, Plan plan) {
+        SceneSubject& s = list.emplace_back(SceneSubject{{}, std::move(plan)});
+        s.row.method = method;
+        s.row.setting = std::move(setting);
+        s.row.value = value;
+    };
+    for (const int n : args.march) add("march", fmt::format("N={}", n), n, with_substeps(scene, n));
     std::vector<double> tolerances = args.tolerances;
     if (recommended && std::find(tolerances.begin(), tolerances.end(), *recommended) == tolerances.end())
         tolerances.insert(std::find_if(tolerances.begin(), tolerances.end(),
                                        [&](double tolerance) { return tolerance < *recommended; }),
                           *recommended);
-    for (const double tolerance : tolerances) {
-        SceneSubject s{{}, with_tolerance(scene, tolerance)};
-        s.row.method = "tolerance";
-        s.row.setting = fmt::format("{:g}", tolerance);
-        s.row.value = tolerance;
-        list.push_back(std::move(s));
-    }
+    for (const double tolerance : tolerances)
+        add("tolerance", fmt::format("{:g}", tolerance), tolerance, with_tolerance(scene, tolerance));
     return list;
 }
 
@@ -225,7 +222,11 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     return result;
 }
 
-int run_accuracy_scene(const AccuracySceneArgs& args) {
+namespace {
+
+int run(const AccuracySceneArgs& args) {
+    if (args.scene.empty())
+        throw UsageError("accuracy: a scene file or the word kernel is required; see carom accuracy --help");
     check_plot_path(args.plot);
     if (!(args.target > 0.0 && std::isfinite(args.target)))
         throw UsageError(fmt::format("--target {}: expected a number of metres greater than 0", args.target));
@@ -236,14 +237,28 @@ int run_accuracy_scene(const AccuracySceneArgs& args) {
                         "= \"mathavan\"",
                         args.scene, name(plan.scene.physics.ball_ball)));
     const SceneAccuracy result = measure_scene_accuracy(plan.scene, args);
-    if (!args.csv.empty()) {
-        OutputFile file(args.csv);
-        file.write(scene_accuracy_csv(result));
-        file.commit();
-    }
+    write_report(args.csv, scene_accuracy_csv(result));
     if (!args.plot.empty()) plot_scene_accuracy(result, args.scene, args.plot);
     print(args.json ? scene_accuracy_json(result) : scene_accuracy_text(result, args.scene));
     return kOk;
+}
+
+}  // namespace
+
+void add_accuracy(Options& program) {
+    auto [command, args] = program.command<AccuracySceneArgs>(
+        "accuracy", "What accuracy costs in time: of a shot (SCENE), or of one impact (kernel)", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)");
+    command.option("--target", &args.target, "M",
+                   "Final error allowed, in m: what the recommendation aims at");
+    command.option("--march", &args.march, "N,...", "Settings of the march to compare, N").in(1, 100000000);
+    command.option("--tolerance", &args.tolerances, "E,...", "Tolerances to compare")
+        .in(kernel::kTightestTolerance, kernel::kLoosestTolerance);
+    add_repeat(command, args.repeat, "Interleaved rounds; minimum, median and maximum are over them");
+    command.flag("--box2d", args.box2d,
+                 "Also the same shot in a Box2D world stepped at 60 Hz to 10 kHz (default: off)");
+    add_reports(command, args.csv, args.plot, args.json);
+    add_accuracy_kernel(command);
 }
 
 }  // namespace carom::tools

@@ -21,7 +21,7 @@ struct AccuracySceneArgs {
     std::string csv, plot;  ///< file names; empty: not asked for
 };
 
-/// What happened, as far as a player would tell: every contact in order, the first ball hit, what fell where.
+/// What happened in a shot: all contacts in order, the first ball hit, and which ball fell into which pocket.
 struct Outcome {
     std::vector<std::string> contacts;
     std::string first_contact;  ///< the ball that the first moving ball hits first, or ""
@@ -69,7 +69,8 @@ double gain_of(const Plan& plan, const Record& record);
 /// The loosest power of ten that keeps gain x tolerance x kFlight within the target; nothing where that is
 /// below the tightest tolerance, which is where double precision ends.
 std::optional<double> deserved_tolerance(double gain, double target);
-/// [m] An impact that errs by the share t of the speed errs by t times the way to the next one: up to about this.
+/// [m] A relative error t of the speed after an impact gives a position error of t times the way to the next impact, which is
+/// about this long at most.
 inline constexpr double kFlight = 1.0;
 
 /// A plan of the same scene with another setting; exactly one of the two.
@@ -85,8 +86,5 @@ std::string scene_accuracy_text(const SceneAccuracy& result, const std::string& 
 std::string scene_accuracy_json(const SceneAccuracy& result);
 std::string scene_accuracy_csv(const SceneAccuracy& result);
 void plot_scene_accuracy(const SceneAccuracy& result, const std::string& scene, const std::string& path);
-
-/// Measures, writes what was asked for and prints. Returns the exit status.
-int run_accuracy_scene(const AccuracySceneArgs& args);
 
 }  // namespace carom::tools

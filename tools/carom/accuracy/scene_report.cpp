@@ -10,77 +10,59 @@
 #include "accuracy/scene.h"
 #include "console.h"
 #include "report/plot.h"
+#include "report/table.h"
 
 namespace carom::tools {
 namespace {
 
-const char* yes(bool same) {
-    return same ? "same" : "differs";
-}
-
 /// An error below what the two converged runs differ by is not resolved.
 std::string error_text(double error, const SceneAccuracy& result) {
-    if (!result.converged) return "-";
     return error < result.agreement ? fmt::format("<{:.1e}", result.agreement) : fmt::format("{:.1e}", error);
+}
+
+Table rows_of(const SceneAccuracy& result) {
+    Table table(Column("method", "method", "<11"), Column("setting", "setting", ">10"),
+                Column("ns", "ms min", ">12"), Column("ns_median", "ms median", ">12"), Column("ns_max"),
+                Column("kernel_share", "kernel", ">9"), Column("cluster_share", "cluster", ">9"),
+                Column("", "error m", ">11"), Column("error_median", "median m", ">11"), Column("error_max"),
+                Column("same_order", "order", ">9"), Column("same_first_contact", "first", ">9"),
+                Column("same_pocketed", "pockets", ">9"));
+    const auto in_ms = [](double ns) { return Cell(ns, fmt::format("{:.4f}", ns * 1e-6)); };
+    const auto error = [&result](double x) {
+        return result.converged ? Cell(x, error_text(x, result)) : Cell();
+    };
+    const auto share = [](double x) { return Cell(x, fmt::format("{:.0f} %", 100.0 * x)); };
+    const auto same = [](bool x) { return Cell(x, x ? "same" : "differs"); };
+    for (const SceneAccuracyRow& r : result.rows) {
+        const bool ours = r.method != "box2d";
+        if (r.failed.empty())
+            table.add({r.method, r.setting, in_ms(r.ns_min), in_ms(r.ns_median), r.ns_max,
+                       ours ? share(r.kernel_share) : Cell(), ours ? share(r.cluster_share) : Cell(),
+                       error(r.error.largest), error(r.error.median), error(r.error.largest),
+                       ours ? same(r.order_same) : Cell(), same(r.first_same), same(r.pocketed_same)});
+        else
+            table.add({r.method, r.setting}, "  failed: " + r.failed);
+    }
+    return table;
 }
 
 }  // namespace
 
 std::string scene_accuracy_text(const SceneAccuracy& result, const std::string& scene) {
-    fmt::memory_buffer out;
-    const auto line = std::back_inserter(out);
-    fmt::format_to(line,
-                   "{}: {}. Gain {:.2e}: a ball put 1e-12 m beside its place ends up to {:.1e} m "
-                   "off.\nTwo converged methods (collocation at 1e-13, power series in extended precision) "
-                   "end {:.1e} m apart, outcome {}.\n\n",
-                   scene, counted(result.contacts, "contact"), result.gain, result.gain * kTwinStep,
-                   result.agreement, result.outcome_agrees ? "the same" : "not the same");
-    fmt::format_to(line, "{:<11}{:>10}{:>12}{:>12}{:>9}{:>9}{:>11}{:>11}{:>9}{:>9}{:>9}\n", "method",
-                   "setting", "ms min", "ms median", "kernel", "cluster", "error m", "median m", "order",
-                   "first", "pockets");
-    for (const SceneAccuracyRow& r : result.rows) {
-        fmt::format_to(line, "{:<11}{:>10}", r.method, r.setting);
-        if (!r.failed.empty()) {
-            fmt::format_to(line, "  failed: {}\n", r.failed);
-            continue;
-        }
-        fmt::format_to(line, "{:>12.4f}{:>12.4f}", r.ns_min * 1e-6, r.ns_median * 1e-6);
-        const bool ours = r.method != "box2d";
-        fmt::format_to(line, "{:>9}{:>9}", ours ? fmt::format("{:.0f} %", 100.0 * r.kernel_share) : "-",
-                       ours ? fmt::format("{:.0f} %", 100.0 * r.cluster_share) : "-");
-        fmt::format_to(line, "{:>11}{:>11}{:>9}{:>9}{:>9}\n", error_text(r.error.largest, result),
-                       error_text(r.error.median, result), ours ? yes(r.order_same) : "-", yes(r.first_same),
-                       yes(r.pocketed_same));
-    }
-    fmt::format_to(line, "\n{}\n", result.sentence);
-    return fmt::to_string(out);
+    return fmt::format(
+               "{}: {}. Gain {:.2e}: a ball put 1e-12 m beside its place ends up to {:.1e} m "
+               "off.\nTwo converged methods (collocation at 1e-13, power series in extended precision) "
+               "end {:.1e} m apart, outcome {}.\n\n",
+               scene, counted(result.contacts, "contact"), result.gain, result.gain * kTwinStep,
+               result.agreement, result.outcome_agrees ? "the same" : "not the same") +
+           table_text(rows_of(result)) + "\n" + result.sentence + "\n";
 }
 
 std::string scene_accuracy_json(const SceneAccuracy& result) {
     using Json = nlohmann::ordered_json;
-    Json rows = Json::array();
-    for (const SceneAccuracyRow& r : result.rows) {
-        if (!r.failed.empty()) {
-            rows.push_back({{"method", r.method}, {"setting", r.setting}, {"failed", r.failed}});
-            continue;
-        }
-        const bool ours = r.method != "box2d";
-        const auto called = [&result](double error) {
-            return result.converged ? Json(error) : Json(nullptr);
-        };
-        rows.push_back({{"method", r.method},
-                        {"setting", r.setting},
-                        {"ns", r.ns_min},
-                        {"ns_median", r.ns_median},
-                        {"ns_max", r.ns_max},
-                        {"kernel_share", ours ? Json(r.kernel_share) : Json(nullptr)},
-                        {"cluster_share", ours ? Json(r.cluster_share) : Json(nullptr)},
-                        {"error_median", called(r.error.median)},
-                        {"error_max", called(r.error.largest)},
-                        {"same_order", ours ? Json(r.order_same) : Json(nullptr)},
-                        {"same_first_contact", r.first_same},
-                        {"same_pocketed", r.pocketed_same}});
-    }
+    Json rows = table_json(rows_of(result));
+    for (std::size_t i = 0; i < result.rows.size(); ++i)
+        if (!result.rows[i].failed.empty()) rows[i]["failed"] = result.rows[i].failed;
     const Json all = {
         {"target", result.target},
         {"gain", result.gain},
@@ -97,22 +79,7 @@ std::string scene_accuracy_json(const SceneAccuracy& result) {
 }
 
 std::string scene_accuracy_csv(const SceneAccuracy& result) {
-    std::string text =
-        "method,setting,ns,ns_median,ns_max,kernel_share,cluster_share,error_median,error_max,same_order,"
-        "same_first_contact,same_pocketed\n";
-    for (const SceneAccuracyRow& r : result.rows) {
-        if (!r.failed.empty()) continue;
-        const bool ours = r.method != "box2d";
-        const auto called = [&result](double error) {
-            return result.converged ? fmt::format("{}", error) : std::string();
-        };
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", r.method, r.setting, r.ns_min,
-                            r.ns_median, r.ns_max, ours ? fmt::format("{}", r.kernel_share) : "",
-                            ours ? fmt::format("{}", r.cluster_share) : "", called(r.error.median),
-                            called(r.error.largest), ours ? fmt::format("{:d}", r.order_same) : "",
-                            static_cast<int>(r.first_same), static_cast<int>(r.pocketed_same));
-    }
-    return text;
+    return table_csv(rows_of(result));
 }
 
 void plot_scene_accuracy(const SceneAccuracy& result, const std::string& scene, const std::string& path) {

@@ -1,4 +1,4 @@
-// Time for benchmarks: of this thread alone, so that what else the machine does counts as little as may be.
+// Time for benchmarks: the processor time of this thread, so that other work of the machine counts as little as possible.
 #pragma once
 
 #include <time.h>
@@ -16,8 +16,8 @@ inline double thread_ns() {
     return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
 }
 
-/// Length of a cycle [ns]: a chain of dependent additions takes one cycle each. Of a register: some
-/// processors do additions of constants, several at once, where they rename registers.
+/// Length of a cycle [ns]: in a chain of dependent additions each one takes a cycle. A register is added, because some
+/// processors execute several additions of constants at once when they rename registers.
 inline double cycle_ns() {
     constexpr int kAdds = 100000;
     double best = 1e30;
@@ -35,12 +35,12 @@ inline double cycle_ns() {
     return best;
 }
 
-/// 0 of no values.
+/// The smallest value; 0 if there are none.
 inline double minimum(const std::vector<double>& x) {
     return x.empty() ? 0.0 : *std::min_element(x.begin(), x.end());
 }
 
-/// Middle value; the mean of the two middle ones for an even count; 0 of no values.
+/// The middle value, or the mean of the two middle ones; 0 if there are none.
 inline double median(std::vector<double> x) {
     if (x.empty()) return 0.0;
     std::sort(x.begin(), x.end());

@@ -1,4 +1,4 @@
-// carom bench kernel: measures.
+// carom bench kernel: the measurement.
 #include "bench/kernel.h"
 
 #include <fmt/format.h>
@@ -6,20 +6,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <functional>
-#include <memory>
-#include <numeric>
 
 #include "bench/clock.h"
 #include "bench/five_states.h"
 #include "bench/machine.h"
+#include "bench/rounds.h"
 #include "bench/timed_kernel.h"
 #include "carom/kernel/march.h"
 #include "carom/kernel/tolerance.h"
 #include "console.h"
+#include "options.h"
 #include "reference/random_impacts.h"
 #include "reference/solver.h"
+#include "setup.h"
 
 namespace carom::tools {
 namespace {
@@ -44,38 +43,29 @@ double difference(const ImpactResult& a, const ImpactResult& b, const Impact& in
 
 constexpr int kSubsteps = 1000;
 
-/// Rounds over all subjects in a new random order each, so that no drift of the clock favours one.
+/// Times every subject on both sets.
 void time_all(std::vector<TimedKernel>& list, const ImpactSet& five, const ImpactSet& random, int repeats) {
     std::vector<ImpactResult> results(std::max(five.impacts.size(), random.impacts.size()));
     ProgressLine warming("bench kernel, warming up");
-    for (TimedKernel& s : list) {  // warm up, and find how many calls make a block worth a probe
+    for (TimedKernel& s : list) {  // warm up, and find how many calls take much longer than reading the clock
         throw_if_interrupted();
         warming.show_bar(&s - list.data(), static_cast<long>(list.size()));
         const double once = s.time(five, kSubsteps, 2, results) * static_cast<double>(s.size(five));
         s.five_calls = std::max(1, static_cast<int>(3e5 / std::max(once, 1.0)));
-        // Random impacts likewise. A run so long that one will do needs no warming either.
+        // The same for random impacts. If one call is enough, no run before it is needed to fill the caches.
         const double all = s.time(random, kSubsteps, 1, results) * static_cast<double>(s.size(random));
         s.random_calls = std::max(1, static_cast<int>(5e6 / std::max(all, 1.0)));
         s.random_calls = std::min(s.random_calls, 4);
     }
-    reference::Generator rng(99);
-    std::vector<std::size_t> order(list.size());
-    std::iota(order.begin(), order.end(), 0u);
-    ProgressLine progress("bench kernel");
-    for (int round = 0; round < repeats; ++round) {
-        for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng.next() % i]);
-        for (std::size_t k = 0; k < order.size(); ++k) {
-            throw_if_interrupted();
-            TimedKernel& s = list[order[k]];
-            // The first run brings code and data back into the caches.
-            s.time(five, kSubsteps, 1, results);
-            s.five_ns.push_back(s.time(five, kSubsteps, s.five_calls, results));
-            if (s.random_calls > 1) s.time(random, kSubsteps, 1, results);
-            s.random_ns.push_back(s.time(random, kSubsteps, s.random_calls, results));
-            progress.show_bar(round * static_cast<long>(order.size()) + static_cast<long>(k) + 1,
-                              repeats * static_cast<long>(order.size()));
-        }
-    }
+    interleaved("bench kernel", list.size(), repeats, [&](std::size_t i) {
+        TimedKernel& s = list[i];
+        // The first run brings code and data back into the caches.
+        s.time(five, kSubsteps, 1, results);
+        s.five_ns.push_back(s.time(five, kSubsteps, s.five_calls, results));
+        if (s.random_calls > 1) s.time(random, kSubsteps, 1, results);
+        s.random_ns.push_back(s.time(random, kSubsteps, s.random_calls, results));
+        return 0.0;
+    });
 }
 
 /// Differences from the baseline and errors from the converged solution.
@@ -131,17 +121,10 @@ class Judge {
 std::vector<GrowthRow> growth_of(const std::vector<TimedKernel>& list, const ImpactSet& five) {
     std::vector<GrowthRow> rows;
     std::vector<ImpactResult> results(five.impacts.size());
-    ProgressLine progress("bench kernel, growth");
-    long done = 0;
     for (int n : {100, 1000, 10000}) {
-        std::vector<std::vector<double>> times(list.size());
-        for (int round = 0; round < 5; ++round) {
-            for (std::size_t i = 0; i < list.size(); ++i) {
-                throw_if_interrupted();
-                times[i].push_back(list[i].time(five, n, n == 100 ? 8 : 2, results));
-                progress.show_bar(++done, 3L * 5L * static_cast<long>(list.size()));
-            }
-        }
+        const auto times =
+            interleaved(fmt::format("bench kernel, growth to N = {}", n), list.size(), 5,
+                        [&](std::size_t i) { return list[i].time(five, n, n == 100 ? 8 : 2, results); });
         for (std::size_t i = 0; i < list.size(); ++i)
             rows.push_back({list[i].row.name, list[i].row.isa, n, minimum(times[i]), median(times[i])});
     }
@@ -157,7 +140,7 @@ void evict_caches() {
 
 ShareRow shares_of(const TimedKernel& s, const ImpactSet& five, double probe_ns) {
     std::vector<ImpactResult> results(five.impacts.size());
-    // Balls that separate leave after validation and projection: what comes before the loop.
+    // The call for balls that separate ends after validation and projection, which is the part before the loop.
     ImpactSet apart(five.impacts, five.impacts[0].params.cloth_slip, 8);
     for (Impact& i : apart.impacts) {
         for (double& v : i.ball1.v) v = -v;
@@ -171,7 +154,7 @@ ShareRow shares_of(const TimedKernel& s, const ImpactSet& five, double probe_ns)
     const double before = least(apart, 1000, 400), at_1000 = least(five, 1000, 20),
                  at_2000 = least(five, 2000, 20);
     ShareRow row{s.row.name, s.row.isa, before, 0.0, 0.0, 0.0, at_1000};
-    // Time is linear in N; what does not grow with it is before and after.
+    // The time is linear in N; the part that does not grow with N is spent before and after the loop.
     row.loop = std::min(at_2000 - at_1000, at_1000 - before);
     row.after = std::max(0.0, at_1000 - before - row.loop);
     std::vector<double> cold;
@@ -199,7 +182,7 @@ double cost_of_a_probe() {
 
 }  // namespace
 
-KernelBench measure_kernel(const BenchOptions& options) {
+KernelBench measure_kernel(const BenchKernelArgs& options) {
     if (options.random < 1) throw UsageError("--random: expected at least 1");
     const ClothSlip slip =
         options.cloth_slip == "as_published" ? ClothSlip::kAsPublished : ClothSlip::kConsistent;
@@ -255,10 +238,30 @@ KernelBench measure_kernel(const BenchOptions& options) {
     return bench;
 }
 
-int run_bench_kernel(const BenchOptions& options) {
+namespace {
+
+int run(const BenchKernelArgs& options) {
     const KernelBench bench = measure_kernel(options);
     print(options.json ? kernel_bench_json(bench) : kernel_bench_text(bench));
     return kOk;
+}
+
+}  // namespace
+
+void add_bench_kernel(Options& bench) {
+    auto [command, args] = bench.command<BenchKernelArgs>(
+        "kernel", "Every form of the ball-ball march, and every tolerance, against the plain march", run);
+    command.flag("--json", args.json, "Print JSON (default: off)");
+    command.option("--random", &args.random, "N", "Seeded random impacts beside the five states of the paper")
+        .in(1, 1000000);
+    command.option("--seed", &args.seed, "S", "Seed of the random impacts");
+    add_repeat(command, args.repeats, "Interleaved rounds; minimum and median are over them");
+    add_cloth_slip(command, args.cloth_slip, "Sign of the cloth slip inside the impact");
+    command.flag("--no-growth", args.growth, "Leave out N = 100 and 10000 (default: measured)");
+    command.option("--only", &args.only, "NAME",
+                   "Time only this form, such as 'march reduced state', or all whose names begin with these "
+                   "words, such as 'tolerance'; may be repeated (default: all)");
+    command.footer = "Without CAROM_ISA all instruction sets that this processor has run in one call.";
 }
 
 }  // namespace carom::tools

@@ -9,7 +9,7 @@
 
 namespace carom::tools {
 
-struct BenchOptions {
+struct BenchKernelArgs {
     bool json = false;
     int random = 2000;  ///< seeded random impacts
     std::uint64_t seed = 1;
@@ -39,7 +39,7 @@ struct GrowthRow {
     double ns_min, ns_median;
 };
 
-/// Where the time of one call goes [ns], and what it costs when nothing of it is in a cache.
+/// The parts of the time of one call [ns], and its time when neither code nor data are in a cache.
 struct ShareRow {
     std::string name;
     kernel::Isa isa;
@@ -57,13 +57,10 @@ struct KernelBench {
 
 /// What measure_kernel times: rows with a name and no figures yet. @throws UsageError for a name in `only`
 /// that none has
-std::vector<KernelRow> kernel_rows(const BenchOptions& options);
+std::vector<KernelRow> kernel_rows(const BenchKernelArgs& options);
 
-KernelBench measure_kernel(const BenchOptions& options);
+KernelBench measure_kernel(const BenchKernelArgs& options);
 std::string kernel_bench_json(const KernelBench& bench);
 std::string kernel_bench_text(const KernelBench& bench);
-
-/// Measures and prints. Returns the exit status.
-int run_bench_kernel(const BenchOptions& options);
 
 }  // namespace carom::tools

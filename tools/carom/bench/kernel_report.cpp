@@ -1,108 +1,98 @@
-// carom bench kernel: the table, and the JSON of docs/cli.
+// carom bench kernel: the tables, as text and as JSON.
 #include <fmt/format.h>
 
-#include <iterator>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "bench/kernel.h"
+#include "report/table.h"
 
 namespace carom::tools {
+namespace {
+
+Table rows_of(const KernelBench& bench) {
+    Table table(Column("name", "", "<26"), Column("section", "section", "<9"), Column("isa", "isa", "<7"),
+                Column("kind", "kind", "<7"), Column("portable_bits"), Column("ratio", "ratio", ">8.2f"),
+                Column("ratio_random", "random", ">8.2f"), Column("ns_min", "ns min", ">9.0f"),
+                Column("ns_median", "median", ">9.0f"), Column("ns_random_min"),
+                Column("cycles_per_step", "cyc/st", ">7.1f"), Column("steps"),
+                Column("same_steps", "same", ">6"), Column("diff_five", "diff 5", ">9.1e"),
+                Column("diff_random_p99"), Column("diff_random_max", "diff max", ">9.1e"),
+                Column("error_five", "error 5", ">9.1e"), Column("error_random_median"),
+                Column("error_random_max", "err max", ">9.1e"));
+    for (const KernelRow& r : bench.rows)
+        table.add({r.name, r.section, name(r.isa), r.kind, r.portable_bits, r.ratio, r.ratio_random, r.ns_min,
+                   r.ns_median, r.ns_random_min, r.cycles_per_step, r.steps_mean, r.same_steps, r.diff_five,
+                   r.diff_random_p99, r.diff_random_max, r.error_five, r.error_random_median,
+                   r.error_random_max});
+    return table;
+}
+
+/// A row for each N.
+Table growth_of(const KernelBench& bench) {
+    Table table(Column("name"), Column("isa"), Column("n"), Column("ns_min"), Column("ns_median"));
+    for (const GrowthRow& g : bench.growth) table.add({g.name, name(g.isa), g.n, g.ns_min, g.ns_median});
+    return table;
+}
+
+/// A row for each kernel, with a column for each N: what was measured comes kernel after kernel for one N after the other.
+Table growth_by_kernel(const KernelBench& bench) {
+    Table table(Column("", "", "<26"), Column("", "isa", "<7"));
+    std::size_t kernels = 0;
+    while (kernels < bench.growth.size() && bench.growth[kernels].n == bench.growth[0].n) ++kernels;
+    for (std::size_t i = 0; i < bench.growth.size(); i += kernels)
+        table.columns.emplace_back("", fmt::format("{}", bench.growth[i].n), ">10.0f");
+    for (std::size_t k = 0; k < kernels; ++k) {
+        table.add({bench.growth[k].name, name(bench.growth[k].isa)});
+        for (std::size_t i = k; i < bench.growth.size(); i += kernels)
+            table.rows.back().cells.emplace_back(bench.growth[i].ns_min);
+    }
+    return table;
+}
+
+Table shares_of(const KernelBench& bench) {
+    Table table(Column("name", "", "<26"), Column("isa", "isa", "<7"), Column("before_ns", "before", ">8.0f"),
+                Column("loop_ns", "in", ">9.0f"), Column("after_ns", "after", ">8.0f"),
+                Column("warm_ns", "warm", ">10.0f"), Column("cold_ns", "cold", ">9.0f"));
+    for (const ShareRow& s : bench.shares)
+        table.add({s.name, name(s.isa), s.before, s.loop, s.after, s.warm, s.cold});
+    return table;
+}
+
+}  // namespace
 
 std::string kernel_bench_json(const KernelBench& bench) {
-    using Json = nlohmann::ordered_json;
-    Json rows = Json::array(), growth = Json::array(), shares = Json::array();
-    for (const KernelRow& r : bench.rows)
-        rows.push_back({{"name", r.name},
-                        {"section", r.section},
-                        {"isa", name(r.isa)},
-                        {"kind", r.kind},
-                        {"portable_bits", r.portable_bits},
-                        {"ratio", r.ratio},
-                        {"ratio_random", r.ratio_random},
-                        {"ns_min", r.ns_min},
-                        {"ns_median", r.ns_median},
-                        {"ns_random_min", r.ns_random_min},
-                        {"cycles_per_step", r.cycles_per_step},
-                        {"steps", r.steps_mean},
-                        {"same_steps", r.same_steps},
-                        {"diff_five", r.diff_five},
-                        {"diff_random_p99", r.diff_random_p99},
-                        {"diff_random_max", r.diff_random_max},
-                        {"error_five", r.error_five},
-                        {"error_random_median", r.error_random_median},
-                        {"error_random_max", r.error_random_max}});
-    for (const GrowthRow& g : bench.growth)
-        growth.push_back({{"name", g.name},
-                          {"isa", name(g.isa)},
-                          {"n", g.n},
-                          {"ns_min", g.ns_min},
-                          {"ns_median", g.ns_median}});
-    for (const ShareRow& s : bench.shares)
-        shares.push_back({{"name", s.name},
-                          {"isa", name(s.isa)},
-                          {"before_ns", s.before},
-                          {"loop_ns", s.loop},
-                          {"after_ns", s.after},
-                          {"warm_ns", s.warm},
-                          {"cold_ns", s.cold}});
-    const Json all = {{"machine",
-                       {{"cpu", bench.cpu},
-                        {"compiler", bench.compiler},
-                        {"cycle_ns", bench.cycle_ns},
-                        {"probe_ns", bench.probe_ns},
-                        {"baseline_isa", bench.baseline_isa},
-                        {"random", bench.random}}},
-                      {"baseline_ns", bench.baseline_ns},
-                      {"baseline_random_ns", bench.baseline_random_ns},
-                      {"rows", rows},
-                      {"growth", growth},
-                      {"shares", shares}};
+    const nlohmann::ordered_json all = {{"machine",
+                                         {{"cpu", bench.cpu},
+                                          {"compiler", bench.compiler},
+                                          {"cycle_ns", bench.cycle_ns},
+                                          {"probe_ns", bench.probe_ns},
+                                          {"baseline_isa", bench.baseline_isa},
+                                          {"random", bench.random}}},
+                                        {"baseline_ns", bench.baseline_ns},
+                                        {"baseline_random_ns", bench.baseline_random_ns},
+                                        {"rows", table_json(rows_of(bench))},
+                                        {"growth", table_json(growth_of(bench))},
+                                        {"shares", table_json(shares_of(bench))}};
     return all.dump(1) + "\n";
 }
 
 std::string kernel_bench_text(const KernelBench& bench) {
-    fmt::memory_buffer out;
-    const auto line = std::back_inserter(out);
-    fmt::format_to(line,
-                   "{}, {}; cycle {:.4f} ns\nbaseline: the plain double march, N = 1000, {}: {:.0f} ns (five "
-                   "states), {:.0f} ns ({} random impacts)\n\n",
-                   bench.cpu, bench.compiler, bench.cycle_ns, bench.baseline_isa, bench.baseline_ns,
-                   bench.baseline_random_ns, bench.random);
-    fmt::format_to(line, "{:<26}{:<9}{:<7}{:<7}{:>8}{:>8}{:>9}{:>9}{:>7}{:>6}{:>9}{:>9}{:>9}{:>9}\n", "",
-                   "section", "isa", "kind", "ratio", "random", "ns min", "median", "cyc/st", "same",
-                   "diff 5", "diff max", "error 5", "err max");
-    for (const KernelRow& r : bench.rows)
-        fmt::format_to(line,
-                       "{:<26}{:<9}{:<7}{:<7}{:>8.2f}{:>8.2f}{:>9.0f}{:>9.0f}{:>7.1f}{:>6}{:>9.1e}{:>9.1e}{:>"
-                       "9.1e}{:>9.1e}\n",
-                       r.name, r.section, name(r.isa), r.kind, r.ratio, r.ratio_random, r.ns_min, r.ns_median,
-                       r.cycles_per_step, r.same_steps, r.diff_five, r.diff_random_max, r.error_five,
-                       r.error_random_max);
-    if (!bench.growth.empty()) {
-        fmt::format_to(
-            line, "\ngrowth with N, ns per impact, minimum (five states)\n{:<26}{:<7}{:>10}{:>10}{:>10}\n",
-            "", "isa", "100", "1000", "10000");
-        for (const GrowthRow& a : bench.growth) {
-            if (a.n != 100) continue;
-            fmt::format_to(line, "{:<26}{:<7}{:>10.0f}", a.name, name(a.isa), a.ns_min);
-            for (int n : {1000, 10000})
-                for (const GrowthRow& b : bench.growth)
-                    if (b.n == n && b.name == a.name && b.isa == a.isa) {
-                        fmt::format_to(line, "{:>10.0f}", b.ns_min);
-                        break;
-                    }
-            fmt::format_to(line, "\n");
-        }
-    }
-    if (bench.shares.empty()) return fmt::to_string(out);
-    fmt::format_to(line,
-                   "\nns before, in and after the loop; warm and cold caches (a probe costs {:.0f} ns)\n",
-                   bench.probe_ns);
-    for (const ShareRow& s : bench.shares)
-        fmt::format_to(line, "{:<26}{:<7}{:>8.0f}{:>9.0f}{:>8.0f}{:>10.0f}{:>9.0f}\n", s.name, name(s.isa),
-                       s.before, s.loop, s.after, s.warm, s.cold);
-    return fmt::to_string(out);
+    std::string text = fmt::format(
+        "{}, {}; cycle {:.4f} ns\nbaseline: the plain double march, N = 1000, {}: {:.0f} ns (five "
+        "states), {:.0f} ns ({} random impacts)\n\n",
+        bench.cpu, bench.compiler, bench.cycle_ns, bench.baseline_isa, bench.baseline_ns,
+        bench.baseline_random_ns, bench.random);
+    text += table_text(rows_of(bench));
+    if (!bench.growth.empty())
+        text +=
+            "\ngrowth with N, ns per impact, minimum (five states)\n" + table_text(growth_by_kernel(bench));
+    if (!bench.shares.empty())
+        text += fmt::format(
+            "\nns before, in and after the loop; warm and cold caches (a probe costs {:.0f} ns)\n{}",
+            bench.probe_ns, table_text(shares_of(bench)));
+    return text;
 }
 
 }  // namespace carom::tools

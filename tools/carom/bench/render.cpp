@@ -1,16 +1,142 @@
 // carom bench render: what a frame costs, stage by stage.
+#include "bench/render.h"
+
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
-#include "bench/render_stages.h"
-#include "commands.h"
+#include "base/temporary_folder.h"
+#include "bench/clock.h"
+#include "carom/render/png.h"
+#include "carom/render/renderer.h"
+#include "carom/render/sequence.h"
 #include "console.h"
+#include "options.h"
+#include "report/table.h"
 #include "setup.h"
 
 namespace carom::tools {
+using namespace render;
 
-int run_bench_render(const BenchRenderArgs& args) {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double cpu_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+double wall_ms_since(Clock::time_point since) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
+}
+
+// Counts the frames that are drawn in all measurements together.
+struct Steps {
+    const std::function<void(long, long)>& progress;
+    long done = 0, total = 0;
+    void look() const {
+        if (progress) progress(done, total);
+    }
+    void next() {
+        ++done;
+        look();
+    }
+};
+
+// Measures one frame after the other, while nothing else runs in the process.
+void measure_stages(const Record& record, FrameSize size, int frames, Backend backend,
+                    const std::string& file, Steps& steps, RenderBenchRow& row) {
+    const Clock::time_point start = Clock::now();
+    StageOptions options;
+    options.size = size;
+    const Stage stage(record, options);
+    Renderer renderer(backend);
+    renderer.on_table([&steps](int, int) { steps.look(); });
+    KeptImage image;
+    std::vector<std::uint8_t> bytes;
+    std::vector<double> draw, read, both, encode, write;
+    for (int i = 0; i <= frames; ++i) {
+        steps.next();
+        const double t0 = cpu_ms();
+        renderer.draw(stage.at(record.duration * i / frames));
+        renderer.finish();
+        const double t1 = cpu_ms();
+        renderer.read(image);
+        const double t2 = cpu_ms();
+        if (i == 0) row.setup_ms = wall_ms_since(start);
+        encode_png(image.image(), 1, bytes);
+        const double t3 = cpu_ms();
+        const Clock::time_point before = Clock::now();
+        write_file(file, bytes);
+        if (i < 2) continue;  // the second frame is the first of the other of two images
+        draw.push_back(t1 - t0);
+        read.push_back(t2 - t1);
+        both.push_back(t2 - t0);
+        encode.push_back(t3 - t2);
+        write.push_back(wall_ms_since(before));
+    }
+    row.draw_ms = median(draw);
+    row.readback_ms = median(read);
+    row.encode_ms = median(encode);
+    row.write_ms = median(write);
+    std::sort(both.begin(), both.end());
+    row.slow_ms = both[both.size() * 19 / 20];
+}
+
+double frames_per_second(const Record& record, FrameSize size, int frames, Backend backend,
+                         const std::string& pattern, Steps& steps) {
+    SequenceOptions options;
+    options.pattern = pattern;
+    options.size = size;
+    options.backend = backend;
+    options.fps = frames / std::max(record.duration, 1e-3);
+    Clock::time_point first;
+    long done = 0;
+    options.progress = [&](long count, long) {
+        if (count == 1) first = Clock::now();
+        done = count;
+        steps.next();
+    };
+    options.table_progress = [&steps](int, int) { steps.look(); };
+    render_sequence(record, options);
+    return 1e3 * static_cast<double>(done - 1) / wall_ms_since(first);
+}
+
+}  // namespace
+
+std::vector<RenderBenchRow> bench_render(const Record& record, int frames, Backend backend,
+                                         const std::function<void(long, long)>& progress) {
+    if (frames < 3) throw RenderError("measuring takes at least 3 frames");
+    const TemporaryFolder folder;
+    Steps steps{progress, 0, 2L * (2L * frames + 2L)};  // at two sizes: in one thread, and with one a core
+    std::vector<RenderBenchRow> rows;
+    for (const auto& [name, size] :
+         {std::pair{"720p", FrameSize{1280, 720}}, std::pair{"1080p", FrameSize{1920, 1080}}}) {
+        RenderBenchRow row;
+        row.name = name;
+        measure_stages(record, size, frames, backend, folder.file("one.png"), steps, row);
+        row.fps = frames_per_second(record, size, frames, backend, folder.file("%05d.png"), steps);
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+namespace {
+
+struct BenchRenderArgs {
+    std::string scene = "scenes/eight_ball_break.toml";
+    int frames = 120;
+    std::string gl = "osmesa";
+    bool json = false;
+};
+
+int run(const BenchRenderArgs& args) {
     const Record record = simulate_plan(plan_scene(args.scene), {});
     ProgressLine line("bench render");
     const auto rows =
@@ -18,33 +144,34 @@ int run_bench_render(const BenchRenderArgs& args) {
             throw_if_interrupted();
             line.show_bar(done, total);
         });
+    Table table(Column("name", "size", "<8"), Column("draw_ms", "draw", ">9.2f"),
+                Column("readback_ms", "readback", ">10.2f"),
+                Column("draw_readback_p95_ms", "both p95", ">10.2f"), Column("encode_ms", "encode", ">9.2f"),
+                Column("write_ms", "write", ">9.2f"), Column("setup_ms", "set-up", ">10.0f"),
+                Column("fps", "frames/s", ">12.1f"));
+    for (const RenderBenchRow& r : rows)
+        table.add({r.name, r.draw_ms, r.readback_ms, r.slow_ms, r.encode_ms, r.write_ms, r.setup_ms, r.fps});
     if (args.json) {
-        nlohmann::ordered_json list = nlohmann::ordered_json::array();
-        for (const RenderBenchRow& row : rows) {
-            list.push_back({{"name", row.name},
-                            {"draw_ms", row.draw_ms},
-                            {"readback_ms", row.readback_ms},
-                            {"draw_readback_p95_ms", row.slow_ms},
-                            {"encode_ms", row.encode_ms},
-                            {"write_ms", row.write_ms},
-                            {"setup_ms", row.setup_ms},
-                            {"fps", row.fps}});
-        }
-        print(nlohmann::ordered_json{{"gl", args.gl}, {"frames", args.frames}, {"rows", list}}.dump(2) +
-              "\n");
+        const nlohmann::ordered_json all = {
+            {"gl", args.gl}, {"frames", args.frames}, {"rows", table_json(table)}};
+        print(all.dump(2) + "\n");
         return kOk;
     }
     print(fmt::format(
-        "{}: {} frames at each size; CPU ms a frame, medians after the first; write is wall time\n\n",
-        args.scene, args.frames));
-    print(fmt::format("{:8}{:>9}{:>10}{:>10}{:>9}{:>9}{:>10}{:>12}\n", "size", "draw", "readback", "both p95",
-                      "encode", "write", "set-up", "frames/s"));
-    for (const RenderBenchRow& row : rows) {
-        print(fmt::format("{:8}{:>9.2f}{:>10.2f}{:>10.2f}{:>9.2f}{:>9.2f}{:>10.0f}{:>12.1f}\n", row.name,
-                          row.draw_ms, row.readback_ms, row.slow_ms, row.encode_ms, row.write_ms,
-                          row.setup_ms, row.fps));
-    }
+        "{}: {} frames at each size; CPU ms a frame, medians after the first; write is wall time\n\n{}",
+        args.scene, args.frames, table_text(table)));
     return kOk;
+}
+
+}  // namespace
+
+void add_bench_render(Options& bench) {
+    auto [command, args] = bench.command<BenchRenderArgs>(
+        "render", "What drawing, reading back and encoding a frame costs", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)");
+    command.option("--frames", &args.frames, "N", "Frames at each size, spread over the shot").in(3, 100000);
+    add_gl(command, args.gl);
+    command.flag("--json", args.json, "Print JSON (default: off)");
 }
 
 }  // namespace carom::tools

@@ -1,5 +1,5 @@
-// Interleaved rounds: what is compared is measured side by side, in a new order each time, so that no drift
-// of the machine favours one.
+// Interleaved rounds: things that are compared are measured in alternation, in a new order each round, so that a drift of the
+// machine's speed favours none of them.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 namespace carom::tools {
 
 /// Calls measure(i) for every i in 0..count-1, `rounds` times, in a new seeded order each round, with a
-/// progress bar. SIGINT ends it. @returns per i what it returned, one entry a round
+/// progress bar. SIGINT ends it. @returns for each i what measure(i) returned in each round
 inline std::vector<std::vector<double>> interleaved(const std::string& title, std::size_t count, int rounds,
                                                     const std::function<double(std::size_t)>& measure) {
     std::vector<std::vector<double>> samples(count);

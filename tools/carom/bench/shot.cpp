@@ -1,4 +1,4 @@
-// carom bench shot: measures.
+// carom bench shot: the measurement.
 #include "bench/shot.h"
 
 #include <malloc.h>
@@ -6,55 +6,45 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <numeric>
 
 #include "bench/clock.h"
 #include "bench/five_states.h"
 #include "bench/machine.h"
+#include "bench/rounds.h"
 #include "bench/shot_cases.h"
 #include "carom/engine/simulate.h"
 #include "carom/kernel/march.h"
 #include "console.h"
-#include "reference/random_impacts.h"
+#include "options.h"
 #include "setup.h"
 
 namespace carom::tools {
 namespace {
 
-/// The published march at N = 1000 on the five states of the paper: what costs are counted in.
-class Baseline {
-  public:
-    Baseline() : isa_(kernel::available(kernel::Isa::kV3) ? kernel::Isa::kV3 : kernel::Isa::kScalar) {}
-
-    void round() {
-        const kernel::MarchFunction march = kernel::march_function(isa_);
-        kernel::ImpactResult result;
-        const double start = thread_ns();
-        for (const BenchImpact& s : kFiveStates) march(s.ball1, s.ball2, s.params, 1000, result);
-        times_.push_back((thread_ns() - start) / std::size(kFiveStates));
-    }
-    double ns() const { return minimum(times_); }
-    const char* isa() const { return kernel::name(isa_); }
-
-  private:
-    kernel::Isa isa_;
-    std::vector<double> times_;
-};
+/// The unit of all costs [ns]: one impact of the published march at N = 1000, the mean over the five states of the paper.
+double baseline_impact(kernel::Isa isa) {
+    const kernel::MarchFunction march = kernel::march_function(isa);
+    kernel::ImpactResult result;
+    const double start = thread_ns();
+    for (const BenchImpact& s : kFiveStates) march(s.ball1, s.ball2, s.params, 1000, result);
+    return (thread_ns() - start) / std::size(kFiveStates);
+}
 
 /// One shot of one seed.
 struct TimedShot {
     Plan plan;
-    std::vector<double> ns;
+    std::vector<double> ns{};  ///< one entry a round
     double least_profiled = 1e300;
     std::size_t events = 0;
     std::array<double, 5> split{};  ///< detect, resolve, kernel, cluster, queue [ns of the whole run]
 
-    void time() {
+    double time() {
         const double start = thread_ns();
         const Record record = simulate(plan);
-        ns.push_back(thread_ns() - start);
+        const double all = thread_ns() - start;
         events = record.events.size();
+        return all;
     }
     void profile() {
         SimulateOptions options;
@@ -79,24 +69,6 @@ struct TimedShot {
         return static_cast<double>(record.clusters.size());
     }
 };
-
-/// Calls every function of the list once a round, in a new
-/// random order each, so that no drift of the clock favours one.
-void interleave(const std::vector<std::function<void()>>& list, int rounds, const char* title) {
-    reference::Generator rng(99);
-    std::vector<std::size_t> order(list.size());
-    std::iota(order.begin(), order.end(), 0u);
-    ProgressLine progress(title);
-    for (int round = 0; round < rounds; ++round) {
-        for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng.next() % i]);
-        for (std::size_t k = 0; k < order.size(); ++k) {
-            throw_if_interrupted();
-            list[order[k]]();
-            progress.show_bar(round * static_cast<long>(order.size()) + static_cast<long>(k) + 1,
-                              rounds * static_cast<long>(order.size()));
-        }
-    }
-}
 
 ShotRow row_of(const std::string& name, const TimedShot* first, int seeds, double baseline_ns) {
     std::vector<double> cost, least, middle, events, clusters;
@@ -131,14 +103,13 @@ ShotRow row_of(const std::string& name, const TimedShot* first, int seeds, doubl
 struct Gas {
     GasRow row;
     Plan plan;
-    std::vector<double> ns;
 
-    void time() {
+    double time() {
         double begin = 0.0, bytes = 0.0;
         std::size_t first = 0;
         const double before = heap_bytes();
         SimulateOptions options;
-        // The first call comes after the first event: set-up is over, and its memory is taken.
+        // The first call comes after the first event, when the set-up is finished and its memory is allocated.
         options.progress_rounds = 1;
         options.progress = [&](std::size_t events, double) {
             if (begin != 0.0) return;
@@ -147,8 +118,9 @@ struct Gas {
             begin = thread_ns();
         };
         const Record record = simulate(plan, options);
-        ns.push_back((thread_ns() - begin) / static_cast<double>(record.events.size() - first));
+        const double all = thread_ns() - begin;
         row.bytes_per_ball = bytes / row.balls;
+        return all / static_cast<double>(record.events.size() - first);
     }
     static double heap_bytes() {
         const struct mallinfo2 info = mallinfo2();
@@ -156,10 +128,10 @@ struct Gas {
     }
 };
 
-// Above this the loop through all boxes is only slow.
+// For more balls than this the search through all boxes is not measured: it is far slower.
 constexpr int kMostDirect = 2000;
 
-std::vector<GasRow> growth_of(const BenchShotOptions& options, kernel::Isa isa) {
+std::vector<GasRow> growth_of(const BenchShotArgs& options, kernel::Isa isa) {
     std::vector<Gas> list;
     for (const ClusterModel clusters : {ClusterModel::kSequential, ClusterModel::kCompliant}) {
         const bool compliant = clusters == ClusterModel::kCompliant;
@@ -184,15 +156,14 @@ std::vector<GasRow> growth_of(const BenchShotOptions& options, kernel::Isa isa) 
             }
         }
     }
-    std::vector<std::function<void()>> work;
-    work.reserve(list.size());
-    for (Gas& gas : list) work.emplace_back([&gas] { gas.time(); });
-    interleave(work, std::max(1, options.repeats / 3), "bench shot: growth");
+    const auto samples = interleaved("bench shot: growth", list.size(), std::max(1, options.repeats / 3),
+                                     [&list](std::size_t i) { return list[i].time(); });
     std::vector<GasRow> rows;
     double first = 0.0;
-    for (Gas& gas : list) {
-        gas.row.ns_min = minimum(gas.ns);
-        gas.row.ns_median = median(gas.ns);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        Gas& gas = list[i];
+        gas.row.ns_min = minimum(samples[i]);
+        gas.row.ns_median = median(samples[i]);
         if (rows.empty() || rows.back().name != gas.row.name) first = gas.row.ns_min;
         gas.row.growth = gas.row.ns_min / first;
         rows.push_back(gas.row);
@@ -202,34 +173,34 @@ std::vector<GasRow> growth_of(const BenchShotOptions& options, kernel::Isa isa) 
 
 }  // namespace
 
-ShotBench measure_shots(const BenchShotOptions& options) {
+ShotBench measure_shots(const BenchShotArgs& options) {
     const kernel::Isa isa = chosen_isa();
     const std::vector<std::string> names = shot_names();
     std::vector<TimedShot> subjects;
     for (const std::string& name : names)
         for (int seed = 0; seed < options.seeds; ++seed)
-            subjects.push_back({make_plan(shot_scene(name, static_cast<std::uint64_t>(seed)), isa), {}});
-    Baseline baseline;
-    std::vector<std::function<void()>> work;
-    for (TimedShot& s : subjects) {
-        work.emplace_back([&s] {
-            s.time();
-            s.profile();
-        });
-        work.emplace_back([&baseline] { baseline.round(); });
-    }
+            subjects.push_back({make_plan(shot_scene(name, static_cast<std::uint64_t>(seed)), isa)});
     for (TimedShot& s : subjects) {  // warms up
         throw_if_interrupted();
         s.time();
     }
-    interleave(work, options.repeats, "bench shot");
+    const kernel::Isa baseline_isa =
+        kernel::available(kernel::Isa::kV3) ? kernel::Isa::kV3 : kernel::Isa::kScalar;
+    std::vector<double> baseline;
+    const auto samples = interleaved("bench shot", subjects.size(), options.repeats, [&](std::size_t i) {
+        baseline.push_back(baseline_impact(baseline_isa));
+        const double ns = subjects[i].time();
+        subjects[i].profile();
+        return ns;
+    });
+    for (std::size_t i = 0; i < subjects.size(); ++i) subjects[i].ns = samples[i];
 
     ShotBench bench;
     bench.cpu = processor();
     bench.compiler = __VERSION__;
-    bench.baseline_isa = baseline.isa();
+    bench.baseline_isa = kernel::name(baseline_isa);
     bench.isa = kernel::name(isa);
-    bench.baseline_ns = baseline.ns();
+    bench.baseline_ns = minimum(baseline);
     bench.seeds = options.seeds;
     bench.repeats = options.repeats;
     for (std::size_t k = 0; k < names.size(); ++k)
@@ -239,10 +210,27 @@ ShotBench measure_shots(const BenchShotOptions& options) {
     return bench;
 }
 
-int run_bench_shot(const BenchShotOptions& options) {
+namespace {
+
+int run(const BenchShotArgs& options) {
     const ShotBench bench = measure_shots(options);
     print(options.json ? shot_bench_json(bench) : shot_bench_text(bench));
     return kOk;
+}
+
+}  // namespace
+
+void add_bench_shot(Options& bench) {
+    auto [command, args] = bench.command<BenchShotArgs>(
+        "shot", "Whole breaks and shots in units of one baseline impact; growth with the number of balls",
+        run);
+    command.flag("--json", args.json, "Print JSON (default: off)");
+    command.option("--seeds", &args.seeds, "N", "Seeds of every shot; a row is their median").in(1, 1000);
+    add_repeat(command, args.repeats,
+               "Interleaved rounds; a shot counts with its minimum (gases: a third of them)");
+    command.option("--events", &args.events, "N", "Events of a gas at each size").in(10, 10000000);
+    command.flag("--no-growth", args.growth, "Leave out the gases of 16 to 10000 balls (default: measured)");
+    command.footer = "One baseline impact is the plain double march at N = 1000, timed in the same run.";
 }
 
 }  // namespace carom::tools

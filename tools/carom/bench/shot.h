@@ -9,7 +9,7 @@
 
 namespace carom::tools {
 
-struct BenchShotOptions {
+struct BenchShotArgs {
     bool json = false;
     int seeds = 9;        ///< of every shot; the row is their median
     int repeats = 15;     ///< interleaved rounds; a shot counts with its minimum over them
@@ -50,11 +50,8 @@ struct ShotBench {
     std::vector<GasRow> growth;
 };
 
-ShotBench measure_shots(const BenchShotOptions& options);
+ShotBench measure_shots(const BenchShotArgs& options);
 std::string shot_bench_json(const ShotBench& bench);
 std::string shot_bench_text(const ShotBench& bench);
-
-/// Measures and prints. Returns the exit status.
-int run_bench_shot(const BenchShotOptions& options);
 
 }  // namespace carom::tools

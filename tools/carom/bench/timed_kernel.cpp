@@ -36,24 +36,20 @@ std::vector<TimedKernel> subjects(const std::vector<Isa>& isas) {
     } asked[] = {{"tolerance 1e-3", 1e-3}, {"tolerance 1e-6", 1e-6}, {"tolerance 1e-10", 1e-10}};
     for (Isa isa : isas) {
         for (const auto& a : asked) {
-            TimedKernel s;
-            s.row = {a.name, "past it", "single", isa, true};
-            s.one = [f = tolerance_function(isa), t = a.tolerance](const Impact& i, int, ImpactResult& out) {
+            list.emplace_back().row = {a.name, "past it", "single", isa, true};
+            list.back().one = [f = tolerance_function(isa), t = a.tolerance](const Impact& i, int,
+                                                                             ImpactResult& out) {
                 f(i.ball1, i.ball2, i.params, t, out);
             };
-            list.push_back(std::move(s));
-            TimedKernel b;
-            b.row = {a.name, "past it", "batch", isa, true};
-            b.many = [f = tolerance_batch_function(isa), t = a.tolerance](const BatchArrays& arrays, int) {
-                f(arrays.batch, t, arrays.result);
-            };
-            list.push_back(std::move(b));
+            list.emplace_back().row = {a.name, "past it", "batch", isa, true};
+            list.back().many = [f = tolerance_batch_function(isa), t = a.tolerance](
+                                   const BatchArrays& arrays, int) { f(arrays.batch, t, arrays.result); };
         }
     }
     return list;
 }
 
-/// Whether a name is meant: the name itself, or its first words, unless another row has just these.
+/// Whether `wanted` is the name itself (exact), or consists of its first words.
 bool is_meant(const std::string& name, const std::string& wanted, bool exact) {
     return exact ? name == wanted : name.rfind(wanted + " ", 0) == 0;
 }
@@ -116,7 +112,7 @@ std::vector<ImpactResult> results_of(const TimedKernel& kernel, const ImpactSet&
     return results;
 }
 
-std::vector<KernelRow> kernel_rows(const BenchOptions& options) {
+std::vector<KernelRow> kernel_rows(const BenchKernelArgs& options) {
     const std::vector<TimedKernel> list = timed_kernels(options.only);
     std::vector<KernelRow> rows;
     rows.reserve(list.size());

@@ -11,8 +11,8 @@
 namespace carom::tools {
 
 /// The frame k in 0..frames-1 with t_k <= t < t_(k+1), t_k being render::frame_time: an event at a frame's
-/// own time belongs to that frame and to no other. What is before the first frame or after the last belongs
-/// to the first or last.
+/// own time belongs to that frame only. An event before the first frame belongs to the first one, an event after the last
+/// frame to the last one.
 long frame_of(double t, double from, double fps, long frames);
 
 /// What the simulation cost during one frame [ms].
@@ -26,16 +26,16 @@ struct FrameCost {
 };
 
 /// Sums the costs of a profiled record by frame. The first detection of all pairs, made before any event,
-/// counts for frame 0. Nothing is lost: the sums over all frames are the sums over all events.
+/// belongs to frame 0. The sums over all frames are equal to the sums over all events.
 std::vector<FrameCost> costs_by_frame(const Record& record, double from, double fps, long frames);
 
 /// Percentile by nearest rank: the smallest value such that at least p percent of all values are not above it.
 /// @param sorted  ascending, not empty   @param p  0..100
 double percentile(const std::vector<double>& sorted, double p);
 
-/// Wall time of frames that are made one after the other, from the moments at which each was done. What the
-/// caller does in between (a progress bar, removing files) does not count. The clock is the caller's, so that
-/// the bookkeeping can be tested without one.
+/// Measures the wall time of frames that are made one after the other, from the times at which each one was finished. What the
+/// caller does between them (a progress bar, removing files) does not count. The caller gives the clock, so that a test can
+/// replace it.
 class FrameWalls {
   public:
     explicit FrameWalls(std::function<double()> now_ms) : now_ms_(std::move(now_ms)) {}
@@ -47,7 +47,7 @@ class FrameWalls {
         mark_ = now_ms_();
         started_ = true;
     }
-    /// One for every frame but the first, whose start nobody saw.
+    /// One for every frame except the first, whose start is not known.
     const std::vector<double>& walls() const { return walls_; }
 
   private:

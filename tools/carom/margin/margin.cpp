@@ -1,4 +1,4 @@
-// carom margin: measures. Stages: margin.h.
+// carom margin: the measurement. The stages of a frame are those of margin.h.
 #include "margin/margin.h"
 
 #include <fmt/format.h>
@@ -7,12 +7,13 @@
 #include <chrono>
 #include <cstdio>
 
-#include "base/output_file.h"
 #include "base/temporary_folder.h"
 #include "bench/clock.h"
 #include "bench/rounds.h"
 #include "console.h"
+#include "options.h"
 #include "report/plot.h"
+#include "report/table.h"
 #include "setup.h"
 
 namespace carom::tools {
@@ -28,9 +29,8 @@ render::SequenceOptions draw_options(const Record& record, const MarginArgs& arg
     const RenderSettings& settings = record.render;
     render::SequenceOptions options;
     options.fps = fps;
-    options.jobs = 1;  // one thread: the parts of a frame do not overlap, and do not disturb each other
-    options.size =
-        args.size.empty() ? render::FrameSize{settings.width, settings.height} : parse_size(args.size);
+    options.jobs = 1;  // with one thread the parts of a frame cannot overlap
+    options.size = args.size.empty() ? settings.size() : parse_size(args.size);
     options.camera = settings.camera;
     options.view.eye = settings.eye;
     options.view.target = settings.target;
@@ -62,7 +62,7 @@ void draw(MarginRun& run, const MarginArgs& args, double fps, const std::string&
     }
 }
 
-/// A frame without what only makes files of it.
+/// The cost of a frame that is shown but not written to a file.
 double shown_ms(const Margin& margin, std::size_t frame) {
     return margin.total[frame] - margin.stage[kEncode][frame] - margin.stage[kWrite][frame];
 }
@@ -191,7 +191,9 @@ TimingCost cost_of_timing(const Plan& plan) {
     return cost;
 }
 
-int run_margin(const MarginArgs& args) {
+namespace {
+
+int run(const MarginArgs& args) {
     if (args.repeat < 1) throw UsageError("--repeat: expected at least 1");
     if (!args.size.empty()) parse_size(args.size);
     check_plot_path(args.plot);
@@ -211,15 +213,34 @@ int run_margin(const MarginArgs& args) {
     Margin margin = combine(runs, fps, !args.no_render);
     if (margin.rendered) margin.size = draw_options(last.record, args, fps).size;
     margin.timing = cost_of_timing(plan);
-    if (!args.csv.empty()) write_margin_csv(margin, last, args.csv);
+    write_report(args.csv, margin_csv(margin, last));
     if (!args.plot.empty()) plot_margin(margin, last, args.scene, args.plot);
-    if (!args.trace.empty()) {
-        OutputFile file(args.trace);
-        file.write(margin_trace(last, fps));
-        file.commit();
-    }
+    if (!args.trace.empty()) write_report(args.trace, margin_trace(last, fps));
     print(args.json ? margin_json(margin, last) : margin_text(margin, last, args.scene));
     return kOk;
+}
+
+}  // namespace
+
+void add_margin(Options& program) {
+    auto [command, args] =
+        program.command<MarginArgs>("margin", "Real-time margin: what every frame costs against 1/fps", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
+    add_picture(command, args.fps, args.size);
+    add_repeat(command, args.repeat, "Runs; every frame's cost is the median over them");
+    command.flag("--no-render", args.no_render, "Measure the simulation only (default: off)");
+    command.flag("--sweep", args.sweep,
+                 "Every accuracy at every frame rate from 30 to 1000: where the scene stops being real time "
+                 "(default: off)");
+    add_gl(command, args.gl);
+    command.option("--trace", &args.trace, "FILE.json",
+                   "Write the frames as Chrome trace events, for chrome://tracing or Perfetto (default: not "
+                   "written)");
+    add_reports(command, args.csv, args.plot, args.json);
+    command.footer =
+        "simulate = detect + resolve + kernel + cluster. A frame costs simulate + draw + readback + encode + "
+        "write,\nmeasured one after the other on one thread; frames go to a temporary folder and are "
+        "removed.";
 }
 
 }  // namespace carom::tools

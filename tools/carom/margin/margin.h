@@ -2,16 +2,28 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
 #include "carom/render/sequence.h"
-#include "commands.h"
 #include "margin/frame_costs.h"
 
 namespace carom::tools {
+
+struct MarginArgs {
+    std::string scene;
+    std::optional<double> fps;
+    std::string size;
+    int repeat = 1;
+    bool no_render = false;
+    bool sweep = false;  ///< accuracy x frame rate
+    std::string gl = "osmesa";
+    std::string csv, plot, trace;  ///< file names; empty: not asked for
+    bool json = false;
+};
 
 /// What is measured of a frame. simulate is the sum of the four behind it; a frame costs simulate and the
 /// five after kCluster.
@@ -35,14 +47,14 @@ struct MarginRun {
     Record record;
     std::vector<FrameCost> frames;
     std::vector<double> stage[kMarginStages];
-    // What the clock on the wall said of the same work, done one after the other [ms].
+    // Wall time of the same work, which is done one frame after the other [ms].
     double simulate_wall_ms = 0.0;
     std::vector<double> frame_walls;  ///< of drawing to writing, for every frame but the first
     double total(std::size_t frame) const;
 };
 MarginRun one_run(const Plan& plan, const MarginArgs& args, double fps, const std::string& title);
 
-/// How far the parts explain the wall time: sums over the frames but the first, whose start nobody sees.
+/// Compares the sum of the parts with the wall time, over all frames except the first, whose start is not known.
 struct Accounting {
     double wall_ms = 0.0, parts_ms = 0.0;
     double share() const { return wall_ms > 0.0 ? parts_ms / wall_ms : 1.0; }
@@ -59,9 +71,9 @@ struct Range {
     double low = 0.0, high = 0.0;
 };
 
-/// What measuring itself costs, from runs with and without it, side by side.
+/// What the measurement itself costs: runs with and without it, in alternation.
 struct TimingCost {
-    double clock_ns = 0.0;                     ///< one look at the clock
+    double clock_ns = 0.0;                     ///< of reading the clock once
     double plain_ms = 0.0, profiled_ms = 0.0;  ///< the whole simulation, minima
     double share() const { return profiled_ms / plain_ms - 1.0; }
 };
@@ -70,12 +82,12 @@ TimingCost cost_of_timing(const Plan& plan);
 /// All runs together: every frame with its median over them.
 struct Margin {
     double fps = 60.0, budget_ms = 0.0;
-    render::FrameSize size{};
+    FrameSize size{};
     bool rendered = true;
     std::vector<double> stage[kMarginStages];
     std::vector<double> total;
     long missed = 0;
-    long missed_shown = 0;  ///< with simulate, draw and readback alone: no picture kept
+    long missed_shown = 0;  ///< if only simulate, draw and readback counted, and no file were written
     std::size_t worst = 0;
     Range p50_runs, p99_runs, missed_runs;  ///< over the runs
     double frame_spread = 0.0;              ///< median over the frames of (max - min) / median over the runs
@@ -84,14 +96,14 @@ struct Margin {
     TimingCost timing;
 
     bool has(std::size_t s) const { return rendered || s <= kCluster; }
-    /// What is left of the budget [%]; negative where the frame was missed.
+    /// The part of the budget that is left [%]; negative for a frame that was missed.
     double slack(std::size_t frame) const { return 100.0 * (1.0 - total[frame] / budget_ms); }
 };
 Margin combine(const std::vector<MarginRun>& runs, double fps, bool rendered);
 
 std::string margin_json(const Margin& margin, const MarginRun& last);
 std::string margin_text(const Margin& margin, const MarginRun& last, const std::string& scene);
-void write_margin_csv(const Margin& margin, const MarginRun& last, const std::string& path);
+std::string margin_csv(const Margin& margin, const MarginRun& last);
 void plot_margin(const Margin& margin, const MarginRun& last, const std::string& scene,
                  const std::string& path);
 

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "base/output_file.h"
 #include "bench/clock.h"
 #include "console.h"
 #include "margin/margin.h"
 #include "report/plot.h"
+#include "report/table.h"
 
 namespace carom::tools {
 namespace {
@@ -29,7 +29,7 @@ Json event_json(const Record& record, std::size_t i) {
     const EventCost& cost = record.costs.at(i);
     return {{"time", event.time},
             {"type", name(event.type)},
-            {"a", record.tracks.at(static_cast<std::size_t>(event.a)).id},
+            {"a", record.tracks.at(event.a).id},
             {"b", record.partner_id(event)},
             {"detect_ns", cost.detect_ns},
             {"resolve_ns", cost.resolve_ns},
@@ -52,7 +52,7 @@ std::vector<double> slacks(const Margin& margin) {
 std::string margin_json(const Margin& margin, const MarginRun& last) {
     Json stages = Json::object();
     for (std::size_t s = 0; s < kMarginStages; ++s) {
-        // Not measured is not 0.
+        // A stage that was not measured is null and not 0.
         stages[name(static_cast<MarginStage>(s))] =
             margin.has(s) ? spread_json(margin.stage[s]) : Json(nullptr);
     }
@@ -97,17 +97,19 @@ std::string margin_text(const Margin& margin, const MarginRun& last, const std::
                    margin.rendered ? fmt::format(", {}x{}", margin.size.width, margin.size.height)
                                    : std::string(", simulation only"),
                    margin.missed);
-    fmt::format_to(line, "  {:<12}{:>10}{:>10}{:>10}{:>10}   ms per frame\n", "", "p50", "p95", "p99", "max");
-    const auto row = [&line](const std::string& title, const std::vector<double>& values) {
+    Table stages(Column("", "", "<14"), Column("", "p50", ">10.4f"), Column("", "p95", ">10.4f"),
+                 Column("", "p99", ">10.4f"), Column("", "max", ">10.4f"),
+                 Column("", "   ms per frame", "<"));
+    const auto add = [&stages](const std::string& title, const std::vector<double>& values) {
         const Spread v = spread(values);
-        fmt::format_to(line, "  {:<12}{:>10.4f}{:>10.4f}{:>10.4f}{:>10.4f}\n", title, v.p50, v.p95, v.p99,
-                       v.max);
+        stages.add({"  " + title, v.p50, v.p95, v.p99, v.max});
     };
     for (std::size_t s = 0; s < kMarginStages; ++s) {
         const std::string title = name(static_cast<MarginStage>(s));
-        if (margin.has(s)) row(is_part_of_simulate(s) ? "  " + title : title, margin.stage[s]);
+        if (margin.has(s)) add(is_part_of_simulate(s) ? "  " + title : title, margin.stage[s]);
     }
-    row("all", margin.total);
+    add("all", margin.total);
+    fmt::format_to(line, "{}", table_text(stages));
     const double p99 = spread(margin.total).p99;
     const std::vector<double> slack = slacks(margin);
     fmt::format_to(line,
@@ -139,26 +141,27 @@ std::string margin_text(const Margin& margin, const MarginRun& last, const std::
     for (const std::size_t i : events) {
         const Event& event = last.record.events[i];
         fmt::format_to(line, "  {:.6f} s  {:<21} {} {}\n", event.time, name(event.type),
-                       last.record.tracks.at(static_cast<std::size_t>(event.a)).id,
-                       last.record.partner_id(event));
+                       last.record.tracks.at(event.a).id, last.record.partner_id(event));
     }
     return fmt::to_string(out);
 }
 
-void write_margin_csv(const Margin& margin, const MarginRun& last, const std::string& path) {
-    OutputFile file(path);
-    std::string head = "frame,time,events";
+std::string margin_csv(const Margin& margin, const MarginRun& last) {
+    Table table(Column("frame"), Column("time"), Column("events"));
     for (std::size_t s = 0; s < kMarginStages; ++s)
-        if (margin.has(s)) head += fmt::format(",{}_ms", name(static_cast<MarginStage>(s)));
-    file.write(head + ",total_ms,slack_percent,missed\n");
+        if (margin.has(s))
+            table.columns.emplace_back(fmt::format("{}_ms", name(static_cast<MarginStage>(s))));
+    for (const char* key : {"total_ms", "slack_percent", "missed"}) table.columns.emplace_back(key);
     for (std::size_t k = 0; k < margin.total.size(); ++k) {
-        std::string row = fmt::format("{},{},{}", k, time_of(margin, k), last.frames[k].events.size());
+        std::vector<Cell> cells = {k, time_of(margin, k), last.frames[k].events.size()};
         for (std::size_t s = 0; s < kMarginStages; ++s)
-            if (margin.has(s)) row += fmt::format(",{}", margin.stage[s][k]);
-        file.write(fmt::format("{},{},{},{}\n", row, margin.total[k], margin.slack(k),
-                               margin.total[k] > margin.budget_ms ? 1 : 0));
+            if (margin.has(s)) cells.emplace_back(margin.stage[s][k]);
+        for (const Cell& cell :
+             {Cell(margin.total[k]), Cell(margin.slack(k)), Cell(margin.total[k] > margin.budget_ms)})
+            cells.push_back(cell);
+        table.add(std::move(cells));
     }
-    file.commit();
+    return table_csv(table);
 }
 
 void plot_margin(const Margin& margin, const MarginRun& last, const std::string& scene,

@@ -10,20 +10,20 @@
 #include <vector>
 
 #include "accuracy/scene.h"
-#include "base/output_file.h"
 #include "bench/clock.h"
 #include "carom/engine/simulate.h"
 #include "console.h"
 #include "margin/margin.h"
 #include "report/plot.h"
+#include "report/table.h"
 #include "setup.h"
 
 namespace carom::tools {
 namespace {
 
 constexpr double kRates[] = {30.0, 60.0, 120.0, 240.0, 480.0, 1000.0};
-/// Frames are drawn once, at this rate; other rates take the cost of the frame nearest in time, which shows
-/// nearly the same picture.
+/// Frames are drawn once, at this rate. At other rates a frame is given the cost of the drawn frame that is nearest in time,
+/// because it shows nearly the same picture.
 constexpr double kDrawnRate = 60.0;
 
 struct Setting {
@@ -31,7 +31,8 @@ struct Setting {
     Plan plan;
 };
 
-struct Cell {
+/// What a setting costs at one frame rate.
+struct RateCost {
     double fps = 0.0;
     long frames = 0, missed = 0;
     double worst_ms = 0.0, p99_ms = 0.0, worst_simulate_ms = 0.0;
@@ -39,7 +40,7 @@ struct Cell {
 
 struct SettingRow {
     std::string method, text;
-    std::vector<Cell> cells;
+    std::vector<RateCost> costs;
     std::optional<double> frontier;  ///< highest rate up to which no frame was missed
 };
 
@@ -86,22 +87,22 @@ std::vector<double> drawn_costs(const Plan& plan, const MarginArgs& args) {
     return costs;
 }
 
-Cell cell_of(const std::vector<Record>& runs, const std::vector<double>& drawn, double fps) {
-    Cell cell;
-    cell.fps = fps;
+RateCost cost_at(const std::vector<Record>& runs, const std::vector<double>& drawn, double fps) {
+    RateCost cost;
+    cost.fps = fps;
     std::vector<double> total = simulate_costs(runs, fps);
-    cell.frames = static_cast<long>(total.size());
-    cell.worst_simulate_ms = *std::max_element(total.begin(), total.end());
+    cost.frames = static_cast<long>(total.size());
+    cost.worst_simulate_ms = *std::max_element(total.begin(), total.end());
     for (std::size_t k = 0; k < total.size() && !drawn.empty(); ++k) {
         const double time = render::frame_time(0.0, static_cast<long>(k), fps);
         const auto nearest = static_cast<std::size_t>(std::lround(time * kDrawnRate));
         total[k] += drawn[std::min(nearest, drawn.size() - 1)];
     }
-    cell.missed = std::count_if(total.begin(), total.end(), [fps](double ms) { return ms > 1000.0 / fps; });
+    cost.missed = std::count_if(total.begin(), total.end(), [fps](double ms) { return ms > 1000.0 / fps; });
     const Spread s = spread(total);
-    cell.p99_ms = s.p99;
-    cell.worst_ms = s.max;
-    return cell;
+    cost.p99_ms = s.p99;
+    cost.worst_ms = s.max;
+    return cost;
 }
 
 std::vector<SettingRow> sweep(const Plan& plan, const MarginArgs& args) {
@@ -119,8 +120,8 @@ std::vector<SettingRow> sweep(const Plan& plan, const MarginArgs& args) {
         SettingRow row{setting.method, setting.text, {}, {}};
         bool so_far = true;
         for (const double fps : kRates) {
-            row.cells.push_back(cell_of(runs, drawn, fps));
-            so_far = so_far && row.cells.back().missed == 0;
+            row.costs.push_back(cost_at(runs, drawn, fps));
+            so_far = so_far && row.costs.back().missed == 0;
             if (so_far) row.frontier = fps;
         }
         rows.push_back(row);
@@ -129,54 +130,55 @@ std::vector<SettingRow> sweep(const Plan& plan, const MarginArgs& args) {
     return rows;
 }
 
-std::string sweep_json(const std::vector<SettingRow>& rows) {
-    using Json = nlohmann::ordered_json;
-    Json list = Json::array(), frontier = Json::array();
-    for (const SettingRow& row : rows) {
-        for (const Cell& cell : row.cells)
-            list.push_back({{"method", row.method},
-                            {"setting", row.text},
-                            {"fps", cell.fps},
-                            {"budget_ms", 1000.0 / cell.fps},
-                            {"frames", cell.frames},
-                            {"missed", cell.missed},
-                            {"p99_ms", cell.p99_ms},
-                            {"worst_ms", cell.worst_ms},
-                            {"worst_simulate_ms", cell.worst_simulate_ms}});
-        frontier.push_back({{"method", row.method},
-                            {"setting", row.text},
-                            {"fps", row.frontier ? Json(*row.frontier) : Json(nullptr)}});
-    }
-    return Json{{"rows", list}, {"frontier", frontier}}.dump() + "\n";
+/// A row for each setting and frame rate.
+Table table_of(const std::vector<SettingRow>& rows) {
+    Table table(Column("method"), Column("setting"), Column("fps"), Column("budget_ms", "", "", false),
+                Column("frames"), Column("missed"), Column("p99_ms"), Column("worst_ms"),
+                Column("worst_simulate_ms"));
+    for (const SettingRow& row : rows)
+        for (const RateCost& c : row.costs)
+            table.add({row.method, row.text, c.fps, 1000.0 / c.fps, c.frames, c.missed, c.p99_ms, c.worst_ms,
+                       c.worst_simulate_ms});
+    return table;
 }
 
-std::string sweep_csv(const std::vector<SettingRow>& rows) {
-    std::string text = "method,setting,fps,frames,missed,p99_ms,worst_ms,worst_simulate_ms\n";
+/// A row for each setting: the fastest rate up to which no frame was missed.
+Table frontier_of(const std::vector<SettingRow>& rows) {
+    Table table(Column("method"), Column("setting"), Column("fps"));
     for (const SettingRow& row : rows)
-        for (const Cell& c : row.cells)
-            text += fmt::format("{},{},{},{},{},{},{},{}\n", row.method, row.text, c.fps, c.frames, c.missed,
-                                c.p99_ms, c.worst_ms, c.worst_simulate_ms);
-    return text;
+        table.add({row.method, row.text, row.frontier ? Cell(*row.frontier) : Cell()});
+    return table;
+}
+
+/// A row for each setting, with a column for each frame rate.
+Table missed_by_setting(const std::vector<SettingRow>& rows) {
+    Table table(Column("", "", "<22"));
+    for (const double fps : kRates) table.columns.emplace_back("", fmt::format("{} fps", fps), ">15");
+    for (const SettingRow& row : rows) {
+        table.add({row.method + " " + row.text});
+        for (const RateCost& c : row.costs)
+            table.rows.back().cells.emplace_back(
+                fmt::format("{} ({:.0f} %)", c.missed, c.worst_ms * c.fps / 10.0));
+    }
+    return table;
+}
+
+std::string sweep_json(const std::vector<SettingRow>& rows) {
+    const nlohmann::ordered_json all = {{"rows", table_json(table_of(rows))},
+                                        {"frontier", table_json(frontier_of(rows))}};
+    return all.dump() + "\n";
 }
 
 std::string sweep_text(const std::vector<SettingRow>& rows, const MarginArgs& args) {
-    fmt::memory_buffer out;
-    const auto line = std::back_inserter(out);
-    fmt::format_to(line, "{}: frames missed (worst frame, % of its time); {}\n\n{:<22}", args.scene,
-                   args.no_render ? "simulation only" : "simulated, drawn, encoded and written on one thread",
-                   "");
-    for (const double fps : kRates) fmt::format_to(line, "{:>15}", fmt::format("{} fps", fps));
-    for (const SettingRow& row : rows) {
-        fmt::format_to(line, "\n{:<22}", row.method + " " + row.text);
-        for (const Cell& c : row.cells)
-            fmt::format_to(line, "{:>15}", fmt::format("{} ({:.0f} %)", c.missed, c.worst_ms * c.fps / 10.0));
-    }
-    fmt::format_to(line, "\n\n");
+    std::string text = fmt::format(
+        "{}: frames missed (worst frame, % of its time); {}\n\n{}\n", args.scene,
+        args.no_render ? "simulation only" : "simulated, drawn, encoded and written on one thread",
+        table_text(missed_by_setting(rows)));
     for (const SettingRow& row : rows)
-        fmt::format_to(line, "{} {}: {}\n", row.method, row.text,
-                       row.frontier ? fmt::format("real time up to {} fps", *row.frontier)
-                                    : fmt::format("not real time at {} fps", kRates[0]));
-    return fmt::to_string(out);
+        text += fmt::format("{} {}: {}\n", row.method, row.text,
+                            row.frontier ? fmt::format("real time up to {} fps", *row.frontier)
+                                         : fmt::format("not real time at {} fps", kRates[0]));
+    return text;
 }
 
 void plot_sweep(const std::vector<SettingRow>& rows, const MarginArgs& args) {
@@ -192,7 +194,7 @@ void plot_sweep(const std::vector<SettingRow>& rows, const MarginArgs& args) {
     int number = 0;
     for (const SettingRow& row : rows) {
         Series series{row.method + " " + row.text, {}, true, true, row.method == "march", number++ % 6};
-        for (const Cell& c : row.cells) series.points.emplace_back(c.fps, c.worst_ms);
+        for (const RateCost& c : row.costs) series.points.emplace_back(c.fps, c.worst_ms);
         plot.series.push_back(series);
     }
     write_plot(plot, args.plot);
@@ -202,11 +204,7 @@ void plot_sweep(const std::vector<SettingRow>& rows, const MarginArgs& args) {
 
 int run_margin_sweep(const Plan& plan, const MarginArgs& args) {
     const std::vector<SettingRow> rows = sweep(plan, args);
-    if (!args.csv.empty()) {
-        OutputFile file(args.csv);
-        file.write(sweep_csv(rows));
-        file.commit();
-    }
+    write_report(args.csv, table_csv(table_of(rows)));
     if (!args.plot.empty()) plot_sweep(rows, args);
     print(args.json ? sweep_json(rows) : sweep_text(rows, args));
     return kOk;

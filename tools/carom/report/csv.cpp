@@ -10,7 +10,7 @@
 namespace carom::tools {
 namespace {
 
-/// 1e9 rows are more than 100 GB: a slip of the keyboard.
+/// 1e9 rows are more than 100 GB, which is taken for a typing error.
 constexpr double kMostRows = 1e9;
 
 }  // namespace
@@ -20,7 +20,7 @@ void write_events_csv(const Record& record, OutputFile& file) {
     file.write(profiled ? "time,type,a,b,detect_ns,resolve_ns,kernel_ns,steps,method\n" : "time,type,a,b\n");
     for (std::size_t i = 0; i < record.events.size(); ++i) {
         const Event& event = record.events[i];
-        const std::string& ball = record.tracks.at(static_cast<std::size_t>(event.a)).id;
+        const std::string& ball = record.tracks.at(event.a).id;
         std::string row =
             fmt::format("{},{},{},{}", event.time, name(event.type), ball, record.partner_id(event));
         if (profiled) {

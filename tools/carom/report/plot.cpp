@@ -7,8 +7,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "base/output_file.h"
 #include "console.h"
+#include "report/table.h"
 
 namespace carom::tools {
 namespace {
@@ -23,22 +23,8 @@ constexpr double kLineHeight = 18;
 std::string escaped(const std::string& text) {
     std::string out;
     for (const char c : text) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += c;
-        }
+        const char* name = c == '&' ? "amp" : c == '<' ? "lt" : c == '>' ? "gt" : c == '"' ? "quot" : nullptr;
+        out += name != nullptr ? fmt::format("&{};", name) : std::string(1, c);
     }
     return out;
 }
@@ -231,16 +217,11 @@ std::string plot_svg(const Plot& plot) {
 }
 
 void write_plot(const Plot& plot, const std::string& path) {
-    OutputFile file(path);
-    file.write(plot_svg(plot));
-    file.commit();
+    write_report(path, plot_svg(plot));
 }
 
 void check_plot_path(const std::string& path) {
-    constexpr std::string_view kEnding = ".svg";
-    const bool named = path.size() > kEnding.size() &&
-                       path.compare(path.size() - kEnding.size(), kEnding.size(), kEnding) == 0;
-    if (!path.empty() && !named)
+    if (!path.empty() && (path.size() <= 4 || !path.ends_with(".svg")))
         throw UsageError(fmt::format("--plot {}: plots are SVG; give a name that ends in .svg", path));
 }
 

@@ -14,8 +14,8 @@ struct Axis {
     std::optional<double> low, high;  ///< default: what the points need
 };
 
-/// Points, joined by a line or not. On a logarithmic axis what is not above 0 is left out; nowhere is
-/// anything drawn that is not finite.
+/// Points, which may be joined by a line. Values that are not finite are not drawn, and values of 0 and below are not drawn on
+/// a logarithmic axis.
 struct Series {
     std::string name;  ///< in the legend; empty: not there
     std::vector<std::pair<double, double>> points;
@@ -50,7 +50,7 @@ std::string plot_svg(const Plot& plot);
 /// Written under a temporary name and renamed. @throws std::runtime_error naming the file
 void write_plot(const Plot& plot, const std::string& path);
 
-/// Whether `--plot path` can be kept, asked before any work. Empty is fine. @throws UsageError
+/// Checks the argument of --plot before any work is done; it may be empty. @throws UsageError
 void check_plot_path(const std::string& path);
 
 }  // namespace carom::tools

@@ -82,7 +82,7 @@ void PartialFile::flush() {
 
 void PartialFile::commit() {
     flush();
-    // Renamed before it is closed: the lock goes with the closing.
+    // The file is renamed before it is closed, because closing releases the lock.
     if (can_be_taken_up() && std::rename(name_.c_str(), target_.c_str()) != 0)
         fail("cannot rename to this name");
     std::FILE* file = file_;

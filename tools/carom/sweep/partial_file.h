@@ -9,14 +9,14 @@
 namespace carom::tools {
 
 /// Lines are appended to `path`.<id>.part, and commit() renames it to `path`. Whoever opens the same path and
-/// id again goes on behind its complete lines; another id is another file. A lock keeps two programs apart.
+/// id again continues after the complete lines; another id is another file. A lock keeps two programs from writing one file.
 ///
-/// What is not a regular file (/dev/null, a pipe) is written to directly and cannot be taken up.
+/// If `path` is not a regular file (/dev/null, a pipe), it is written to directly, and the work cannot be continued later.
 /// Every failure is a std::runtime_error that names the file and the reason.
 class PartialFile {
   public:
     PartialFile(const std::string& path, std::uint64_t id);
-    ~PartialFile();  ///< leaves the part where it is
+    ~PartialFile();  ///< does not remove the partial file
     PartialFile(const PartialFile&) = delete;
     PartialFile& operator=(const PartialFile&) = delete;
 

@@ -5,25 +5,16 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "carom/engine/simulate.h"
-#include "console.h"
+#include "setup.h"
 
 namespace carom::tools {
 namespace {
 
-/// Text as a field of a CSV file: on one line, in quotes where it needs them.
-std::string field(std::string text) {
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-    if (text.find_first_of(",\"") == text.npos) return text;
-    std::string out = "\"";
-    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return out + '"';
-}
-
-/// The ball that is struck, or else the first one that moves; -1 where none does.
+/// The ball that is struck, or else the first one that moves; -1 if no ball moves.
 int shooter(const Scene& scene) {
     for (std::size_t i = 0; i < scene.ball.size(); ++i) {
         const BallStart& ball = scene.ball[i];
@@ -55,45 +46,21 @@ std::string first_contact(const Record& record, int ball) {
         if (!cluster && e.type != EventType::kBallBall && e.type != EventType::kBallBallHold) continue;
         int other = e.a == ball ? e.b : e.b == ball ? e.a : -1;
         if (other < 0 && cluster) {
-            const std::vector<int>& members = record.clusters.at(static_cast<std::size_t>(e.detail));
+            const std::vector<int>& members = record.clusters.at(e.detail);
             if (std::find(members.begin(), members.end(), ball) != members.end())
                 other = nearest(record, members, ball, e.time);
         }
-        if (other >= 0) return record.tracks.at(static_cast<std::size_t>(other)).id;
+        if (other >= 0) return record.tracks.at(other).id;
     }
     return "";
 }
 
-ShotOutcome outcome_of(StopReason reason) {
-    switch (reason) {
-        case StopReason::kAtRest:
-            return ShotOutcome::kAtRest;
-        case StopReason::kTime:
-            return ShotOutcome::kTime;
-        case StopReason::kEndless:
-            return ShotOutcome::kEndless;
-        case StopReason::kEvents:
-            break;
-    }
-    return ShotOutcome::kEvents;
-}
-
-void write_results(fmt::memory_buffer& out, const Scene& scene, const Record& record) {
-    const auto at = std::back_inserter(out);
-    std::string pocketed;
-    for (const Event& e : record.events) {
-        if (e.type != EventType::kBallPocket) continue;
-        pocketed += (pocketed.empty() ? "" : ";") + record.tracks.at(static_cast<std::size_t>(e.a)).id;
-    }
-    const int ball = shooter(scene);
-    fmt::format_to(at, ",{},{},{},{}", record.duration, record.events.size(),
-                   ball < 0 ? "" : first_contact(record, ball), pocketed);
-    for (std::size_t i = 0; i < record.tracks.size(); ++i) {
-        const BallState s = record.state_at(static_cast<int>(i), record.duration);
-        fmt::format_to(at, ",{},{},{}", s.position.x(), s.position.y(),
-                       s.pocket < 0 ? "" : record.table.pockets.at(static_cast<std::size_t>(s.pocket)).id);
-    }
-    fmt::format_to(at, ",\n");
+/// The ids of the balls that were pocketed, in order.
+std::string pocketed(const Record& record) {
+    std::string ids;
+    for (const Event& e : record.events)
+        if (e.type == EventType::kBallPocket) ids += (ids.empty() ? "" : ";") + record.tracks.at(e.a).id;
+    return ids;
 }
 
 }  // namespace
@@ -104,40 +71,56 @@ const char* name(ShotOutcome outcome) {
     return kNames[static_cast<int>(outcome)];
 }
 
-std::string sweep_header(const Variation& variation) {
-    std::string header = "shot";
-    for (const std::string& key : variation.keys()) header += ',' + field(key);
-    header += ",outcome,duration,events,first_contact,pocketed";
-    for (const BallStart& ball : variation.base().ball)
-        header += fmt::format(",{0}.x,{0}.y,{0}.pocket", ball.id);
-    return header + ",message\n";
+std::vector<SweepColumn> sweep_columns(const Variation& variation) {
+    std::vector<SweepColumn> columns;
+    const auto add = [&columns](std::string key, std::function<Cell(const SweptShot&)> value) {
+        columns.push_back({std::move(key), std::move(value)});
+    };
+    const auto add_result = [&add](std::string key, auto value) {
+        add(std::move(key), [value](const SweptShot& s) { return s.record ? Cell(value(s)) : Cell(); });
+    };
+    add("shot", [](const SweptShot& s) { return Cell(s.index); });
+    for (std::size_t i = 0; i < variation.keys().size(); ++i)
+        add(variation.keys()[i], [i](const SweptShot& s) { return Cell(s.varied.values.at(i)); });
+    add("outcome", [](const SweptShot& s) { return Cell(name(s.outcome)); });
+    add_result("duration", [](const SweptShot& s) { return s.record->duration; });
+    add_result("events", [](const SweptShot& s) { return s.record->events.size(); });
+    add_result("first_contact", [](const SweptShot& s) {
+        const int ball = shooter(*s.varied.scene);
+        return ball < 0 ? "" : first_contact(*s.record, ball);
+    });
+    add_result("pocketed", [](const SweptShot& s) { return pocketed(*s.record); });
+    const std::vector<BallStart>& balls = variation.base().ball;
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+        add_result(balls[i].id + ".x", [i](const SweptShot& s) { return s.end.at(i).position.x(); });
+        add_result(balls[i].id + ".y", [i](const SweptShot& s) { return s.end.at(i).position.y(); });
+        add_result(balls[i].id + ".pocket", [i](const SweptShot& s) {
+            const int pocket = s.end.at(i).pocket;
+            return pocket < 0 ? "" : s.record->table.pockets.at(pocket).id;
+        });
+    }
+    add("message", [](const SweptShot& s) { return Cell(s.message); });
+    return columns;
 }
 
-SweepRow sweep_row(const Variation& variation, std::uint64_t index, kernel::Isa isa) {
-    const VariedShot shot = variation.shot(index);
-    std::string start = fmt::format("{}", index);
-    for (const std::string& value : shot.values) start += ',' + field(value);
-    const auto without_results = [&](ShotOutcome outcome, const std::string& message) {
-        const std::size_t empty = 4 + 3 * variation.base().ball.size();
-        return SweepRow{
-            fmt::format("{},{}{},{}\n", start, name(outcome), std::string(empty, ','), field(message)),
-            outcome};
-    };
-    if (!shot.scene) return without_results(ShotOutcome::kInvalid, shot.error);
-    SimulateOptions options;
-    options.progress = [](std::size_t, double) { throw_if_interrupted(); };
+SweptShot swept_shot(const Variation& variation, std::uint64_t index, kernel::Isa isa) {
+    SweptShot shot;
+    shot.index = index;
+    shot.varied = variation.shot(index);
+    shot.message = shot.varied.error;
+    if (!shot.varied.scene) return shot;
     try {
-        const Record record = simulate(make_plan(*shot.scene, isa), options);
-        const ShotOutcome outcome = outcome_of(record.stopped);
-        fmt::memory_buffer out;
-        fmt::format_to(std::back_inserter(out), "{},{}", start, name(outcome));
-        write_results(out, *shot.scene, record);
-        return {fmt::to_string(out), outcome};
+        shot.record = simulate(make_plan(*shot.varied.scene, isa), interruptible());
+        shot.outcome = static_cast<ShotOutcome>(shot.record->stopped);
+        for (std::size_t i = 0; i < shot.record->tracks.size(); ++i)
+            shot.end.push_back(shot.record->state_at(static_cast<int>(i), shot.record->duration));
     } catch (const SceneError& error) {  // [effects] refuses what these values need
-        return without_results(ShotOutcome::kInvalid, error.message());
+        shot.message = error.message();
     } catch (const SimulationError& error) {
-        return without_results(ShotOutcome::kRunFailed, error.what());
+        shot.outcome = ShotOutcome::kRunFailed;
+        shot.message = error.what();
     }
+    return shot;
 }
 
 }  // namespace carom::tools

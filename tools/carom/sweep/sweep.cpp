@@ -1,12 +1,11 @@
-// carom sweep: many shots of one scene, a row a shot.
+// carom sweep: simulates many shots of one scene and writes one row for each shot.
 //
-// A row depends on the scene, the rules, the seed and its number alone; threads only decide when it is
-// computed. Rows are written in their order, so that what a kill leaves behind is a beginning of the whole.
+// A row depends only on the scene, the rules, the seed and its number; threads only decide when it is computed. Rows are
+// written in order: if the program is killed, the file contains the first rows of the whole table.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -20,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "commands.h"
 #include "console.h"
+#include "options.h"
 #include "setup.h"
 #include "sweep/partial_file.h"
 #include "sweep/row.h"
@@ -29,11 +28,21 @@
 namespace carom::tools {
 namespace {
 
+struct SweepArgs {
+    std::string scene;
+    std::vector<std::string> vary;  ///< "KEY=DISTRIBUTION"
+    std::uint64_t count = 0;
+    std::uint64_t seed = 1;
+    int jobs = 0;
+    std::string shard;  ///< "2/4"; empty: all
+    std::string output;
+};
+
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kMostShots = 1000000000;
 constexpr std::uint64_t kMostShards = 1000000;
-/// Rows that may wait for an earlier one that takes long; bounds the memory.
+/// Largest number of finished rows that wait for an earlier one; it limits the memory.
 constexpr std::uint64_t kMostWaiting = 4096;
 constexpr std::chrono::milliseconds kFlushEvery(200);
 
@@ -45,18 +54,38 @@ struct ShotRange {
 
 ShotRange shard_range(const std::string& text, std::uint64_t count) {
     if (text.empty()) return {0, count, true};
-    std::uint64_t i = 0, n = 0;
-    const char* const end = text.data() + text.size();
-    const auto [slash, bad_i] = std::from_chars(text.data(), end, i);
-    if (bad_i == std::errc() && slash != end && *slash == '/') {
-        const auto [rest, bad_n] = std::from_chars(slash + 1, end, n);
-        if (bad_n == std::errc() && rest == end && i >= 1 && i <= n && n <= kMostShards)
-            return {count * (i - 1) / n, count * i / n, i == 1};
+    if (const auto part = numbers_in<std::uint64_t, 2>(text, '/')) {
+        const auto [i, n] = *part;
+        if (i >= 1 && i <= n && n <= kMostShards) return {count * (i - 1) / n, count * i / n, i == 1};
     }
     throw UsageError(fmt::format("--shard {}: expected I/N with 1 <= I <= N, as in 2/4", text));
 }
 
-/// Hands out shot numbers to threads, and their rows, in order, to the one that writes.
+struct SweepRow {
+    std::string text;  ///< with its line end
+    ShotOutcome outcome;
+};
+
+/// What makes the rows; every thread reads it.
+struct Sweep {
+    const Variation& variation;
+    kernel::Isa isa;
+    std::vector<SweepColumn> columns = sweep_columns(variation);
+
+    std::string header() const {
+        std::vector<Cell> cells;
+        for (const SweepColumn& column : columns) cells.emplace_back(column.key);
+        return csv_line(cells);
+    }
+    SweepRow row(std::uint64_t index) const {
+        const SweptShot shot = swept_shot(variation, index, isa);
+        std::vector<Cell> cells;
+        for (const SweepColumn& column : columns) cells.push_back(column.value(shot));
+        return {csv_line(cells), shot.outcome};
+    }
+};
+
+/// Gives shot numbers to the threads that compute, and the rows in order to the thread that writes.
 class Queue {
   public:
     Queue(std::uint64_t first, std::uint64_t last) : next_(first), last_(last), wanted_(first) {}
@@ -109,10 +138,10 @@ class Queue {
 /// Threads that run shots; the destructor waits for the shots that have begun.
 class Workers {
   public:
-    Workers(Queue& queue, const Variation& variation, kernel::Isa isa, unsigned jobs) : queue_(queue) {
+    Workers(Queue& queue, const Sweep& sweep, unsigned jobs) : queue_(queue) {
         try {
             for (unsigned i = 0; i < jobs; ++i)
-                threads_.emplace_back([&queue, &variation, isa] { work(queue, variation, isa); });
+                threads_.emplace_back([&queue, &sweep] { work(queue, sweep); });
         } catch (const std::exception& error) {  // the system gives no more threads
             const std::size_t started = threads_.size();
             finish();
@@ -126,9 +155,9 @@ class Workers {
     Workers& operator=(const Workers&) = delete;
 
   private:
-    static void work(Queue& queue, const Variation& variation, kernel::Isa isa) noexcept {
+    static void work(Queue& queue, const Sweep& sweep) noexcept {
         try {
-            while (const auto shot = queue.claim()) queue.put(*shot, sweep_row(variation, *shot, isa));
+            while (const auto shot = queue.claim()) queue.put(*shot, sweep.row(*shot));
         } catch (...) {
             queue.stop(std::current_exception());
         }
@@ -142,16 +171,14 @@ class Workers {
     std::vector<std::thread> threads_;
 };
 
-/// Where to go on in a file that was left behind. The last line is made again, so that the rows of another
-/// build are not continued.
-std::uint64_t take_up(const PartialFile& file, const Variation& variation, const ShotRange& range,
-                      kernel::Isa isa) {
+/// The shot at which an incomplete file of an earlier run is continued. Its last row is computed again: if another build gives
+/// another row, the file is not continued.
+std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRange& range) {
     if (file.lines() == 0) return range.first;
     const std::uint64_t rows = static_cast<std::uint64_t>(file.lines()) - (range.header ? 1 : 0);
     std::string expected;
     if (rows <= range.last - range.first)
-        expected =
-            rows == 0 ? sweep_header(variation) : sweep_row(variation, range.first + rows - 1, isa).text;
+        expected = rows == 0 ? sweep.header() : sweep.row(range.first + rows - 1).text;
     if (expected != file.last_line() + '\n')
         throw std::runtime_error(fmt::format(
             "{}: its last row is not what this program computes; remove it to begin anew", file.name()));
@@ -163,13 +190,13 @@ std::uint64_t take_up(const PartialFile& file, const Variation& variation, const
 using Outcomes = std::array<std::uint64_t, kShotOutcomes>;
 
 /// Runs the shots from `from` on and writes their rows.
-Outcomes write_rows(PartialFile& file, const Variation& variation, const ShotRange& range, std::uint64_t from,
-                    kernel::Isa isa, unsigned jobs) {
+Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& range, std::uint64_t from,
+                    unsigned jobs) {
     Outcomes outcomes{};
     Queue queue(from, range.last);
     ProgressLine line("sweep");
     Clock::time_point flushed = Clock::now();
-    const Workers workers(queue, variation, isa, jobs);
+    const Workers workers(queue, sweep, jobs);
     for (std::uint64_t done = from; done < range.last;) {
         throw_if_interrupted();
         for (const SweepRow& row : queue.take()) {
@@ -207,9 +234,7 @@ Variation read_variation(const SweepArgs& args) {
     }
 }
 
-}  // namespace
-
-int run_sweep(const SweepArgs& args) {
+int run(const SweepArgs& args) {
     if (args.count < 1 || args.count > kMostShots)
         throw UsageError(fmt::format("--count: expected 1 to {} shots", kMostShots));
     const ShotRange range = shard_range(args.shard, args.count);
@@ -217,18 +242,19 @@ int run_sweep(const SweepArgs& args) {
     const Variation variation = read_variation(args);
     for (const std::string& warning : make_plan(variation.base(), isa).warnings)
         message("warning: " + warning);
-    // Another range of shots is another file.
+    // Each range of shots has a file of its own.
     const std::uint64_t id =
         variation.fingerprint() ^ (range.first * 0x9e3779b97f4a7c15u) ^ (range.last * 0xbf58476d1ce4e5b9u);
     PartialFile file(args.output, id);
-    const std::uint64_t from = take_up(file, variation, range, isa);
-    if (range.header && file.lines() == 0) file.append(sweep_header(variation));
+    const Sweep sweep{variation, isa};
+    const std::uint64_t from = take_up(file, sweep, range);
+    if (range.header && file.lines() == 0) file.append(sweep.header());
     const unsigned jobs =
         args.jobs > 0 ? static_cast<unsigned>(args.jobs) : std::max(1u, std::thread::hardware_concurrency());
     const Clock::time_point start = Clock::now();
     Outcomes outcomes{};
     try {
-        outcomes = write_rows(file, variation, range, from, isa, jobs);
+        outcomes = write_rows(file, sweep, range, from, jobs);
     } catch (const Interrupted&) {
         file.flush();
         if (file.can_be_taken_up())
@@ -242,6 +268,29 @@ int run_sweep(const SweepArgs& args) {
     message(fmt::format("{} failed while running; {} why", counted(failed, "shot"),
                         failed == 1 ? "its row says" : "their rows say"));
     return kFailed;
+}
+
+}  // namespace
+
+void add_sweep(Options& program) {
+    auto [command, args] = program.command<SweepArgs>(
+        "sweep", "Many shots of one scene with values that vary: a row a shot", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
+    Option& vary = command.option(
+        "--vary", &args.vary, "KEY=DISTRIBUTION",
+        "What varies and how, once per key: uniform(a,b), normal(sd) around the scene's value, "
+        "normal(mean,sd), integer(a,b) or list(v,...)");
+    vary.required = true;
+    command.option("--count", &args.count, "N", "Number of shots").required = true;
+    command.option("--seed", &args.seed, "S", "Seed of all draws");
+    command.option("--jobs", &args.jobs, "J", "Threads; 0: one per core; the rows do not depend on it")
+        .in(0, 256);
+    command.option("--shard", &args.shard, "I/N",
+                   "Only the I-th of N parts; the files of all parts, one behind the other, are the whole "
+                   "(default: all)");
+    command.option("-o,--output", &args.output, "FILE.csv", "Table to write").required = true;
+    command.footer =
+        "A sweep that was stopped or killed goes on when the same command is given again (docs/sweep.md).";
 }
 
 }  // namespace carom::tools

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "carom/engine/frame_size.h"
 #include "carom/engine/table.h"
 
 namespace carom {
@@ -129,9 +130,10 @@ struct Stop {
 
 struct RenderSettings {
     double fps = 60.0;
-    int width = 1280, height = 720;
+    int width = FrameSize().width, height = FrameSize().height;
     std::string camera = "top";  ///< top, rail, player or follow; not used where eye and target are set
     std::optional<Vec3> eye = std::nullopt, target = std::nullopt;  ///< [m]; both or neither
+    FrameSize size() const { return {width, height}; }
     bool operator==(const RenderSettings&) const = default;
 };
 

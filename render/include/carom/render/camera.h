@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "carom/engine/vec.h"
-#include "carom/render/frame_size.h"
+#include "carom/engine/frame_size.h"
 
 namespace carom::render {
 

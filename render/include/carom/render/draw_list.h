@@ -89,9 +89,9 @@ struct StageOptions {
     int table_samples = 16;
 };
 
-/// What one frame cost, for the margin bar.
-struct FrameCost {
-    double ms = 0.0, budget_ms = 0.0;
+/// What one frame cost of the time that it may take, for the margin bar.
+struct FrameBudget {
+    double cost_ms = 0.0, budget_ms = 0.0;
 };
 
 /// Turns a record into draw lists: what does not change with time is made once.
@@ -100,7 +100,7 @@ class Stage {
     /// `record` must outlive the stage. @throws RenderError for an unknown camera
     Stage(const Record& record, const StageOptions& options);
 
-    DrawList at(double t, std::optional<FrameCost> cost = std::nullopt) const;
+    DrawList at(double t, std::optional<FrameBudget> cost = std::nullopt) const;
     const std::shared_ptr<const TableMesh>& table() const { return table_; }
 
   private:

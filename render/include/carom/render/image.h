@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "carom/render/frame_size.h"
+#include "carom/engine/frame_size.h"
 
 namespace carom::render {
 

@@ -11,7 +11,7 @@
 #include "carom/render/backend.h"
 #include "carom/render/camera_path.h"
 #include "carom/render/error.h"
-#include "carom/render/frame_size.h"
+#include "carom/engine/frame_size.h"
 #include "carom/render/overlay.h"
 
 namespace carom::render {

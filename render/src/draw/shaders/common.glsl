@@ -1,14 +1,17 @@
 // Camera and lamp; put before every other source. All positions are relative to the origin of the table mesh: floats then
 // keep a tenth of a micrometre on any table.
-uniform mat4 u_view_projection;
-uniform vec3 u_eye;
-uniform vec3 u_forward;
-uniform vec3 u_right_scaled;    // times the tangent of half the horizontal angle
-uniform vec3 u_up_scaled;       // times the tangent of half the vertical angle
-uniform vec2 u_size;            // pixels
-uniform vec3 u_lamp;            // centre of a level rectangle
-uniform vec2 u_lamp_half;
-uniform float u_lamp_endless;   // 1: light does not fall off
+layout(std140) uniform View {   // as struct View in view.h
+    mat4 u_view_projection;
+    vec3 u_eye;
+    float u_lamp_endless;       // 1: light does not fall off
+    vec3 u_forward;
+    vec3 u_right_scaled;        // times the tangent of half the horizontal angle
+    vec3 u_up_scaled;           // times the tangent of half the vertical angle
+    vec3 u_lamp;                // centre of a level rectangle
+    vec2 u_size;                // pixels
+    vec2 u_lamp_half;
+    vec2 u_planes;              // near and far
+};
 
 // Radiance to what a screen expects and back, by gamma 2: a root is a fraction of the cost of the exact curve, and no
 // colour shows the difference as both ways agree. A soft shoulder above one half keeps highlights from clipping hard.

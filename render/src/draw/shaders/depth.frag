@@ -1,5 +1,4 @@
 uniform sampler2D u_depth0, u_depth1, u_depth2, u_depth3;
-uniform vec2 u_planes;   // near and far
 out vec4 color;
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);

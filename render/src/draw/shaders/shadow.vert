@@ -4,7 +4,7 @@ out vec2 v_place;                         // on the cloth, from the point of con
 flat out vec2 v_away;                     // where the middle of the lamp's shadow falls, in radii
 void main() {
     // The quad reaches as far as the shading does; a ball in a pocket gets none.
-    float reach = a_pattern.y > 0.5 ? 0.0 : 2.5;
+    float reach = a_pattern.y > 0.5 ? 0.0 : SHADOW_REACH;
     vec2 corner = octagon_corner(gl_VertexID);
     v_place = corner * reach;
     vec2 from_lamp = u_lamp_endless > 0.5 ? vec2(0.0) : a_ball.xy - u_lamp.xy;

@@ -2,7 +2,7 @@ in vec3 v_position;
 in vec3 v_normal;
 in vec2 v_uv;
 flat in int v_material;
-uniform vec4 u_holes[128];     // x, y, radius
+uniform vec4 u_holes[MAX_HOLES];   // x, y, radius
 uniform int u_hole_count;
 uniform vec2 u_clear;         // no hole reaches an x between these
 uniform vec4 u_inner;         // low x, low y, high x, high y of the box without wood

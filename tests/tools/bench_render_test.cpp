@@ -1,5 +1,5 @@
 // What carom bench render refuses.
-#include "bench/render_stages.h"
+#include "bench/render.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace carom::tools {
 namespace {
 
-TEST(RenderStages, NeedThreeFrames) {
+TEST(BenchRender, NeedThreeFrames) {
     EXPECT_THROW(bench_render(Record(), 2), render::RenderError);
 }
 

@@ -15,7 +15,7 @@ struct RenderBenchRow {
     /// Medians over the frames after the first, one frame at a time: CPU time of the whole process, so that
     /// the driver's threads count too, except write_ms, which is wall time.
     double draw_ms = 0.0, readback_ms = 0.0, encode_ms = 0.0, write_ms = 0.0;
-    /// Draw + read back of the frame that 19 of 20 are cheaper than: most balls moving
+    /// 95th percentile of draw + read back: a frame in which most balls move
     double slow_ms = 0.0;
     double setup_ms = 0.0;  ///< wall time before the first frame: shaders, and the table once
     double fps = 0.0;       ///< frames a second from the first to the last, in files, with a thread per core

@@ -1,0 +1,102 @@
+#include "report/table.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/output_file.h"
+
+namespace carom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The value as text; "" if there is none.
+std::string plain(const Cell& cell) {
+    if (const auto* words = std::get_if<std::string>(&cell.value)) return *words;
+    if (const auto* count = std::get_if<long>(&cell.value)) return fmt::format("{}", *count);
+    if (const auto* x = std::get_if<double>(&cell.value)) return fmt::format("{}", *x);
+    if (const auto* truth = std::get_if<bool>(&cell.value)) return *truth ? "1" : "0";
+    return "";
+}
+
+std::string in_quotes(std::string text) {
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+    if (text.find_first_of(",\"") == text.npos) return text;
+    std::string out = "\"";
+    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return out + '"';
+}
+
+std::string aligned(const Cell& cell, const std::string& format) {
+    const auto* number = std::get_if<double>(&cell.value);
+    if (number != nullptr && cell.text.empty())
+        return fmt::format(fmt::runtime(fmt::format("{{:{}}}", format)), *number);
+    const bool nothing = std::holds_alternative<std::monostate>(cell.value);
+    const std::string text = !cell.text.empty() ? cell.text : nothing ? "-" : plain(cell);
+    return fmt::format(fmt::runtime(fmt::format("{{:{}}}", format.substr(0, format.find('.')))), text);
+}
+
+}  // namespace
+
+std::string table_text(const Table& table) {
+    std::string out;
+    for (const Column& column : table.columns)
+        if (!column.format.empty()) out += aligned(column.title, column.format);
+    out += '\n';
+    for (const Table::Row& row : table.rows) {
+        for (std::size_t i = 0; i < row.cells.size(); ++i)
+            if (!table.columns[i].format.empty()) out += aligned(row.cells[i], table.columns[i].format);
+        out += row.note + '\n';
+    }
+    return out;
+}
+
+std::string csv_line(const std::vector<Cell>& cells) {
+    std::string line;
+    for (const Cell& cell : cells) line += in_quotes(plain(cell)) + ',';
+    line.back() = '\n';
+    return line;
+}
+
+std::string table_csv(const Table& table) {
+    const auto line = [&table](auto&& cell_of) {
+        std::vector<Cell> cells;
+        for (std::size_t i = 0; i < table.columns.size(); ++i)
+            if (table.columns[i].in_csv && !table.columns[i].key.empty()) cells.push_back(cell_of(i));
+        return csv_line(cells);
+    };
+    std::string out = line([&table](std::size_t i) { return table.columns[i].key; });
+    for (const Table::Row& row : table.rows)
+        if (row.cells.size() == table.columns.size())
+            out += line([&row](std::size_t i) { return row.cells[i]; });
+    return out;
+}
+
+nlohmann::ordered_json table_json(const Table& table) {
+    const auto json = [](const auto& value) {
+        if constexpr (std::is_same_v<decltype(value), const std::monostate&>)
+            return Json(nullptr);
+        else
+            return Json(value);
+    };
+    Json list = Json::array();
+    for (const Table::Row& row : table.rows) {
+        Json object = Json::object();
+        for (std::size_t i = 0; i < row.cells.size(); ++i)
+            if (!table.columns[i].key.empty())
+                object[table.columns[i].key] = std::visit(json, row.cells[i].value);
+        list.push_back(object);
+    }
+    return list;
+}
+
+void write_report(const std::string& path, const std::string& text) {
+    if (path.empty()) return;
+    OutputFile file(path);
+    file.write(text);
+    file.commit();
+}
+
+}  // namespace carom::tools

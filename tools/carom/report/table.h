@@ -1,0 +1,77 @@
+// A table of results: one list of columns, written as aligned text, as CSV or as JSON.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace carom::tools {
+
+/// One value: nothing, a truth value, a count, a number or words. The text shows `text` in its place, unless that is empty.
+struct Cell {
+    Cell() = default;
+    template <class T>
+    Cell(const T& of, std::string shown = "")
+        : text(std::move(shown)) {  // NOLINT(google-explicit-constructor)
+        if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>)
+            value = static_cast<long>(of);
+        else if constexpr (std::is_arithmetic_v<T>)
+            value = of;
+        else
+            value = std::string(of);
+    }
+
+    std::variant<std::monostate, bool, long, double, std::string> value;
+    std::string text;
+};
+
+/// `key` is the name in CSV and JSON, `title` the heading in the text. `format` is the format in the text as fmt writes it:
+/// alignment, width and the form of numbers, ">8.2f". A column without a key is in the text only, one without a format is not
+/// in the text.
+struct Column {
+    explicit Column(std::string of_key, std::string of_title = "", std::string of_format = "",
+                    bool is_in_csv = true)
+        : key(std::move(of_key)),
+          title(std::move(of_title)),
+          format(std::move(of_format)),
+          in_csv(is_in_csv) {}
+    std::string key, title, format;
+    bool in_csv;
+};
+
+/// A row may have fewer values than columns, as when a measurement failed: then text and JSON contain these values, and CSV does
+/// not contain the row.
+struct Table {
+    template <class... Columns>
+    explicit Table(Columns... list) : columns{std::move(list)...} {}
+
+    struct Row {
+        std::vector<Cell> cells;
+        std::string note;  ///< stands after the row in the text
+    };
+    void add(std::vector<Cell> cells, std::string note = "") {
+        rows.push_back({std::move(cells), std::move(note)});
+    }
+
+    std::vector<Column> columns;
+    std::vector<Row> rows;
+};
+
+/// Titles and rows, each with a line end. What has no value is "-".
+std::string table_text(const Table& table);
+
+/// Keys and rows, each with a line end. Numbers read back to the same bits; a truth value is 1 or 0; words are in quotes where
+/// CSV needs it, and control characters in them become blanks.
+std::string table_csv(const Table& table);
+std::string csv_line(const std::vector<Cell>& cells);
+
+/// A list of objects. What has no value, or is no finite number, is null.
+nlohmann::ordered_json table_json(const Table& table);
+
+/// Writes text to a file, unless its name is empty. @throws std::runtime_error
+void write_report(const std::string& path, const std::string& text);
+
+}  // namespace carom::tools
