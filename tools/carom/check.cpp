@@ -5,6 +5,8 @@
 #include <limits>
 #include <string>
 
+#include "carom/engine/ball_ball.h"
+
 #include "commands.h"
 #include "console.h"
 #include "setup.h"
@@ -21,18 +23,12 @@ std::string ids(const List& list) {
 
 std::string kernel_line(const Plan& plan) {
     const Physics& physics = plan.scene.physics;
-    switch (physics.ball_ball) {
-        case BallBallModel::kMathavan:
-            if (physics.substeps)
-                return fmt::format("published march, {} substeps, cloth slip {}", *physics.substeps,
-                                   name(physics.cloth_slip));
-            return fmt::format("by tolerance {}: closed forms, else collocation; cloth slip {}",
-                               physics.tolerance, name(physics.cloth_slip));
-        case BallBallModel::kInelastic:
-        case BallBallModel::kElastic:
-            return "closed form";
-    }
-    return "";
+    if (!physics.ball_ball->reads_tolerance) return "closed form";
+    if (physics.substeps)
+        return fmt::format("published march, {} substeps, cloth slip {}", *physics.substeps,
+                           name(physics.cloth_slip));
+    return fmt::format("by tolerance {}: closed forms, else collocation; cloth slip {}", physics.tolerance,
+                       name(physics.cloth_slip));
 }
 
 std::string stop_line(const Stop& stop) {

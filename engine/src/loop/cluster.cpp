@@ -153,7 +153,7 @@ bool Shot::resolve_cluster(const Candidate& c, double v_n) {
         steps = cluster_map_.rigid(cluster_balls_, cluster_contacts_, p.e_b);
     } else {
         const bool frictionless = !plan_.ball_ball->reads_friction;
-        const double mu_b = frictionless || !plan_.friction ? 0.0 : pair_friction(c.a, c.b);
+        const double mu_b = frictionless || !plan_.in_force(Effect::kThrow) ? 0.0 : pair_friction(c.a, c.b);
         const ClusterSettings settings{
             .R = radius(c.a),
             .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,

@@ -80,14 +80,14 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     const kernel::Ball b2{{r2.x(), r2.y(), r2.z()}, {v2.x(), v2.y(), v2.z()}, {w2.x(), w2.y(), w2.z()}};
     const BallParams& p = plan_.balls;
     const Physics& physics = plan_.scene.physics;
-    const double mu_s = plan_.cloth_in_impact ? p.mu_s : 0.0;
+    const double mu_s = plan_.in_force(Effect::kClothInImpact) ? p.mu_s : 0.0;
     const BallSize &size1 = plan_.sizes[one], &size2 = plan_.sizes[two];
     const BallBallModelInfo& model = *plan_.ball_ball;
     const kernel::ImpactParams params{.R = size1.R,
                                       .m = size1.m,
                                       .mu_s1 = mu_s,
                                       .mu_s2 = mu_s,
-                                      .mu_b = plan_.friction ? pair_friction(one, two) : 0.0,
+                                      .mu_b = plan_.in_force(Effect::kThrow) ? pair_friction(one, two) : 0.0,
                                       .e_b = model.reads_restitution ? p.e_b : 1.0,
                                       .cloth_slip = physics.cloth_slip == ClothSlipSign::kAsPublished
                                                         ? kernel::ClothSlip::kAsPublished
@@ -102,8 +102,8 @@ void Shot::resolve_ball_ball(const Candidate& c) {
     if constexpr (kProfile) {
         cost_.kernel_ns = nanoseconds(start, Clock::now());
         cost_.steps = result.steps;
-        const bool mathavan = equal && model.model == BallBallModel::kMathavan;
-        cost_.method = !mathavan                       ? model.name
+        const bool integrated = equal && model.reads_tolerance;
+        cost_.method = !integrated                     ? model.name
                        : plan_.impact.march != nullptr ? "march"
                                                        : kernel::name(result.method);
     }

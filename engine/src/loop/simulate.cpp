@@ -35,7 +35,7 @@ void Shot::set_up(bool profile) {
     if (scene.cue) {
         for (int i = 0; i < balls_; ++i) {
             if (scene.ball[i].id != scene.cue->ball) continue;
-            const StruckBall struck = strike(*scene.cue, plan_.sizes[i], plan_.squirt);
+            const StruckBall struck = strike(*scene.cue, plan_.sizes[i], plan_.in_force(Effect::kSquirt));
             begin(i, start_segment(0.0, now_of(i).r, struck.v, struck.w, motion_of(i)));
             record_.events.push_back({0.0, EventType::kCueStrike, i, -1, -1});
             if (profile) record_.costs.push_back({0.0, 0.0, 0.0, 0, "point"});

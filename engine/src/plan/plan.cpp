@@ -52,9 +52,9 @@ void add_geometry(const Table& table, Plan& plan) {
 // What moves a ball of this radius, without what the effects leave out.
 MotionParams motion_of(const Plan& plan, double R) {
     MotionParams p = motion_params(plan.balls, plan.gravity, R);
-    p.sliding = plan.sliding;
-    p.rolling = plan.rolling;
-    p.spin_decay = plan.spin_decay;
+    p.sliding = plan.in_force(Effect::kSliding);
+    p.rolling = plan.in_force(Effect::kRolling);
+    p.spin_decay = plan.in_force(Effect::kSpinDecay);
     return p;
 }
 
@@ -82,9 +82,9 @@ Plan make_plan(const Scene& scene, kernel::Isa isa) {
     for (const BallStart& ball : scene.ball) plan.sizes.push_back(scene.size_of(ball));
     plan.alike = scene.alike();
     add_geometry(scene.table, plan);
-    plan.ball_ball = &ball_ball_model(scene.physics.ball_ball);
-    plan.cushion = &cushion_model(scene.physics.cushion);
-    plan.jaw = &cushion_model(scene.physics.jaw_model());
+    plan.ball_ball = scene.physics.ball_ball;
+    plan.cushion = scene.physics.cushion;
+    plan.jaw = scene.physics.jaw_model();
     decide_effects(scene, plan);
     for (const BallSize& size : plan.sizes) plan.motion.push_back(motion_of(plan, size.R));
     choose_search(plan);

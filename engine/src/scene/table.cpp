@@ -10,62 +10,26 @@
 namespace carom::detail {
 namespace {
 
-constexpr Choice<bool> kTablePresets[] = {
-    {"seven_foot", true}, {"eight_foot", true}, {"nine_foot", true}, {"snooker", true}, {"carom", true}};
-
 /// Nose height over ball radius of pool tables (physics.md: 1.28 R), the default of a custom outline.
-constexpr double kNoseHeight = 1.28;
+constexpr double kNoseShare = 1.28;
 
-void check_count(const Section& s, std::string_view key, std::size_t count) {
-    if (count > kMaxTableParts) {
-        s.fail(key,
-               fmt::format("{} has {} entries; at most {} are allowed", s.full(key), count, kMaxTableParts));
-    }
-}
-
-void read_cushions(const Section& outline, Scene& scene) {
-    const auto tables = outline.tables("cushion");
+/// Reads every item of a list into a part of the table, and calls `check(section, part)`; their ids are a letter and a
+/// number from 1.
+template <class Part, class Check>
+void read_parts(const Section& outline, const char* key, char letter, std::span<const Field<Part>> fields,
+                const Part& standard, std::vector<Part>& parts, Check&& check) {
+    const auto tables = outline.tables(key);
     if (!tables) return;
-    check_count(outline, "cushion", tables->size());
+    if (tables->size() > kMaxTableParts)
+        outline.fail(key, fmt::format("{} has {} entries; at most {} are allowed", outline.full(key),
+                                      tables->size(), kMaxTableParts));
+    const auto keys = keys_of(fields, Files::kScene);
     for (const toml::table* table : *tables) {
-        const Section s(*table, outline.file(), "table.cushion", {"from", "to", "height"});
-        Cushion c{fmt::format("c{}", scene.table.cushions.size() + 1), {}, {}, 0.0, {}};
-        c.from = s.need_vec2("from", "[x, y]", kCoordinate);
-        c.to = s.need_vec2("to", "[x, y]", kCoordinate);
-        c.height = s.number("height", kNoseHeight * scene.balls.R, more_than(0.0, kMaxLength, "m"));
-        if (c.from == c.to) {
-            s.fail("to",
-                   "a cushion ends where it begins; move one end, or use a [[table.jaw]] of radius 0 for a "
-                   "post");
-        }
-        scene.table.cushions.push_back(c);
-    }
-}
-
-void read_jaws(const Section& outline, Scene& scene) {
-    const auto tables = outline.tables("jaw");
-    if (!tables) return;
-    check_count(outline, "jaw", tables->size());
-    for (const toml::table* table : *tables) {
-        const Section s(*table, outline.file(), "table.jaw", {"center", "radius", "height"});
-        Jaw j{fmt::format("j{}", scene.table.jaws.size() + 1), {}, 0.0, 0.0, {}};
-        j.center = s.need_vec2("center", "[x, y]", kCoordinate);
-        j.radius = s.need_number("radius", at_least(0.0, kMaxLength, "m"));
-        j.height = s.number("height", kNoseHeight * scene.balls.R, more_than(0.0, kMaxLength, "m"));
-        scene.table.jaws.push_back(j);
-    }
-}
-
-void read_pockets(const Section& outline, Scene& scene) {
-    const auto tables = outline.tables("pocket");
-    if (!tables) return;
-    check_count(outline, "pocket", tables->size());
-    for (const toml::table* table : *tables) {
-        const Section s(*table, outline.file(), "table.pocket", {"center", "radius"});
-        Pocket p{fmt::format("p{}", scene.table.pockets.size() + 1), {}, 0.0, kPocketDepth, {}};
-        p.center = s.need_vec2("center", "[x, y]", kCoordinate);
-        p.radius = s.need_number("radius", more_than(0.0, kMaxLength, "m"));
-        scene.table.pockets.push_back(p);
+        const Section s(*table, outline.file(), outline.full(key), keys);
+        Part& part = parts.emplace_back(standard);
+        part.id = fmt::format("{}{}", letter, parts.size());
+        s.read(fields, part);
+        check(s, part);
     }
 }
 
@@ -99,7 +63,9 @@ void read_table(const Section& top, Scene& scene) {
         scene.table = make_table("nine_foot");
         return;
     }
-    const Section s(*table, top.file(), "table", {"preset", "cushion", "jaw", "pocket"});
+    std::vector<std::string_view> keys = keys_of<Table>(kTableFields, Files::kScene);
+    keys.insert(keys.end(), {"cushion", "jaw", "pocket"});
+    const Section s(*table, top.file(), "table", keys);
     const bool custom = s.has("cushion") || s.has("jaw") || s.has("pocket");
     if (s.has("preset") && custom) {
         s.fail(
@@ -107,13 +73,24 @@ void read_table(const Section& top, Scene& scene) {
             "a table has a preset or cushions, jaws and pockets of its own, not both; remove one of the two");
     }
     if (!custom) {
-        s.choice("preset", true, kTablePresets);
-        scene.table = make_table(s.text("preset", "nine_foot"));
+        Table named;
+        named.preset = "nine_foot";
+        s.read<Table>(kTableFields, named);
+        scene.table = make_table(named.preset);
         return;
     }
-    read_cushions(s, scene);
-    read_jaws(s, scene);
-    read_pockets(s, scene);
+    const double height = kNoseShare * scene.balls.R;
+    const auto any = [](const Section&, const auto&) {};
+    read_parts<Cushion>(s, "cushion", 'c', kCushionFields, {"", {}, {}, height}, scene.table.cushions,
+                        [](const Section& section, const Cushion& c) {
+                            if (c.from == c.to)
+                                section.fail("to",
+                                             "a cushion ends where it begins; move one end, or use a "
+                                             "[[table.jaw]] of radius 0 for a post");
+                        });
+    read_parts<Jaw>(s, "jaw", 'j', kJawFields, {"", {}, 0.0, height}, scene.table.jaws, any);
+    read_parts<Pocket>(s, "pocket", 'p', kPocketFields, {"", {}, 0.0, kPocketDepth}, scene.table.pockets,
+                       any);
     set_surface(scene.table);
 }
 

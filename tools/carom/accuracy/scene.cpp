@@ -10,6 +10,7 @@
 #include "base/output_file.h"
 #include "bench/clock.h"
 #include "bench/rounds.h"
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/simulate.h"
 #include "console.h"
 #include "report/plot.h"
@@ -230,7 +231,7 @@ int run_accuracy_scene(const AccuracySceneArgs& args) {
     if (!(args.target > 0.0 && std::isfinite(args.target)))
         throw UsageError(fmt::format("--target {}: expected a number of metres greater than 0", args.target));
     const Plan plan = plan_scene(args.scene);
-    if (plan.scene.physics.ball_ball != BallBallModel::kMathavan)
+    if (!plan.scene.physics.ball_ball->reads_tolerance)
         throw UsageError(
             fmt::format("{}: ball_ball = \"{}\" is one formula, without an accuracy to choose; set ball_ball "
                         "= \"mathavan\"",

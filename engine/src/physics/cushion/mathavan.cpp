@@ -21,9 +21,10 @@
 
 #include "physics/cushion/dormand_prince.h"
 #include "physics/cushion/mathavan_laws.h"
-#include "physics/cushion/models.h"
+#include "physics/cushion/nose.h"
 
-namespace carom::detail {
+namespace carom {
+namespace detail {
 namespace {
 
 // [of the approach speed] Error per step of the cushion model mathavan_2010; a result of its ten or so steps
@@ -343,10 +344,8 @@ bool cushion_mathavan_2010_to(const CushionContact& p, const Vec2& normal, Vec3&
     return true;
 }
 
-}  // namespace carom::detail
-
-namespace carom {
-
+// A ball cannot jam while the normal velocity falls all along, f_c s + mu_s (s + f_c c) < c, and while the cloth cannot hold the
+// ball at any friction of the nose.
 bool mathavan_2010_ends(const CushionContact& p) {
     const double s = (p.height - p.R) / p.R, c = std::sqrt((1.0 - s) * (1.0 + s)), f = p.f_c;
     if (!(f * std::abs(s) + p.mu_s * (std::abs(s) + f * c) < c)) return false;
@@ -356,5 +355,18 @@ bool mathavan_2010_ends(const CushionContact& p) {
     const double low = std::max(-f, -s / c);
     return low > f || (slips(low) && slips(f));
 }
+
+}  // namespace detail
+
+extern constinit const CushionModelInfo kMathavan2010 = {
+    .name = "mathavan_2010",
+    .source = "Mathavan, Jackson, Parkin, Proc. IMechE C 224 (2010)",
+    .resolve = detail::cushion_mathavan_2010,
+    .reads_spin = true,
+    .reads_friction = true,
+    .reads_cloth = true,
+    .reads_height = true,
+    .accepts = detail::mathavan_2010_ends,
+};
 
 }  // namespace carom
