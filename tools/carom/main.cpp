@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "console.h"
 #include "describe.h"
+#include "formats.h"
 #include "options/help_formatter.h"
 #include "options/options.h"
 
@@ -20,17 +21,20 @@ namespace {
 
 void add_describe(CLI::App& app, Action& action) {
     auto format = std::make_shared<std::string>();
-    CLI::App* sub =
-        app.add_subcommand("describe", "This program as a man page, or as completions for a shell");
+    CLI::App* sub = app.add_subcommand(
+        "describe", "This program and its file formats, for people and for other programs");
     sub->add_option("FORMAT", *format, "What to print")
         ->type_name("NAME")
-        ->check(CLI::IsMember({"man", "bash", "zsh"}))
+        ->check(CLI::IsMember({"man", "bash", "zsh", "scene-schema", "record-schema", "scene-format"}))
         ->required();
     sub->callback([format, &app, &action] {
         action = [format, &app] {
-            print(*format == "man"    ? man_page(app, CAROM_VERSION)
-                  : *format == "bash" ? bash_completion(app)
-                                      : zsh_completion(app));
+            print(*format == "man"             ? man_page(app, CAROM_VERSION)
+                  : *format == "bash"          ? bash_completion(app)
+                  : *format == "zsh"           ? zsh_completion(app)
+                  : *format == "scene-schema"  ? scene_schema()
+                  : *format == "record-schema" ? record_schema()
+                                               : scene_format());
             return kOk;
         };
     });

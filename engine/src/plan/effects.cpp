@@ -9,7 +9,7 @@
 
 namespace carom {
 
-/// What the decisions ask. Later ones use earlier ones: the plan has them.
+/// What the decisions depend on. The plan holds those that are made already.
 struct EffectFacts {
     const Scene& scene;
     const Plan& plan;

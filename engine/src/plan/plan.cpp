@@ -1,4 +1,4 @@
-// Which effects a scene can ever feel; geometry in final form.
+// Makes the plan of a scene: what must be computed for it, and the table in its final form.
 #include "carom/engine/plan.h"
 
 #include <fmt/format.h>
@@ -49,7 +49,7 @@ void add_geometry(const Table& table, Plan& plan) {
     plan.geometry.pockets = table.pockets;
 }
 
-// What moves a ball of this radius, without what the effects leave out.
+// The friction that moves a ball of this radius, without the effects that the plan skips.
 MotionParams motion_of(const Plan& plan, double R) {
     MotionParams p = motion_params(plan.balls, plan.gravity, R);
     p.sliding = plan.in_force(Effect::kSliding);
@@ -58,7 +58,7 @@ MotionParams motion_of(const Plan& plan, double R) {
     return p;
 }
 
-// Where a tree beats the loop through all boxes.
+// Chooses a tree of boxes where it is faster than a loop through all of them.
 void choose_search(Plan& plan) {
     const std::size_t parts =
         plan.geometry.cushions.size() + plan.geometry.noses.size() + plan.geometry.pockets.size();

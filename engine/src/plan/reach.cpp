@@ -19,7 +19,7 @@ constexpr double kReachMargin = 1e-9;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-// A ball with the velocities that it starts with, struck by the cue or not.
+// A ball at the start. Where the cue strikes it, the velocities are those after the strike.
 struct Start {
     Vec2 place;
     Vec3 v, w;
@@ -98,12 +98,12 @@ class Bounds {
 
     double by_energy() const {
         const Physics& p = scene_.physics;
-        // The published sign, a coarse march and a loose tolerance gain energy.
+        // An impact can gain energy with the published sign of the cloth slip, with few steps, and with a loose tolerance.
         const bool coarse = p.substeps ? *p.substeps < 100 : p.tolerance > 1e-6;
         const bool gains =
             p.ball_ball->reads_tolerance && (p.cloth_slip == ClothSlipSign::kAsPublished || coarse);
         if (gains || !(time_ < kUnbounded)) return kUnbounded;
-        // Per mass of the lightest ball, which could have all of it.
+        // The lightest ball could receive all the energy, so it is taken per mass of that ball.
         double lightest = kUnbounded, energy = 0.0;
         for (const Start& s : starts_) lightest = std::min(lightest, s.size.m);
         for (const Start& s : starts_)

@@ -23,7 +23,7 @@ using detail::JsonObject;
 using detail::JsonText;
 using detail::JsonValue;
 
-/// What reading the parts of a record needs beside them.
+/// What the readers of all parts of a record need to know about the file.
 struct Format {
     std::int64_t version;
     bool profiled;
@@ -33,7 +33,7 @@ int index_below(const JsonValue& value, std::int64_t least, std::size_t count) {
     return static_cast<int>(value.integer(least, static_cast<std::int64_t>(count) - 1));
 }
 
-/// A value that the row allows. Of its range only the sign counts: a record was not typed.
+/// Reads a value that the row allows. Only the sign of its range is checked, because nobody types a record.
 FieldValue read_value(const Key& key, const JsonValue& value) {
     const Interval& range = key.range;
     const bool positive = range.low > 0.0 || (range.low == 0.0 && range.low_open);
@@ -58,8 +58,8 @@ FieldValue read_value(const Key& key, const JsonValue& value) {
     return list;
 }
 
-template <class T>
-void read_fields(const JsonObject& all, std::span<const Field<T>> fields, const Format& format, T& object) {
+template <class T, std::size_t kRows>
+void read_fields(const JsonObject& all, const Field<T> (&fields)[kRows], const Format& format, T& object) {
     for (const Field<T>& f : fields) {
         if (!f.in(Files::kRecord)) continue;
         const bool may_lack = f.optional || f.options.since > format.version;
@@ -68,16 +68,16 @@ void read_fields(const JsonObject& all, std::span<const Field<T>> fields, const 
     }
 }
 
-template <class T>
-T read_object(const JsonValue& value, std::span<const Field<T>> fields, const Format& format) {
+template <class T, std::size_t kRows>
+T read_object(const JsonValue& value, const Field<T> (&fields)[kRows], const Format& format) {
     const JsonObject all(value, keys_of(fields, Files::kRecord));
     T object{};
     read_fields(all, fields, format, object);
     return object;
 }
 
-template <class T>
-std::vector<T> read_list(const JsonValue& value, std::span<const Field<T>> fields, const Format& format) {
+template <class T, std::size_t kRows>
+std::vector<T> read_list(const JsonValue& value, const Field<T> (&fields)[kRows], const Format& format) {
     std::vector<T> list;
     value.each(
         [&](const JsonValue& item, std::size_t) { list.push_back(read_object(item, fields, format)); });
@@ -85,19 +85,19 @@ std::vector<T> read_list(const JsonValue& value, std::span<const Field<T>> field
 }
 
 Table read_table(const JsonValue& value, const Format& format) {
-    std::vector<std::string_view> keys = keys_of<Table>(kTableFields, Files::kRecord);
+    std::vector<std::string_view> keys = keys_of(kTableFields, Files::kRecord);
     keys.insert(keys.end(), {"cushions", "jaws", "pockets"});
     const JsonObject all(value, keys);
     Table table;
-    read_fields<Table>(all, kTableFields, format, table);
-    table.cushions = read_list<Cushion>(all.at("cushions"), kCushionFields, format);
-    table.jaws = read_list<Jaw>(all.at("jaws"), kJawFields, format);
-    table.pockets = read_list<Pocket>(all.at("pockets"), kPocketFields, format);
+    read_fields(all, kTableFields, format, table);
+    table.cushions = read_list(all.at("cushions"), kCushionFields, format);
+    table.jaws = read_list(all.at("jaws"), kJawFields, format);
+    table.pockets = read_list(all.at("pockets"), kPocketFields, format);
     return table;
 }
 
 RenderSettings read_render(const JsonValue& value, const Format& format) {
-    const RenderSettings render = read_object<RenderSettings>(value, kRenderFields, format);
+    const RenderSettings render = read_object(value, kRenderFields, format);
     if (render.eye.has_value() != render.target.has_value())
         value.fail(std::string("the key \"") + (render.eye ? "target" : "eye") + "\" is missing");
     return render;
@@ -222,7 +222,7 @@ void read_events(const JsonValue& list, const Format& format, Record& record) {
 std::string text_of_file(const std::string& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) throw SceneError(path, {}, "there is no such file");
-    // A device or a pipe might never end.
+    // Reading a device or a pipe might never end.
     if (!std::filesystem::is_regular_file(path, error))
         throw SceneError(path, {}, "this is not a regular file");
     const std::uintmax_t size = std::filesystem::file_size(path, error);
@@ -292,7 +292,7 @@ Record parse_record(std::string_view text, const std::string& name, std::vector<
     record.setup_detect_ns = all.at("setup_detect_ns").non_negative();
     record.render = read_render(all.at("render"), format);
     record.table = read_table(all.at("table"), format);
-    record.balls = read_object<BallParams>(all.at("balls"), kBallFields, format);
+    record.balls = read_object(all.at("balls"), kBallFields, format);
     const JsonValue tracks = all.at("tracks");
     if (tracks.size() == 0) tracks.fail("a record needs at least one ball");
     tracks.each(

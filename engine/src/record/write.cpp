@@ -40,8 +40,8 @@ OrderedJson json_of(const Key& key, const FieldValue& value) {
 }
 
 /// The values that are given, by the keys of record files.
-template <class T>
-OrderedJson json_of(std::span<const Field<T>> fields, const T& object) {
+template <class T, std::size_t kRows>
+OrderedJson json_of(const Field<T> (&fields)[kRows], const T& object) {
     OrderedJson json;
     for (const Field<T>& f : fields) {
         const FieldValue value = f.value(object);
@@ -50,18 +50,18 @@ OrderedJson json_of(std::span<const Field<T>> fields, const T& object) {
     return json;
 }
 
-template <class T>
-OrderedJson json_of(std::span<const Field<T>> fields, const std::vector<T>& list) {
+template <class T, std::size_t kRows>
+OrderedJson json_of(const Field<T> (&fields)[kRows], const std::vector<T>& list) {
     OrderedJson json = OrderedJson::array();
     for (const T& item : list) json.push_back(json_of(fields, item));
     return json;
 }
 
 OrderedJson table_json(const Table& table) {
-    OrderedJson json = json_of<Table>(kTableFields, table);
-    json["cushions"] = json_of<Cushion>(kCushionFields, table.cushions);
-    json["jaws"] = json_of<Jaw>(kJawFields, table.jaws);
-    json["pockets"] = json_of<Pocket>(kPocketFields, table.pockets);
+    OrderedJson json = json_of(kTableFields, table);
+    json["cushions"] = json_of(kCushionFields, table.cushions);
+    json["jaws"] = json_of(kJawFields, table.jaws);
+    json["pockets"] = json_of(kPocketFields, table.pockets);
     return json;
 }
 
@@ -148,9 +148,9 @@ void write_record(const Record& record, const std::string& path) {
                ", \"start_time\": " + dump(record.start_time) + ", \"gravity\": " + dump(record.gravity) +
                ", \"profiled\": " + (record.costs.empty() ? "false" : "true") +
                ", \"setup_detect_ns\": " + dump(record.setup_detect_ns));
-    file.write(",\n\"render\": " + dump(json_of<RenderSettings>(kRenderFields, record.render)));
+    file.write(",\n\"render\": " + dump(json_of(kRenderFields, record.render)));
     file.write(",\n\"table\": " + dump(table_json(record.table)));
-    file.write(",\n\"balls\": " + dump(json_of<BallParams>(kBallFields, record.balls)) + ",\n");
+    file.write(",\n\"balls\": " + dump(json_of(kBallFields, record.balls)) + ",\n");
     write_tracks(record, file);
     file.write("\"events\": [");
     Lines lines(file, " ");

@@ -46,7 +46,7 @@ void check_overlaps(const Section& top, const Scene& scene) {
         for (std::size_t j = 0; j < i; ++j) {
             const double diameter = contact_distance(R, scene.size_of(scene.ball[j]).R);
             const double least = diameter - touch_tolerance(p);
-            // Per axis first: most pairs are far apart.
+            // The axes are compared first, because most pairs are far apart.
             const Vec2 d = p - planar(scene.ball[j]);
             if (std::abs(d.x()) >= diameter || std::abs(d.y()) >= diameter) continue;
             const double distance = d.norm();
@@ -77,7 +77,7 @@ void check_reach(const Section& top, const Scene& scene) {
     }
 }
 
-/// A nose at or above the top of the ball meets nothing.
+/// Refuses a nose at or above the top of a ball, which would meet nothing.
 void check_noses(const Section& top, const Scene& scene) {
     const auto check = [&](const char* kind, const std::string& id, double height) {
         for (const BallStart& ball : scene.ball) {
@@ -95,7 +95,7 @@ void check_noses(const Section& top, const Scene& scene) {
     for (const Jaw& j : scene.table.jaws) check("jaw", j.id, j.height);
 }
 
-/// Balls of their own size: where the models of this scene have formulas for them.
+/// Refuses balls of different size where the models of the scene have no formula for them.
 void check_sizes(const Section& top, const Scene& scene) {
     if (scene.alike()) return;
     const BallBallModelInfo& model = *scene.physics.ball_ball;
@@ -155,7 +155,7 @@ bool cushions_twist(const Scene& scene) {
            (!scene.table.jaws.empty() && twists(scene.physics.jaw_model()));
 }
 
-/// What can be set going in a scene.
+/// Which motions can occur in a scene.
 struct Motions {
     bool travel = false;  ///< some ball can move over the cloth
     bool slip = false;    ///< some ball can slide on the cloth

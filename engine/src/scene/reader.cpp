@@ -183,15 +183,15 @@ std::optional<bool> Section::boolean(std::string_view key) const {
     return *node->value<bool>();
 }
 
-const toml::table* Section::table(std::string_view key) const {
+std::optional<Section> Section::section(const char* key, const std::vector<std::string_view>& keys) const {
     const toml::node* node = table_.get(key);
-    if (!node) return nullptr;
+    if (!node) return std::nullopt;
     if (!node->is_table()) {
         const char* hint = node->is_array_of_tables() ? " (single brackets, once)" : "";
         fail(key, fmt::format("{} must be a section [{}]{}, not {}", full(key), full(key), hint,
                               type_name(*node)));
     }
-    return node->as_table();
+    return Section(*node->as_table(), file_, full(key), keys);
 }
 
 std::optional<std::vector<const toml::table*>> Section::tables(std::string_view key) const {

@@ -32,8 +32,8 @@ class Section {
     SourceLocation where(std::string_view key) const;
 
     /// Takes over what the section says; where it says nothing, the object stays as it is.
-    template <class T>
-    void read(std::span<const Field<T>> fields, T& object) const {
+    template <class T, std::size_t kRows>
+    void read(const Field<T> (&fields)[kRows], T& object) const {
         for (const Field<T>& f : fields) {
             if (!f.in(Files::kScene)) continue;
             const FieldValue found = value(f);
@@ -42,8 +42,15 @@ class Section {
     }
     std::optional<bool> boolean(std::string_view key) const;
 
-    /// A section inside this one; null if absent.
-    const toml::table* table(std::string_view key) const;
+    /// A section inside this one, if it is there.
+    std::optional<Section> section(const char* key, const std::vector<std::string_view>& keys) const;
+    /// The same, taken over into the object.
+    template <class T, std::size_t kRows>
+    std::optional<Section> read(const char* key, const Field<T> (&fields)[kRows], T& object) const {
+        std::optional<Section> inner = section(key, keys_of(fields, Files::kScene));
+        if (inner) inner->read(fields, object);
+        return inner;
+    }
     /// The tables of an array of tables; nothing if the key is absent.
     std::optional<std::vector<const toml::table*>> tables(std::string_view key) const;
 

@@ -42,21 +42,19 @@ void check_id(const Section& section, const std::string& id) {
 BallStart read_ball(const Section& s, const BallSize& common) {
     BallStart ball;
     BallSize size = common;
-    s.read<BallSize>(kSizeFields, size);
+    s.read(kSizeFields, size);
     if (!(size == common)) ball.own = size;
     ball.where = s.where();
-    s.read<BallStart>(kBallStartFields, ball);
+    s.read(kBallStartFields, ball);
     check_id(s, ball.id);
     ball.position.z() = size.R;
     return ball;
 }
 
 /// The keys of a section whose rows stand in two tables.
-template <class T, class U>
-std::vector<std::string_view> keys_of_both(std::span<const Field<T>> first,
-                                           std::span<const Field<U>> second) {
-    std::vector<std::string_view> keys = keys_of(first, Files::kScene);
-    for (const std::string_view key : keys_of(second, Files::kScene)) keys.push_back(key);
+std::vector<std::string_view> joined(std::vector<std::string_view> keys,
+                                     const std::vector<std::string_view>& more) {
+    keys.insert(keys.end(), more.begin(), more.end());
     return keys;
 }
 
@@ -64,32 +62,31 @@ std::vector<std::string_view> keys_of_both(std::span<const Field<T>> first,
 
 void read_balls(const Section& top, Scene& scene) {
     scene.balls = make_ball_params(scene.ball_preset);
-    const toml::table* table = top.table("balls");
-    if (!table) return;
-    const Section s(*table, top.file(), "balls",
-                    keys_of_both<Scene, BallParams>(kBallPresetFields, kBallFields));
-    s.read<Scene>(kBallPresetFields, scene);
+    const auto s = top.section(
+        "balls", joined(keys_of(kBallPresetFields, Files::kScene), keys_of(kBallFields, Files::kScene)));
+    if (!s) return;
+    s->read(kBallPresetFields, scene);
     BallParams& p = scene.balls = make_ball_params(scene.ball_preset);
-    s.read<BallParams>(kBallFields, p);
-    if (s.has("mu_b") && s.has("mu_b_fit"))
-        s.fail("mu_b_fit", "balls.mu_b and balls.mu_b_fit are two values for one friction; remove one");
+    s->read(kBallFields, p);
+    if (s->has("mu_b") && s->has("mu_b_fit"))
+        s->fail("mu_b_fit", "balls.mu_b and balls.mu_b_fit are two values for one friction; remove one");
     for (const auto& [key, value] :
          {std::pair{"mu_s", p.mu_s},
           std::pair{p.mu_b_more > 0.0 ? "mu_b_fit" : "mu_b", p.mu_b + p.mu_b_more}}) {
         if (value > kernel::kLargestFriction && scene.physics.ball_ball->reads_tolerance &&
             !scene.physics.substeps)
-            s.fail(s.where(key),
-                   fmt::format(
-                       "balls.{} = {}: the impact by tolerance takes frictions up to {}; lower it, or set "
-                       "physics.substeps = 1000",
-                       key, value, kernel::kLargestFriction));
+            s->fail(s->where(key),
+                    fmt::format(
+                        "balls.{} = {}: the impact by tolerance takes frictions up to {}; lower it, or set "
+                        "physics.substeps = 1000",
+                        key, value, kernel::kLargestFriction));
     }
 }
 
 void read_ball_list(const Section& top, Scene& scene) {
     const auto tables = top.tables("ball");
     if (!tables) return;
-    const auto keys = keys_of_both<BallStart, BallSize>(kBallStartFields, kSizeFields);
+    const auto keys = joined(keys_of(kBallStartFields, Files::kScene), keys_of(kSizeFields, Files::kScene));
     for (const toml::table* table : *tables) {
         const Section s(*table, top.file(), "ball", keys);
         if (scene.ball.size() == kMaxBalls)
@@ -99,65 +96,61 @@ void read_ball_list(const Section& top, Scene& scene) {
 }
 
 void read_rack(const Section& top, Scene& scene) {
-    const toml::table* table = top.table("rack");
-    if (!table) return;
-    const Section s(*table, top.file(), "rack", keys_of<Rack>(kRackFields, Files::kScene));
     Rack rack;
-    s.read<Rack>(kRackFields, rack);
-    if (s.has("count") && rack.game != RackGame::kLine) {
-        s.fail("count", "rack.count belongs to the game line; leave it out or set game = \"line\"");
+    const auto s = top.read("rack", kRackFields, rack);
+    if (!s) return;
+    if (s->has("count") && rack.game != RackGame::kLine) {
+        s->fail("count", "rack.count belongs to the game line; leave it out or set game = \"line\"");
     }
-    if (s.has("rows") && rack.game != RackGame::kTriangle) {
-        s.fail("rows", "rack.rows belongs to the game triangle; leave it out or set game = \"triangle\"");
+    if (s->has("rows") && rack.game != RackGame::kTriangle) {
+        s->fail("rows", "rack.rows belongs to the game triangle; leave it out or set game = \"triangle\"");
     }
     const bool spots = rack.game == RackGame::kSnooker || rack.game == RackGame::kThreeCushion;
     if (spots && !(scene.table.length > 0.0)) {
-        s.fail("game",
-               "this layout puts balls on the spots of a table, and the cloth is endless; choose a table");
+        s->fail("game",
+                "this layout puts balls on the spots of a table, and the cloth is endless; choose a table");
     }
     for (const RackedBall& ball : make_rack(rack, scene.table, scene.balls.R)) {
         if (scene.ball.size() == kMaxBalls) {
-            s.fail(s.where(), fmt::format("more than {} balls; leave some out", kMaxBalls));
+            s->fail(s->where(), fmt::format("more than {} balls; leave some out", kMaxBalls));
         }
         BallStart start;
         start.id = ball.id;
         start.position = {ball.position.x(), ball.position.y(), scene.balls.R};
-        start.where = s.where();
+        start.where = s->where();
         scene.ball.push_back(start);
     }
 }
 
 void read_cue(const Section& top, Scene& scene) {
-    const toml::table* table = top.table("cue");
-    if (!table) return;
-    const Section s(*table, top.file(), "cue", keys_of<Cue>(kCueFields, Files::kScene));
     Cue cue;
-    cue.where = s.where();
-    s.read<Cue>(kCueFields, cue);
+    const auto s = top.read("cue", kCueFields, cue);
+    if (!s) return;
+    cue.where = s->where();
     const Vec2 offset(cue.side, cue.height);
     if (offset.squaredNorm() > kMiscueOffset * kMiscueOffset) {
-        s.fail(
+        s->fail(
             "offset",
             fmt::format(
                 "cue.offset is {:.4g} ball radii from the centre, where the tip slips off; keep it within {}",
                 offset.norm(), kMiscueOffset));
     }
     if (cue.end_mass > cue.mass) {
-        s.fail("end_mass",
-               fmt::format("cue.end_mass = {} is more than the whole cue, cue.mass = {}; make it smaller",
-                           cue.end_mass, cue.mass));
+        s->fail("end_mass",
+                fmt::format("cue.end_mass = {} is more than the whole cue, cue.mass = {}; make it smaller",
+                            cue.end_mass, cue.mass));
     }
     const BallStart* struck = nullptr;
     for (const BallStart& ball : scene.ball) {
         if (ball.id == cue.ball) struck = &ball;
     }
     if (!struck) {
-        s.fail("ball",
-               fmt::format("cue.ball: there is no ball {}; add a [[ball]] with this id or name another",
-                           in_quotes(cue.ball)));
+        s->fail("ball",
+                fmt::format("cue.ball: there is no ball {}; add a [[ball]] with this id or name another",
+                            in_quotes(cue.ball)));
     }
     if (!struck->velocity.isZero(0.0) || !struck->spin.isZero(0.0)) {
-        s.fail(
+        s->fail(
             struck->where,
             fmt::format(
                 "ball {} has a velocity or spin of its own and is struck by the cue; remove one of the two",
@@ -167,46 +160,37 @@ void read_cue(const Section& top, Scene& scene) {
 }
 
 void read_physics(const Section& top, Scene& scene) {
-    const toml::table* table = top.table("physics");
-    if (!table) return;
-    const Section s(*table, top.file(), "physics", keys_of<Physics>(kPhysicsFields, Files::kScene));
-    s.read<Physics>(kPhysicsFields, scene.physics);
-    if (s.has("substeps") && s.has("tolerance"))
-        s.fail("substeps",
-               "physics.substeps and physics.tolerance exclude each other; remove one of the two");
+    const auto s = top.read("physics", kPhysicsFields, scene.physics);
+    if (s && s->has("substeps") && s->has("tolerance"))
+        s->fail("substeps",
+                "physics.substeps and physics.tolerance exclude each other; remove one of the two");
 }
 
 void read_effects(const Section& top, Scene& scene) {
-    const toml::table* table = top.table("effects");
-    if (!table) return;
     std::vector<std::string_view> keywords;
     for (const EffectInfo& effect : effect_table()) keywords.push_back(effect.keyword);
-    const Section s(*table, top.file(), "effects", keywords);
+    const auto s = top.section("effects", keywords);
+    if (!s) return;
     for (const EffectInfo& effect : effect_table()) {
-        if (const auto on = s.boolean(effect.keyword))
-            scene.effects.push_back({effect.keyword, *on, s.where(effect.keyword)});
+        if (const auto on = s->boolean(effect.keyword))
+            scene.effects.push_back({effect.keyword, *on, s->where(effect.keyword)});
     }
 }
 
 void read_stop(const Section& top, Scene& scene) {
-    const toml::table* table = top.table("stop");
-    if (!table) return;
-    const Section s(*table, top.file(), "stop", keys_of<Stop>(kStopFields, Files::kScene));
-    s.read<Stop>(kStopFields, scene.stop);
+    top.read("stop", kStopFields, scene.stop);
 }
 
 void read_render(const Section& top, Scene& scene) {
-    const toml::table* table = top.table("render");
-    if (!table) return;
-    const Section s(*table, top.file(), "render", keys_of<RenderSettings>(kRenderFields, Files::kScene));
     RenderSettings& r = scene.render;
-    s.read<RenderSettings>(kRenderFields, r);
+    const auto s = top.read("render", kRenderFields, r);
+    if (!s) return;
     if (r.eye.has_value() != r.target.has_value())
-        s.fail(r.eye ? "eye" : "target", "render.eye and render.target go together; give both or neither");
-    if (r.eye && s.has("camera"))
-        s.fail("camera", "render.camera and render.eye exclude each other; remove one of the two");
+        s->fail(r.eye ? "eye" : "target", "render.eye and render.target go together; give both or neither");
+    if (r.eye && s->has("camera"))
+        s->fail("camera", "render.camera and render.eye exclude each other; remove one of the two");
     if (r.eye && *r.eye == *r.target)
-        s.fail("target", "render.target is where the eye is; move one of the two");
+        s->fail("target", "render.target is where the eye is; move one of the two");
 }
 
 }  // namespace carom::detail

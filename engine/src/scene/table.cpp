@@ -15,8 +15,8 @@ constexpr double kNoseShare = 1.28;
 
 /// Reads every item of a list into a part of the table, and calls `check(section, part)`; their ids are a letter and a
 /// number from 1.
-template <class Part, class Check>
-void read_parts(const Section& outline, const char* key, char letter, std::span<const Field<Part>> fields,
+template <class Part, std::size_t kRows, class Check>
+void read_parts(const Section& outline, const char* key, char letter, const Field<Part> (&fields)[kRows],
                 const Part& standard, std::vector<Part>& parts, Check&& check) {
     const auto tables = outline.tables(key);
     if (!tables) return;
@@ -58,39 +58,33 @@ void set_surface(Table& table) {
 }  // namespace
 
 void read_table(const Section& top, Scene& scene) {
-    const toml::table* table = top.table("table");
-    if (!table) {
-        scene.table = make_table("nine_foot");
-        return;
-    }
-    std::vector<std::string_view> keys = keys_of<Table>(kTableFields, Files::kScene);
+    std::vector<std::string_view> keys = keys_of(kTableFields, Files::kScene);
     keys.insert(keys.end(), {"cushion", "jaw", "pocket"});
-    const Section s(*table, top.file(), "table", keys);
-    const bool custom = s.has("cushion") || s.has("jaw") || s.has("pocket");
-    if (s.has("preset") && custom) {
-        s.fail(
+    const auto s = top.section("table", keys);
+    const bool custom = s && (s->has("cushion") || s->has("jaw") || s->has("pocket"));
+    if (custom && s->has("preset")) {
+        s->fail(
             "preset",
             "a table has a preset or cushions, jaws and pockets of its own, not both; remove one of the two");
     }
     if (!custom) {
         Table named;
-        named.preset = "nine_foot";
-        s.read<Table>(kTableFields, named);
+        named.preset = kStandardTable;
+        if (s) s->read(kTableFields, named);
         scene.table = make_table(named.preset);
         return;
     }
     const double height = kNoseShare * scene.balls.R;
     const auto any = [](const Section&, const auto&) {};
-    read_parts<Cushion>(s, "cushion", 'c', kCushionFields, {"", {}, {}, height}, scene.table.cushions,
-                        [](const Section& section, const Cushion& c) {
-                            if (c.from == c.to)
-                                section.fail("to",
-                                             "a cushion ends where it begins; move one end, or use a "
-                                             "[[table.jaw]] of radius 0 for a post");
-                        });
-    read_parts<Jaw>(s, "jaw", 'j', kJawFields, {"", {}, 0.0, height}, scene.table.jaws, any);
-    read_parts<Pocket>(s, "pocket", 'p', kPocketFields, {"", {}, 0.0, kPocketDepth}, scene.table.pockets,
-                       any);
+    read_parts(*s, "cushion", 'c', kCushionFields, Cushion{"", {}, {}, height}, scene.table.cushions,
+               [](const Section& section, const Cushion& c) {
+                   if (c.from == c.to)
+                       section.fail("to",
+                                    "a cushion ends where it begins; move one end, or use a "
+                                    "[[table.jaw]] of radius 0 for a post");
+               });
+    read_parts(*s, "jaw", 'j', kJawFields, Jaw{"", {}, 0.0, height}, scene.table.jaws, any);
+    read_parts(*s, "pocket", 'p', kPocketFields, Pocket{"", {}, 0.0, kPocketDepth}, scene.table.pockets, any);
     set_surface(scene.table);
 }
 

@@ -41,12 +41,12 @@ std::string text_of(const FieldValue& value) {
 }
 
 /// A line for each value, under a heading that is there only if a line is.
-template <class T>
-void write_fields(Out out, const char* heading, std::span<const Field<T>> fields, const T& object) {
+template <class T, std::size_t kRows>
+void write_fields(Out out, const char* heading, const Field<T> (&fields)[kRows], const T& object) {
     const auto is_given = [&](const Field<T>& f) { return f.value(object).index() != 0; };
     for (const Field<T>& f : fields) {
         // Another key may stand in for this one.
-        const bool replaced = std::any_of(fields.begin(), fields.end(), [&](const Field<T>& other) {
+        const bool replaced = std::any_of(std::begin(fields), std::end(fields), [&](const Field<T>& other) {
             return other.options.instead_of == std::string_view(f.key) && is_given(other);
         });
         if (!f.in(Files::kScene) || replaced || !is_given(f)) continue;
@@ -55,10 +55,10 @@ void write_fields(Out out, const char* heading, std::span<const Field<T>> fields
 }
 
 /// Whether a scene file would say the same of the parts of two tables.
-template <class Part>
-bool same_parts(std::span<const Field<Part>> fields, const std::vector<Part>& a, const std::vector<Part>& b) {
+template <class Part, std::size_t kRows>
+bool same_parts(const Field<Part> (&fields)[kRows], const std::vector<Part>& a, const std::vector<Part>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](const Part& x, const Part& y) {
-        return std::all_of(fields.begin(), fields.end(), [&](const Field<Part>& f) {
+        return std::all_of(std::begin(fields), std::end(fields), [&](const Field<Part>& f) {
             return !f.in(Files::kScene) || f.value(x) == f.value(y);
         });
     });
@@ -69,24 +69,23 @@ bool is_preset(const Table& table) {
     if (table.preset.empty()) return false;
     try {
         const Table preset = make_table(table.preset);
-        return same_parts<Cushion>(kCushionFields, table.cushions, preset.cushions) &&
-               same_parts<Jaw>(kJawFields, table.jaws, preset.jaws) &&
-               same_parts<Pocket>(kPocketFields, table.pockets, preset.pockets);
+        return same_parts(kCushionFields, table.cushions, preset.cushions) &&
+               same_parts(kJawFields, table.jaws, preset.jaws) &&
+               same_parts(kPocketFields, table.pockets, preset.pockets);
     } catch (const std::invalid_argument&) {
         return true;  // the reader will say what is wrong with the name
     }
 }
 
 void write_table(Out out, const Table& table) {
-    if (is_preset(table)) return write_fields<Table>(out, "[table]\n", kTableFields, table);
+    if (is_preset(table)) return write_fields(out, "[table]\n", kTableFields, table);
     fmt::format_to(out, "[table]\n{}", table.cushions.empty() ? "cushion = []\n" : "");
-    for (const Cushion& c : table.cushions)
-        write_fields<Cushion>(out, "[[table.cushion]]\n", kCushionFields, c);
-    for (const Jaw& j : table.jaws) write_fields<Jaw>(out, "[[table.jaw]]\n", kJawFields, j);
-    for (const Pocket& p : table.pockets) write_fields<Pocket>(out, "[[table.pocket]]\n", kPocketFields, p);
+    for (const Cushion& c : table.cushions) write_fields(out, "[[table.cushion]]\n", kCushionFields, c);
+    for (const Jaw& j : table.jaws) write_fields(out, "[[table.jaw]]\n", kJawFields, j);
+    for (const Pocket& p : table.pockets) write_fields(out, "[[table.pocket]]\n", kPocketFields, p);
 }
 
-/// What no file can say: a ball that is not on the cloth.
+/// Refuses a ball that is not on the cloth, which no file can describe.
 void check_heights(const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
         if (ball.position.z() == scene.size_of(ball).R && ball.velocity.z() == 0.0) continue;
@@ -104,19 +103,19 @@ std::string scene_text(const Scene& scene) {
     fmt::memory_buffer buffer;
     const Out out(buffer);
     write_table(out, scene.table);
-    write_fields<Scene>(out, "[balls]\n", kBallPresetFields, scene);
-    write_fields<BallParams>(out, "", kBallFields, scene.balls);
+    write_fields(out, "[balls]\n", kBallPresetFields, scene);
+    write_fields(out, "", kBallFields, scene.balls);
     for (const BallStart& ball : scene.ball) {
-        write_fields<BallStart>(out, "[[ball]]\n", kBallStartFields, ball);
-        if (ball.own) write_fields<BallSize>(out, "", kSizeFields, *ball.own);
+        write_fields(out, "[[ball]]\n", kBallStartFields, ball);
+        if (ball.own) write_fields(out, "", kSizeFields, *ball.own);
     }
-    if (scene.cue) write_fields<Cue>(out, "[cue]\n", kCueFields, *scene.cue);
-    write_fields<Physics>(out, "[physics]\n", kPhysicsFields, scene.physics);
+    if (scene.cue) write_fields(out, "[cue]\n", kCueFields, *scene.cue);
+    write_fields(out, "[physics]\n", kPhysicsFields, scene.physics);
     if (!scene.effects.empty()) fmt::format_to(out, "[effects]\n");
     for (const EffectOverride& effect : scene.effects)
         fmt::format_to(out, "{} = {}\n", effect.keyword, effect.in_force);
-    write_fields<Stop>(out, "[stop]\n", kStopFields, scene.stop);
-    write_fields<RenderSettings>(out, "[render]\n", kRenderFields, scene.render);
+    write_fields(out, "[stop]\n", kStopFields, scene.stop);
+    write_fields(out, "[render]\n", kRenderFields, scene.render);
     return fmt::to_string(buffer);
 }
 
@@ -125,7 +124,7 @@ void validate(const Scene& scene) {
     try {
         parse_scene(scene_text(scene), scene.file);
     } catch (const SceneError& error) {
-        // The lines are those of a text that nobody wrote.
+        // The error has a line in a text that nobody wrote, so the line is left out.
         throw SceneError(scene.file, {}, error.message());
     }
 }

@@ -199,7 +199,7 @@ constexpr Field<detail::ClassOf<kMember>> field(const char* key, const Interval&
 template <auto kMember>
 constexpr Field<detail::ClassOf<kMember>> field(const char* key, const char* meaning,
                                                 const KeyOptions& options = {}) {
-    return field<kMember>(key, Interval{}, meaning, options);
+    return field<kMember>(key, at_least(0.0, 0.0), meaning, options);
 }
 
 /// A row of two numbers that files write as a list.
@@ -222,8 +222,8 @@ constexpr Field<detail::ClassOf<kFirst>> field(const char* key, const Interval& 
 }
 
 /// The keys of some rows, as far as these files have them.
-template <class T>
-std::vector<std::string_view> keys_of(std::span<const Field<T>> fields, Files files) {
+template <class T, std::size_t kRows>
+std::vector<std::string_view> keys_of(const Field<T> (&fields)[kRows], Files files) {
     std::vector<std::string_view> keys;
     for (const Field<T>& f : fields)
         if (f.in(files)) keys.push_back(files == Files::kRecord ? f.record_key() : f.key);

@@ -126,7 +126,8 @@ struct BallStart {
     bool operator==(const BallStart&) const = default;
 };
 inline constexpr Field<BallStart> kBallStartFields[] = {
-    field<&BallStart::id>("id", "name, used once; no commas, quotes or control characters"),
+    field<&BallStart::id>("id", at_least(1.0, kMaxIdLength, "bytes"),
+                          "used once; no commas, quotes or control characters"),
     field<&BallStart::position>("position", kCoordinate, "of the centre", {.shape = "[x, y]"}),
     field<&BallStart::velocity>("velocity", at_least(-kMaxSpeed, kMaxSpeed, "m/s"),
                                 "to start moving without a cue", {.shape = "[vx, vy]"}),

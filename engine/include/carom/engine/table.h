@@ -86,11 +86,12 @@ struct Table {
     std::vector<Pocket> pockets;
     bool operator==(const Table&) const = default;
 };
+inline constexpr const char* kStandardTable = "nine_foot";
 inline constexpr const char* kTablePresets[] = {"seven_foot", "eight_foot", "nine_foot", "snooker", "carom"};
 /// The lists of cushions, jaws and pockets beside.
 inline constexpr Field<Table> kTableFields[] = {
     field<&Table::preset>("preset", "a table with published sizes",
-                          {.standard = "nine_foot", .names = kTablePresets}),
+                          {.names = kTablePresets}),
     field<&Table::width>("width", at_least(0.0, kMaxCoordinate, "m"), "between the nose lines along x",
                          {.files = Files::kRecord}),
     field<&Table::length>("length", at_least(0.0, kMaxCoordinate, "m"), "the same along y",

@@ -1,7 +1,10 @@
-// Every member of a struct that a scene describes has a row, or is named here as one that no file has: a member that is added
-// does not compile until it does. No list of keys can fall behind.
+// Every member of a struct that a scene describes has a row, or is named here as one that no file has: this does not compile
+// until a member that is added does.
+#include <gtest/gtest.h>
+
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "carom/engine/scene.h"
@@ -51,6 +54,23 @@ static_assert(members<Cushion>() == in_rows(kCushionFields));
 static_assert(members<Jaw>() == in_rows(kJawFields));
 static_assert(members<Pocket>() == in_rows(kPocketFields));
 static_assert(members<Table>() == in_rows(kTableFields) + 3);  // the lists
+
+// A row is found by its key.
+TEST(Rows, KeysOfASectionDiffer) {
+    const auto expect_distinct = [](const auto& fields) {
+        for (const Files files : {Files::kScene, Files::kRecord}) {
+            const auto keys = keys_of(fields, files);
+            EXPECT_EQ(std::set(keys.begin(), keys.end()).size(), keys.size());
+        }
+    };
+    expect_distinct(kBallFields);
+    expect_distinct(kBallStartFields);
+    expect_distinct(kRackFields);
+    expect_distinct(kCueFields);
+    expect_distinct(kPhysicsFields);
+    expect_distinct(kRenderFields);
+    expect_distinct(kTableFields);
+}
 
 }  // namespace
 }  // namespace carom
