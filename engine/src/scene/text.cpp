@@ -47,7 +47,8 @@ void write_fields(Out out, const char* heading, const Field<T> (&fields)[kRows],
     for (const Field<T>& f : fields) {
         // Another key may stand in for this one.
         const bool replaced = std::any_of(std::begin(fields), std::end(fields), [&](const Field<T>& other) {
-            return other.options.instead_of == std::string_view(f.key) && is_given(other);
+            const char* key = other.options.instead_of;
+            return key != nullptr && key == std::string_view(f.key) && is_given(other);
         });
         if (!f.in(Files::kScene) || replaced || !is_given(f)) continue;
         fmt::format_to(out, "{}{} = {}\n", std::exchange(heading, ""), f.key, text_of(f.value(object)));
