@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <span>
 #include <string>
 
 #include "plan/reach.h"
@@ -131,35 +132,29 @@ Need clusters(const Facts& f) {
 
 // In the order of Effect, in which people know them.
 constexpr EffectInfo kTable[kEffects] = {
-    {.effect = Effect::kSliding,
-     .keyword = "sliding",
+    {.keyword = "sliding",
      .skipped_when = "`mu_s` or `gravity` is 0, or no ball ever slips",
      .keys = "`mu_s`, `gravity`",
      .need = sliding},
-    {.effect = Effect::kRolling,
-     .keyword = "rolling",
+    {.keyword = "rolling",
      .skipped_when = "`mu_r` or `gravity` is 0, or nothing moves",
      .keys = "`mu_r`, `gravity`",
      .need = rolling},
-    {.effect = Effect::kSpinDecay,
-     .keyword = "spin_decay",
+    {.keyword = "spin_decay",
      .skipped_when = "`mu_sp` or `gravity` is 0, or no ball can ever have vertical spin",
      .keys = "`mu_sp`, `gravity`, `spin`",
      .need = spin_decay,
      .last = true},
-    {.effect = Effect::kThrow,
-     .keyword = "throw",
+    {.keyword = "throw",
      .skipped_when = "no friction between balls, or no two balls can meet",
      .keys = "`mu_b`, `mu_b_fit`, `ball_ball`",
      .need = ball_friction_needed,
      .leave_out = [](Plan& plan) { plan.balls.mu_b = plan.balls.mu_b_more = 0.0; }},
-    {.effect = Effect::kClothInImpact,
-     .keyword = "cloth_in_impact",
+    {.keyword = "cloth_in_impact",
      .skipped_when = "`mu_s` or `mu_b` is 0, another model than `mathavan`, or no two balls can meet",
      .keys = "`mu_s`, `cloth_slip`, `ball_ball`",
      .need = cloth_in_impact},
-    {.effect = Effect::kCushions,
-     .keyword = "cushions",
+    {.keyword = "cushions",
      .skipped_when = "none within reach",
      .keys = "`cushion`, `jaw`, `e_c`, `preset`",
      .need = cushions,
@@ -168,27 +163,23 @@ constexpr EffectInfo kTable[kEffects] = {
              plan.geometry.cushions.clear();
              plan.geometry.noses.clear();
          }},
-    {.effect = Effect::kCushionFriction,
-     .keyword = "cushion_friction",
+    {.keyword = "cushion_friction",
      .skipped_when =
          "model `smooth`, or `f_c` = 0 and all noses at ball height (closed forms), or no cushion "
          "within reach",
      .keys = "`f_c`, `height`, `cushion`, `jaw`",
      .need = cushion_friction,
      .leave_out = [](Plan& plan) { plan.cushion = plan.jaw = &kSmooth; }},
-    {.effect = Effect::kPockets,
-     .keyword = "pockets",
+    {.keyword = "pockets",
      .skipped_when = "none within reach",
      .keys = "`pocket`, `preset`",
      .need = pockets,
      .leave_out = [](Plan& plan) { plan.geometry.pockets.clear(); }},
-    {.effect = Effect::kSquirt,
-     .keyword = "squirt",
+    {.keyword = "squirt",
      .skipped_when = "no cue, no side offset, or `end_mass` 0",
      .keys = "`offset`, `end_mass`",
      .need = squirt},
-    {.effect = Effect::kClusters,
-     .keyword = "clusters",
+    {.keyword = "clusters",
      .skipped_when = "fewer than three balls, `sequential`, or no two balls can meet",
      .keys = "`clusters`",
      .need = clusters,
@@ -225,10 +216,10 @@ void decide_effects(const Scene& scene, Plan& plan) {
     for (const bool last : {false, true}) {
         for (const EffectInfo& info : kTable) {
             if (info.last != last) continue;
-            EffectDecision& decision = plan.effects[static_cast<std::size_t>(info.effect)];
-            decision = decide(info, {scene, plan, reach});
-            if (decision.in_force) continue;
-            plan.skip(info.effect);
+            const std::ptrdiff_t i = &info - kTable;
+            plan.effects[i] = decide(info, {scene, plan, reach});
+            if (plan.effects[i].in_force) continue;
+            plan.skip(static_cast<Effect>(i));
             if (info.leave_out != nullptr) info.leave_out(plan);
         }
     }

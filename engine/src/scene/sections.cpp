@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/plan.h"

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <string_view>
+#include <vector>
 
 #include "carom/engine/tolerances.h"
 #include "scene/sections.h"

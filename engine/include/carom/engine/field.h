@@ -92,10 +92,7 @@ struct Field : Key {
 
 /// What files call a value of an enumeration.
 template <class E>
-requires requires(E e) {
-    names_of(e);
-}
-const char* name(E e) {
+auto name(E e) -> typename decltype(names_of(e))::value_type {
     return names_of(e)[static_cast<std::size_t>(e)];
 }
 
@@ -148,7 +145,7 @@ template <class V>
 std::vector<const char*> choice_names() {
     std::vector<const char*> names;
     if constexpr (std::is_enum_v<V>)
-        names.assign(names_of(V{}).begin(), names_of(V{}).end());
+        for (const char* choice : names_of(V{})) names.push_back(choice);
     else
         for (const V choice : all_of(V{})) names.push_back(name(choice));
     return names;

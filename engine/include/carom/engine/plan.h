@@ -36,7 +36,6 @@ struct Need {
 
 /// One effect: a row of effect_table().
 struct EffectInfo {
-    Effect effect;
     const char* keyword;       ///< of [effects]
     const char* skipped_when;  ///< for people
     const char* keys;          ///< of a scene, that belong to it, with commas between them

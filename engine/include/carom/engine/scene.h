@@ -1,6 +1,8 @@
 // Scene: what a scene file says, validated, with every default written out.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -136,10 +138,8 @@ inline constexpr Field<BallStart> kBallStartFields[] = {
 };
 
 enum class RackGame : std::uint8_t { kEightBall, kNineBall, kSnooker, kThreeCushion, kTriangle, kLine };
-inline constexpr const char* kRackGames[] = {"eight_ball",    "nine_ball", "snooker",
-                                             "three_cushion", "triangle",  "line"};
-constexpr std::span<const char* const> names_of(RackGame) {
-    return kRackGames;
+constexpr auto names_of(RackGame) {
+    return std::array{"eight_ball", "nine_ball", "snooker", "three_cushion", "triangle", "line"};
 }
 
 /// Balls that a file does not place one by one.
@@ -189,14 +189,12 @@ inline constexpr Field<Cue> kCueFields[] = {
 };
 
 enum class ClothSlipSign : std::uint8_t { kConsistent, kAsPublished };
-inline constexpr const char* kClothSlipSigns[] = {"consistent", "as_published"};
-constexpr std::span<const char* const> names_of(ClothSlipSign) {
-    return kClothSlipSigns;
+constexpr auto names_of(ClothSlipSign) {
+    return std::array{"consistent", "as_published"};
 }
 enum class ClusterModel : std::uint8_t { kCompliant, kSequential, kRigid };
-inline constexpr const char* kClusterModels[] = {"compliant", "sequential", "rigid"};
-constexpr std::span<const char* const> names_of(ClusterModel) {
-    return kClusterModels;
+constexpr auto names_of(ClusterModel) {
+    return std::array{"compliant", "sequential", "rigid"};
 }
 
 // The models of an impact are rows of tables: ball_ball.h and cushion.h.

@@ -90,8 +90,7 @@ inline constexpr const char* kStandardTable = "nine_foot";
 inline constexpr const char* kTablePresets[] = {"seven_foot", "eight_foot", "nine_foot", "snooker", "carom"};
 /// The lists of cushions, jaws and pockets beside.
 inline constexpr Field<Table> kTableFields[] = {
-    field<&Table::preset>("preset", "a table with published sizes",
-                          {.names = kTablePresets}),
+    field<&Table::preset>("preset", "a table with published sizes", {.names = kTablePresets}),
     field<&Table::width>("width", at_least(0.0, kMaxCoordinate, "m"), "between the nose lines along x",
                          {.files = Files::kRecord}),
     field<&Table::length>("length", at_least(0.0, kMaxCoordinate, "m"), "the same along y",

@@ -1,5 +1,8 @@
 // The list of ball-ball models, each a file beside this one, and the law of friction that they share.
 #include "carom/engine/ball_ball.h"
+
+#include <span>
+#include <string_view>
 #include "carom/engine/math.h"
 
 namespace carom {

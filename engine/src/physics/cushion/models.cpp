@@ -1,6 +1,9 @@
 // The list of cushion models. Each is a file beside this one, with its row.
 #include "carom/engine/cushion.h"
 
+#include <span>
+#include <string_view>
+
 namespace carom {
 
 extern const CushionModelInfo kMathavan2010, kStronge, kImpulse;
