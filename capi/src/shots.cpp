@@ -2,9 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
 
 #include "carom/engine/simulate.h"
 #include "guard.h"
@@ -24,29 +28,28 @@ using carom::c::chosen_isa;
 using carom::c::guarded;
 using carom::c::need;
 
-/// The number that a name stands for.
-double& ball_param(carom::BallParams& p, const char* name) {
-    // A field that is added to BallParams does not compile here until it has a name.
-    auto& [R, m, mu_s, mu_r, mu_sp, mu_b, e_b, e_c, f_c, mu_b_more, mu_b_fall] = p;
-    const struct {
-        const char* name;
-        double& value;
-    } known[] = {{"radius", R},
-                 {"mass", m},
-                 {"mu_s", mu_s},
-                 {"mu_r", mu_r},
-                 {"mu_sp", mu_sp},
-                 {"mu_b", mu_b},
-                 {"mu_b_more", mu_b_more},
-                 {"mu_b_fall", mu_b_fall},
-                 {"e_b", e_b},
-                 {"e_c", e_c},
-                 {"f_c", f_c}};
-    for (const auto& k : known)
-        if (std::strcmp(name, k.name) == 0) return k.value;
-    throw BadArgument("there is no ball parameter \"" + std::string(name) +
-                      "\"; use radius, mass, mu_s, mu_r, mu_sp, mu_b, mu_b_more, mu_b_fall, e_b, e_c or f_c");
+/// The row of a number of the balls.
+const carom::Field<carom::BallParams>& ball_field(std::string_view name) {
+    std::string known;
+    for (const auto& f : carom::kBallFields) {
+        if (f.kind != carom::Key::Kind::kNumber) continue;
+        if (name == f.key) return f;
+        known += (known.empty() ? "" : ", ") + std::string(f.key);
+    }
+    throw BadArgument("there is no ball parameter \"" + std::string(name) + "\"; use " +
+                      known.replace(known.rfind(", "), 2, " or "));
 }
+
+/// What both structs of a cue have.
+constexpr std::pair<double carom_cue::*, double carom::Cue::*> kCueNumbers[] = {
+    {&carom_cue::speed, &carom::Cue::speed},
+    {&carom_cue::aim_deg, &carom::Cue::aim_deg},
+    {&carom_cue::elevation_deg, &carom::Cue::elevation_deg},
+    {&carom_cue::side, &carom::Cue::side},
+    {&carom_cue::height, &carom::Cue::height},
+    {&carom_cue::mass, &carom::Cue::mass},
+    {&carom_cue::end_mass, &carom::Cue::end_mass}};
+static_assert(sizeof(carom_cue) == std::size(kCueNumbers) * sizeof(double));
 
 carom::BallStart* find_ball(carom::Scene& scene, const std::string& id) {
     const auto it = std::find_if(scene.ball.begin(), scene.ball.end(),
@@ -109,7 +112,7 @@ void carom_scene_free(carom_scene* scene) {
 carom_status carom_scene_set_ball_param(carom_scene* scene, const char* name, double value) {
     return guarded([&] {
         need({scene, name});
-        ball_param(scene->scene.balls, name) = value;
+        ball_field(name).set(scene->scene.balls, value);
         for (carom::BallStart& ball : scene->scene.ball) ball.position.z() = scene->scene.size_of(ball).R;
     });
 }
@@ -117,8 +120,7 @@ carom_status carom_scene_set_ball_param(carom_scene* scene, const char* name, do
 carom_status carom_scene_get_ball_param(const carom_scene* scene, const char* name, double* value) {
     return guarded([&] {
         need({scene, name, value});
-        carom::BallParams params = scene->scene.balls;
-        *value = ball_param(params, name);
+        *value = std::get<double>(ball_field(name).get(scene->scene.balls));
     });
 }
 
@@ -142,7 +144,7 @@ carom_status carom_scene_set_ball(carom_scene* scene, const char* id, const doub
 void carom_cue_init(carom_cue* cue) {
     if (cue == nullptr) return;
     const carom::Cue c;
-    *cue = {c.speed, c.aim_deg, c.elevation_deg, c.side, c.height, c.mass, c.end_mass};
+    for (const auto& [theirs, ours] : kCueNumbers) cue->*theirs = c.*ours;
 }
 
 carom_status carom_scene_set_cue(carom_scene* scene, const char* id, const carom_cue* cue) {
@@ -155,13 +157,7 @@ carom_status carom_scene_set_cue(carom_scene* scene, const char* id, const carom
         need({id});
         carom::Cue c;
         c.ball = id;
-        c.speed = cue->speed;
-        c.aim_deg = cue->aim_deg;
-        c.elevation_deg = cue->elevation_deg;
-        c.side = cue->side;
-        c.height = cue->height;
-        c.mass = cue->mass;
-        c.end_mass = cue->end_mass;
+        for (const auto& [theirs, ours] : kCueNumbers) c.*ours = cue->*theirs;
         scene->scene.cue = c;
     });
 }

@@ -7,6 +7,8 @@
 #include <set>
 #include <string>
 
+#include "carom/engine/cushion.h"
+
 #include "support/engine_cases.h"
 
 namespace carom {
@@ -35,7 +37,7 @@ TEST(Breaks, FirstEventsAgreeUpToWhereTheReferenceIsItsOwn) {
             scene.table.pockets.push_back({k.at("id"), vec2(k.at("center")), k.at("radius").get<double>(),
                                            k.at("depth").get<double>()});
         scene.balls = balls_from(c.at("params"));
-        scene.physics.cushion = CushionModel::kMathavan2010;
+        scene.physics.cushion = cushion_model("mathavan_2010");
         scene.physics.cloth_slip = ClothSlipSign::kAsPublished;
         scene.physics.clusters = ClusterModel::kSequential;
         scene.physics.substeps = 1000;

@@ -34,8 +34,8 @@ Scene bare() {
     scene.balls = make_ball_params("pool");
     scene.balls.mu_s = scene.balls.mu_r = scene.balls.mu_sp = scene.balls.mu_b = scene.balls.f_c = 0.0;
     scene.balls.e_b = scene.balls.e_c = 1.0;
-    scene.physics.ball_ball = BallBallModel::kElastic;
-    scene.physics.cushion = CushionModel::kSmooth;
+    scene.physics.ball_ball = ball_ball_model("elastic");
+    scene.physics.cushion = &kSmooth;
     const double w = 0.5, l = 0.7, h = 0.036576;
     scene.table.width = w;
     scene.table.length = l;
@@ -68,35 +68,35 @@ const Case kCases[] = {
      }},
     {"throw", "carom::pair_friction", "model inelastic, mu_b = 0.05",
      [](Scene& s) {
-         s.physics.ball_ball = BallBallModel::kInelastic;
+         s.physics.ball_ball = ball_ball_model("inelastic");
          s.balls.mu_b = 0.05;
      }},
     {"throw:mathavan", "", "model mathavan, mu_b = 0.05, no friction on the cloth",
      [](Scene& s) {
-         s.physics.ball_ball = BallBallModel::kMathavan;
+         s.physics.ball_ball = &kMathavan;
          s.balls.mu_b = 0.05;
      }},
     {"cloth_in_impact", "carom::kernel::tolerance_scalar",
      "the same with mu_s = 0.2, and gravity 0: the cloth acts in impacts only",
      [](Scene& s) {
-         s.physics.ball_ball = BallBallModel::kMathavan;
+         s.physics.ball_ball = &kMathavan;
          s.physics.gravity = 0.0;
          s.balls.mu_b = 0.05;
          s.balls.mu_s = 0.2;
      }},
     {"cushion_friction", "carom::detail::cushion_han_2005", "han_2005, f_c = 0.2",
      [](Scene& s) {
-         s.physics.cushion = CushionModel::kHan2005;
+         s.physics.cushion = &kHan2005;
          s.balls.f_c = 0.2;
      }},
     {"cushion_friction:stronge", "carom::detail::cushion_stronge", "stronge, f_c = 0.2",
      [](Scene& s) {
-         s.physics.cushion = CushionModel::kStronge;
+         s.physics.cushion = cushion_model("stronge");
          s.balls.f_c = 0.2;
      }},
     {"cushion_friction:mathavan_2010", "carom::detail::cushion_mathavan_2010", "mathavan_2010, f_c = 0.2",
      [](Scene& s) {
-         s.physics.cushion = CushionModel::kMathavan2010;
+         s.physics.cushion = cushion_model("mathavan_2010");
          s.balls.f_c = 0.2;
          s.balls.e_c = 0.95;
      }},

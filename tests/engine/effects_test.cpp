@@ -7,6 +7,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "carom/engine/ball_ball.h"
+#include "carom/engine/cushion.h"
+
 #include "reference/random_impacts.h"
 #include "support/engine_cases.h"
 
@@ -93,12 +96,12 @@ const Zero kZeros[] = {
     {"throw",
      [](Scene& s, reference::Generator&) {
          s.balls.mu_b = 0.0;
-         s.physics.ball_ball = BallBallModel::kInelastic;
+         s.physics.ball_ball = ball_ball_model("inelastic");
      }},
     {"cloth_in_impact", [](Scene& s, reference::Generator&) { s.balls.mu_b = 0.0; }},
     {"cloth_in_impact", [](Scene& s, reference::Generator&) { s.balls.mu_s = 0.0; }},
     {"cloth_in_impact",
-     [](Scene& s, reference::Generator&) { s.physics.ball_ball = BallBallModel::kInelastic; }},
+     [](Scene& s, reference::Generator&) { s.physics.ball_ball = ball_ball_model("inelastic"); }},
     {"cushions",
      [](Scene& s, reference::Generator&) {
          s.table = box(900.0, 900.0, 0.036576);
@@ -108,8 +111,7 @@ const Zero kZeros[] = {
      }},
     {"cushion_friction",
      [](Scene& s, reference::Generator& rng) {
-         constexpr CushionModel kClosed[] = {CushionModel::kHan2005, CushionModel::kImpulse,
-                                             CushionModel::kStronge};
+         const CushionModelInfo* kClosed[] = {&kHan2005, cushion_model("impulse"), cushion_model("stronge")};
          s.physics.cushion = kClosed[rng.next() % 3];
          s.balls.f_c = 0.0;
          // A rhomboid of diagonal noses with round jaws in two corners and a post in the middle.
@@ -177,7 +179,7 @@ TEST(Effects, PlanAndEverythingOnGiveTheSameRecord) {
         Scene scene = random_scene(rng);
         if (i % 3 == 0) scene.stop.time = 0.05;
         const Plan plan = make_plan(scene, kernel::Isa::kScalar);
-        for (const char* keyword : kEffectKeywords) scene.effects.push_back({keyword, true, {}});
+        for (const EffectInfo& effect : effect_table()) scene.effects.push_back({effect.keyword, true, {}});
         const Record a = simulate(plan), b = simulate(make_plan(scene, kernel::Isa::kScalar));
         ASSERT_EQ(a.hash(), b.hash()) << i;
     }
@@ -187,17 +189,17 @@ const std::string kBreak =
     "[rack]\n[[ball]]\nid = \"cue\"\nposition = [0.635, 0.5]\n[cue]\noffset = [0.1, 0.1]\n";
 
 TEST(Effects, RefusingWhatTheSceneNeedsIsAnErrorAtItsLine) {
-    for (const char* keyword : kEffectKeywords) {
-        const std::string line = std::string(keyword) + " = false";
+    for (const EffectInfo& effect : effect_table()) {
+        const std::string keyword = effect.keyword, line = keyword + " = false";
         const std::string message = plan_error("[effects]\n" + line + "\n" + kBreak);
-        const std::string place = "s.toml:2:" + std::to_string(std::string(keyword).size() + 4) +
-                                  ": effects." + line + ", but the scene needs it: ";
+        const std::string place = "s.toml:2:" + std::to_string(keyword.size() + 4) + ": effects." + line +
+                                  ", but the scene needs it: ";
         EXPECT_EQ(message.rfind(place, 0), 0u) << message;
         EXPECT_NE(message.find("; remove the line"), std::string::npos) << message;
         // Where it is not needed, both are accepted.
         const std::string still = "table.cushion = []\n[[ball]]\n";
         EXPECT_EQ(plan_error("[effects]\n" + line + "\n[table]\ncushion = []\n[[ball]]\n"), "") << keyword;
-        EXPECT_EQ(plan_error("[effects]\n" + std::string(keyword) + " = true\n" + kBreak), "") << keyword;
+        EXPECT_EQ(plan_error("[effects]\n" + keyword + " = true\n" + kBreak), "") << keyword;
     }
 }
 
@@ -213,9 +215,9 @@ TEST(Effects, ListsHoldWhatIsNeeded) {
     EXPECT_TRUE(alone.geometry.cushions.empty() && alone.geometry.noses.empty() &&
                 alone.geometry.pockets.empty());
     EXPECT_FALSE(alone.pairs);
-    EXPECT_FALSE(alone.sliding);
-    EXPECT_TRUE(alone.rolling);
-    EXPECT_FALSE(alone.spin_decay);
+    EXPECT_FALSE(alone.in_force(Effect::kSliding));
+    EXPECT_TRUE(alone.in_force(Effect::kRolling));
+    EXPECT_FALSE(alone.in_force(Effect::kSpinDecay));
     EXPECT_EQ(decision(alone, "cushions").reason,
               "none within reach: ball cue, the only one that moves, goes no farther than 0.459 m");
     EXPECT_EQ(verify(simulate(alone), alone), std::nullopt);
@@ -275,7 +277,7 @@ TEST(Effects, LateNeedIsCaught) {
         return violation ? violation->law + ": " + violation->message : std::string();
     };
     EXPECT_EQ(law([](Plan&) {}), "");
-    EXPECT_NE(law([](Plan& p) { p.spin_decay = false; }).find("E: the plan skips spin_decay"),
+    EXPECT_NE(law([](Plan& p) { p.skip(Effect::kSpinDecay); }).find("E: the plan skips spin_decay"),
               std::string::npos);
     EXPECT_NE(law([](Plan& p) { p.geometry.pockets.clear(); }).find("E: the plan skips pockets"),
               std::string::npos);
@@ -296,8 +298,10 @@ TEST(Effects, LateNeedIsCaught) {
         const auto violation = verify(simulate(plan), plan);
         return violation ? violation->message : std::string();
     };
-    EXPECT_NE(friction([](Plan& p) { p.sliding = false; }).find("the plan skips sliding"), std::string::npos);
-    EXPECT_NE(friction([](Plan& p) { p.rolling = false; }).find("the plan skips rolling"), std::string::npos);
+    EXPECT_NE(friction([](Plan& p) { p.skip(Effect::kSliding); }).find("the plan skips sliding"),
+              std::string::npos);
+    EXPECT_NE(friction([](Plan& p) { p.skip(Effect::kRolling); }).find("the plan skips rolling"),
+              std::string::npos);
 }
 
 // P4: no cliff between a skipped effect and a vanishing one.

@@ -6,6 +6,8 @@
 #include <map>
 #include <string>
 
+#include "carom/engine/ball_ball.h"
+
 #include "scene/rack.h"
 #include "support/hard_scenes.h"
 
@@ -84,7 +86,7 @@ TEST(HardContacts, ThreeBallsInTableCoordinates) {
             Scene scene = empty_scene();
             scene.balls.e_b = restitution;
             scene.balls.mu_b = scene.balls.mu_s = scene.balls.mu_r = scene.balls.mu_sp = 0.0;
-            scene.physics.ball_ball = BallBallModel::kInelastic;
+            scene.physics.ball_ball = ball_ball_model("inelastic");
             scene.physics.clusters = model;
             scene.stop.events = 1;
             const double R = scene.balls.R, x = 0.635, y = 1.486;
@@ -114,7 +116,7 @@ TEST(HardContacts, CradleIsOneEvent) {
             SCOPED_TRACE(std::to_string(n) + " object balls, e = " + std::to_string(restitution));
             Scene scene = frictionless();
             scene.balls.e_b = restitution;
-            scene.physics.ball_ball = BallBallModel::kInelastic;
+            scene.physics.ball_ball = ball_ball_model("inelastic");
             scene.stop.time = 2.0;
             const double R = scene.balls.R;
             add_ball(scene, "cue", 0.0, -0.5, 0.0, 0.7);
@@ -144,7 +146,7 @@ TEST(HardContacts, SqueezedBall) {
         SCOPED_TRACE(name(model));
         Scene scene = frictionless();
         scene.balls.e_b = 0.95;
-        scene.physics.ball_ball = BallBallModel::kInelastic;
+        scene.physics.ball_ball = ball_ball_model("inelastic");
         scene.physics.clusters = model;
         scene.stop.time = 0.1;
         const double R = scene.balls.R;
@@ -162,7 +164,7 @@ TEST(HardContacts, SqueezedBall) {
     }
     Scene line = frictionless();
     line.balls.e_b = 0.95;
-    line.physics.ball_ball = BallBallModel::kInelastic;
+    line.physics.ball_ball = ball_ball_model("inelastic");
     line.stop.events = 1;
     const double R = line.balls.R, expected[] = {-.044632, -.005973, .124616, .925989};
     add_ball(line, "cue", 0.0, -0.3, 0.0, 1.0);

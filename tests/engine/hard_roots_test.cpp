@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "carom/engine/cushion.h"
 #include "carom/engine/math.h"
 #include "contact/detect.h"
 #include "contact/roots.h"
@@ -200,7 +201,7 @@ TEST(HardRoots, CushionEnd) {
 TEST(HardRoots, Corner) {
     Scene scene = empty_scene();
     scene.table = box(4.5, 4.5, 0.036576);
-    scene.physics.cushion = CushionModel::kSmooth;
+    scene.physics.cushion = &kSmooth;
     scene.balls.mu_s = scene.balls.mu_r = scene.balls.mu_sp = 0.0;
     const double e = scene.balls.e_c, v = 2.0 / std::sqrt(2.0);
     add_ball(scene, "a", 1.0, 1.0, -v, -v);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/math.h"
 #include "support/hard_scenes.h"
 
@@ -29,7 +30,7 @@ Scene scene_named(const std::string& wanted) {
     scene.table = box(t.at("w").get<double>(), t.at("l").get<double>(), t.at("cushion_height").get<double>());
     scene.balls = balls_from(c.at("params"));
     scene.physics.gravity = c.at("params").at("g").get<double>();
-    scene.physics.ball_ball = BallBallModel::kInelastic;
+    scene.physics.ball_ball = ball_ball_model("inelastic");
     for (const auto& [id, s] : c.at("initial").items())
         add_ball(scene, id, vec3(s.at("r")), vec3(s.at("v")), vec3(s.at("w")));
     if (c.contains("cue")) {

@@ -9,6 +9,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "carom/engine/ball_ball.h"
+#include "carom/engine/cushion.h"
+
 #include "support/random_scenes.h"
 
 namespace carom {
@@ -58,8 +61,8 @@ Table cushion_and_jaw() {
 Scene smooth_scene(ClusterModel clusters = ClusterModel::kSequential) {
     Scene scene = empty_scene();
     scene.balls.mu_b = 0.0;
-    scene.physics.ball_ball = BallBallModel::kElastic;
-    scene.physics.cushion = CushionModel::kSmooth;
+    scene.physics.ball_ball = ball_ball_model("elastic");
+    scene.physics.cushion = &kSmooth;
     scene.physics.clusters = clusters;
     return scene;
 }
@@ -91,7 +94,7 @@ TEST(RandomSceneRegressions, StoppedPushedBall) {
 TEST(RandomSceneRegressions, HeldBallDoesNotStartByItself) {
     Scene scene = empty_scene();
     scene.table.cushions = {{"right", {1.0, 2.0}, {1.0, 0.0}, 0.036576}};
-    scene.physics.ball_ball = BallBallModel::kElastic;
+    scene.physics.ball_ball = ball_ball_model("elastic");
     scene.physics.clusters = ClusterModel::kSequential;
     scene.balls.mu_s = scene.balls.mu_r = 0.05;
     scene.balls.e_c = 0.0;
@@ -141,7 +144,7 @@ Scene on_a_box(double mu_s, double mu_b, ClusterModel clusters = ClusterModel::k
 // and that of its middle closed it, 350 000 times in 0.06 s (seed 36153).
 TEST(RandomSceneRegressions, SlowBallTurnedByItsFriction) {
     Scene scene = on_a_box(0.05, 0.2);
-    scene.physics.ball_ball = BallBallModel::kInelastic;
+    scene.physics.ball_ball = ball_ball_model("inelastic");
     add_ball(scene, "1", 0.52857500000000002, 1.5884800554788419, -6.6204355991043666e-07,
              -5.6711011464052133e-07, Vec3(-64.902608883415695, 63.3283501590588, 51.608987921466046));
     add_ball(scene, "2", 0.5, 1.6379734073051226);
@@ -191,7 +194,7 @@ TEST(RandomSceneRegressions, NoRoomForMarginsBetweenTwoBalls) {
     scene.table = make_table("seven_foot");
     scene.balls.mu_s = 0.05;
     scene.balls.e_b = scene.balls.e_c = 1.0;
-    scene.physics.ball_ball = BallBallModel::kInelastic;
+    scene.physics.ball_ball = ball_ball_model("inelastic");
     add_ball(scene, "1", 0.40957500000000002, 1.5749440554788419);
     add_ball(scene, "11", 0.46672500000000006, 1.4759573518262805);
     add_ball(scene, "14", 0.43815000000000004, 1.5254507036525613, 0.0, 0.0,
@@ -203,7 +206,7 @@ TEST(RandomSceneRegressions, NoRoomForMarginsBetweenTwoBalls) {
 // each other (seed 76535 of the other family).
 TEST(RandomSceneRegressions, MarginsOfTheOthersStay) {
     Scene scene = on_a_box(0.2, 0.05, ClusterModel::kSequential);
-    scene.physics.cushion = CushionModel::kSmooth;
+    scene.physics.cushion = &kSmooth;
     scene.balls.e_b = 0.8;
     scene.balls.e_c = 0.0;
     scene.balls.f_c = 0.0;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "carom/engine/cushion.h"
+
 #include "support/engine_cases.h"
 
 namespace carom {
@@ -86,7 +88,7 @@ TEST(RestingContacts, BallAtTheCushionRebounds) {
     for (const double offset : {0.0, -1e-12, 1e-12, 1e-9}) {
         Scene scene = empty_scene();
         scene.table = box(1.0, 2.0, 0.036576);
-        scene.physics.cushion = CushionModel::kSmooth;
+        scene.physics.cushion = &kSmooth;
         const double R = scene.balls.R;
         add_ball(scene, "a", 1.0 - R - offset, 0.7, 1.0, 0.0, rolling_spin(1.0, 0.0, R));
         const Record record = run_verified(scene);

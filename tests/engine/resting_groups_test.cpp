@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/cushion.h"
+
 #include "contact/complementarity.h"
 #include "support/random_scenes.h"
 
@@ -19,7 +21,7 @@ using namespace test;
 Scene on_box() {
     Scene scene = empty_scene();
     scene.table = box(1.0, 2.0, 0.036576);
-    scene.physics.cushion = CushionModel::kSmooth;
+    scene.physics.cushion = &kSmooth;
     return scene;
 }
 

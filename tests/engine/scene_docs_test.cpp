@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/plan.h"
 #include "carom/engine/scene.h"
 #include "support/pages.h"
 #include "support/scene_errors.h"
@@ -168,7 +169,9 @@ TEST(SceneDocs, EffectsNameKeysThatExist) {
         for (const std::string& key : code(row.cells[2]))
             EXPECT_TRUE(known.count(key)) << keyword[0] << ": " << key;
     }
-    EXPECT_EQ(keywords, std::vector<std::string>(std::begin(kEffectKeywords), std::end(kEffectKeywords)));
+    std::vector<std::string> table;
+    for (const EffectInfo& effect : effect_table()) table.push_back(effect.keyword);
+    EXPECT_EQ(keywords, table);
 }
 
 // What the reader says about a choice that it does not know: "...; use a, b or c".

@@ -134,8 +134,8 @@ TEST(SceneText, WritesEveryKeyOfTheFormat) {
         scene_text(parse_scene(with(kEveryKey, "mu_b = 0.06", "mu_b_fit = [0, 0.1, 1]"), "a.toml")) +
         scene_text(parse_scene(with(kEveryKey, "camera = \"rail\"", "eye = [1, 2, 3]\ntarget = [0, 1, 0]"),
                                "a.toml"));
-    for (const char* effect : kEffectKeywords)
-        text += std::string(effect) + " = true\n";  // one stands for all
+    for (const EffectInfo& effect : effect_table())
+        text += std::string(effect.keyword) + " = true\n";  // one stands for all
     for (const std::string& key : keys) {
         const bool section =
             text.find("[" + key + "]") != text.npos || text.find("." + key + "]") != text.npos;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/math.h"
 #include "support/engine_cases.h"
 
@@ -23,7 +24,7 @@ double throw_deg(double phi, double v, bool rolls, double w_z, double fall, doub
     scene.balls.mu_b_fall = fall;
     scene.balls.e_b = e_b;
     scene.balls.mu_s = 0.0;  // the impact alone: no cloth before it
-    scene.physics.ball_ball = BallBallModel::kInelastic;
+    scene.physics.ball_ball = ball_ball_model("inelastic");
     scene.stop.events = 1;
     const double R = scene.balls.R;
     const Vec2 n(std::cos(phi * kDegree), std::sin(phi * kDegree));

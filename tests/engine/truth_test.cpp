@@ -91,8 +91,8 @@ TEST(Truth, T9TrisectRule) {
 // Section 8: a ball that rolls into a cushion leaves it sliding, and what topspin is left bends its path back
 // towards the cushion before it rolls again; straight in, it returns slower than e_c.
 TEST(Truth, AfterACushionTheBallSlidesThenRollsAndTopspinBendsItBack) {
-    for (const CushionModel model : {CushionModel::kHan2005, CushionModel::kMathavan2010,
-                                     CushionModel::kImpulse, CushionModel::kStronge}) {
+    for (const CushionModelInfo* model :
+         {&kHan2005, cushion_model("mathavan_2010"), cushion_model("impulse"), cushion_model("stronge")}) {
         Scene scene = empty_scene();
         scene.table.cushions = {{"c1", {0.0, -5.0}, {0.0, 5.0}, 1.28 * scene.balls.R}};
         scene.physics.cushion = model;

@@ -1,5 +1,6 @@
 // Many scenes from one file: keys, distributions, and that a shot depends on nothing but what it should.
 #include "carom/engine/variation.h"
+#include "carom/engine/cushion.h"
 
 #include <gtest/gtest.h>
 
@@ -64,7 +65,7 @@ TEST_F(VariationTest, EveryKindOfKeyReachesItsValue) {
     EXPECT_EQ(s.ball[1].position.y(), 1.5);
     EXPECT_EQ(s.ball[1].velocity.x(), 0.5);
     EXPECT_EQ(s.balls.mu_b, 0.07);
-    EXPECT_EQ(s.physics.cushion, CushionModel::kStronge);
+    EXPECT_EQ(s.physics.cushion, cushion_model("stronge"));
     EXPECT_EQ(s.table.pockets[0].radius, 0.07);
     EXPECT_EQ(s.table.cushions[1].to.y(), 4.0);
     EXPECT_EQ(s.stop.events, 7);

@@ -4,6 +4,9 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "carom/engine/ball_ball.h"
+#include "carom/engine/cushion.h"
+
 #include "support/engine_cases.h"
 
 namespace carom::test {
@@ -25,8 +28,8 @@ inline Scene frictionless() {
     BallParams& b = scene.balls;
     b.mu_s = b.mu_r = b.mu_sp = b.mu_b = b.f_c = 0.0;
     b.e_b = b.e_c = 1.0;
-    scene.physics.ball_ball = BallBallModel::kElastic;
-    scene.physics.cushion = CushionModel::kSmooth;
+    scene.physics.ball_ball = ball_ball_model("elastic");
+    scene.physics.cushion = &kSmooth;
     return scene;
 }
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/ball_ball.h"
+#include "carom/engine/cushion.h"
 #include "carom/engine/math.h"
 #include "reference/random_impacts.h"
 #include "scene/rack.h"
@@ -69,12 +71,12 @@ class RandomScene {
         b.e_c = one_of<double>({0.85, 0.85, 0.0, 0.5, 1.0});
         b.f_c = one_of<double>({0.2, 0.2, 0.0});
         Physics& p = scene_.physics;
-        p.ball_ball = one_of<BallBallModel>({BallBallModel::kMathavan, BallBallModel::kMathavan,
-                                             BallBallModel::kInelastic, BallBallModel::kElastic});
+        p.ball_ball = one_of<const BallBallModelInfo*>(
+            {&kMathavan, &kMathavan, ball_ball_model("inelastic"), ball_ball_model("elastic")});
         // The published march gains energy by construction where nothing is lost: 1e-4 of it at N = 1000 and
         // e = 1.
-        if (p.ball_ball == BallBallModel::kMathavan && b.e_b == 1.0) b.e_b = 0.95;
-        p.cushion = chance(0.7) ? CushionModel::kHan2005 : CushionModel::kSmooth;
+        if (p.ball_ball == &kMathavan && b.e_b == 1.0) b.e_b = 0.95;
+        p.cushion = chance(0.7) ? &kHan2005 : &kSmooth;
         p.clusters = one_of<ClusterModel>({ClusterModel::kCompliant, ClusterModel::kCompliant,
                                            ClusterModel::kSequential, ClusterModel::kRigid});
     }

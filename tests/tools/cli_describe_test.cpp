@@ -56,7 +56,8 @@ TEST(CliDescribe, BashOffersCommandsOptionsValuesAndFiles) {
     EXPECT_EQ(offered(folder, {"carom", "render", "--fps", ""}), Words{});
     EXPECT_EQ(offered(folder, {"carom", "check", "a"}), Words{"a shot.toml"});
     EXPECT_EQ(offered(folder, {"carom", "sweep", "-o", "a"}), Words{"a shot.toml"});
-    EXPECT_EQ(offered(folder, {"carom", "describe", ""}), (Words{"man", "bash", "zsh"}));
+    EXPECT_EQ(offered(folder, {"carom", "describe", ""}),
+              (Words{"man", "bash", "zsh", "scene-schema", "record-schema", "scene-format"}));
 }
 
 TEST(CliDescribe, ZshReadsItsCompletion) {

@@ -24,10 +24,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // What a record file has to keep. Whoever adds a field to one of these structs is led here by the compiler:
 // the names below no longer match. Then write the field in engine/src/record/write.cpp, read it in
-// read.cpp beside it, describe it in docs/reference/ (a record that lacks it needs a default and a note), make
-// it a ball parameter of capi/src/shots.cpp if it is one, and give it a value of its own in sample_record().
-static_assert(sizeof(BallParams) == 11 * sizeof(double),
-              "BallParams has another field: see the comment above, record files have to keep it");
+// read.cpp beside it, describe it in docs/reference/ (a record that lacks it needs a default and a note), and
+// give it a value of its own in sample_record(). Balls, table and render settings have rows: scene_rows_test.cpp.
 struct FieldsOfARecord {
     Table table;
     BallParams balls;
@@ -39,7 +37,7 @@ struct FieldsOfARecord {
     std::vector<EventCost> costs;
     double setup_detect_ns, duration, start_time;
     StopReason stopped;
-    std::shared_ptr<void> not_kept[2];
+    std::shared_ptr<void> not_kept;
 };
 static_assert(sizeof(Record) == sizeof(FieldsOfARecord),
               "Record has another field: see the comment above, record files have to keep it");
@@ -109,19 +107,13 @@ TEST(RecordFile, ReadsBackWhole) {
     EXPECT_EQ(test::read_file(folder.file("a.json")), test::read_file(folder.file("b.json")));
 }
 
-TEST(RecordFile, NamesOfMethodsLiveAsLongAsTheRecordOrACopy) {
+TEST(RecordFile, KeepsMethodsThatThisVersionDoesNotKnow) {
     const TemporaryFolder folder;
     Record record = sample_record();
     const std::string longer(200, 'm');
     record.costs[2].method = longer;
     write_record(record, folder.file("a.json"));
-    auto read = std::make_unique<Record>(read_record(folder.file("a.json")));
-    Record copy;
-    copy = *read;
-    const Record moved = std::move(*read);
-    read.reset();
-    EXPECT_EQ(copy.costs.at(2).method, longer);
-    EXPECT_EQ(moved.costs.at(2).method, longer);
+    EXPECT_EQ(read_record(folder.file("a.json")).costs.at(2).method, longer);
 }
 
 TEST(Record, ACopyThatGrowsHasOrientationsOfItsOwn) {

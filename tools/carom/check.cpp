@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "carom/engine/ball_ball.h"
 #include "console.h"
 #include "options.h"
 #include "setup.h"
@@ -25,7 +26,7 @@ std::string ids(const List& list) {
 
 std::string kernel_line(const Plan& plan) {
     const Physics& physics = plan.scene.physics;
-    if (physics.ball_ball != BallBallModel::kMathavan) return "closed form";
+    if (!physics.ball_ball->reads_tolerance) return "closed form";
     if (physics.substeps)
         return fmt::format("published march, {} substeps, cloth slip {}", *physics.substeps,
                            name(physics.cloth_slip));

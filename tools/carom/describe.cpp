@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "console.h"
+#include "formats.h"
 #include "options.h"
 
 namespace carom::tools {
@@ -208,7 +209,12 @@ std::string zsh_completion(const Options& program) {
 constexpr struct {
     const char* name;
     std::string (*text)(const Options& program);
-} kFormats[] = {{"man", man_page}, {"bash", bash_completion}, {"zsh", zsh_completion}};
+} kFormats[] = {{"man", man_page},
+                {"bash", bash_completion},
+                {"zsh", zsh_completion},
+                {"scene-schema", [](const Options&) { return scene_schema(); }},
+                {"record-schema", [](const Options&) { return record_schema(); }},
+                {"scene-format", [](const Options&) { return scene_format(); }}};
 
 struct DescribeArgs {
     std::string format;

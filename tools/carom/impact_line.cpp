@@ -134,14 +134,13 @@ Json ball_ball(const Json& line, const ImpactSettings& settings) {
             {"w2", list(result.w2)}, {"steps", result.steps}, {"ns", ns}};
 }
 
-CushionModel cushion_model(const Json& line) {
+const CushionModelInfo& model_of(const Json& line) {
     const Json& json = need(line, "model");
     if (!json.is_string()) throw LineError("\"model\": expected a string");
+    if (const CushionModelInfo* model = cushion_model(json.get_ref<const std::string&>())) return *model;
     std::string known;
-    for (const CushionModelInfo& info : cushion_models()) {
-        if (json.get_ref<const std::string&>() == info.name) return info.model;
-        known += (known.empty() ? "" : ", ") + std::string(info.name);
-    }
+    for (const CushionModelInfo* model : all_of(&kHan2005))
+        known += (known.empty() ? "" : ", ") + std::string(model->name);
     throw LineError(fmt::format("\"model\": this is no cushion model of this version; there are: {}", known));
 }
 
@@ -160,7 +159,7 @@ Vec2 unit_normal(const Json& line) {
 Json cushion(const Json& line) {
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
     refuse_unknown(line, {"kind", "id", "model", "params", "normal", "v", "w"});
-    const CushionModel model = cushion_model(line);
+    const CushionModelInfo& model = model_of(line);
     const Json& params = params_of(line);
     refuse_unknown(params, {"R", "m", "mu_s", "e_c", "f_c", "height"});
     CushionContact contact{};
@@ -170,14 +169,14 @@ Json cushion(const Json& line) {
     contact.e_c = parameter(params, "e_c", 0.0, 1.0);
     contact.f_c = parameter(params, "f_c", 0.0, kInfinite);
     contact.height = parameter(params, "height", 0.0, 2.0 * contact.R, true);
-    if (model == CushionModel::kMathavan2010 && !mathavan_2010_ends(contact))
+    if (model.accepts != nullptr && !model.accepts(contact))
         throw LineError(
             "\"params\": with this f_c and mu_s the ball could jam under the nose; lower one of them");
     double v_in[3], w_in[3];
     read_vector(line, "v", v_in);
     read_vector(line, "w", w_in);
     Vec3 v(v_in[0], v_in[1], v_in[2]), w(w_in[0], w_in[1], w_in[2]);
-    resolve_cushion(model, contact, unit_normal(line), v, w);
+    model.resolve(contact, unit_normal(line), v, w);
     if (!(v.allFinite() && w.allFinite())) throw LineError("the result is too large for a number");
     return {{"v", {v.x(), v.y(), v.z()}}, {"w", {w.x(), w.y(), w.z()}}};
 }

@@ -110,7 +110,7 @@ typedef struct carom_cue {
     double elevation_deg; /* of the butt */
     double side, height;  /* offset in ball radii: left +, up +; together at most 0.5 */
     double mass;          /* [kg] */
-    double end_mass;      /* [kg], for squirt; 0 for none */
+    double end_mass;      /* of its end, which gives way sideways [kg]; 0 for none */
 } carom_cue;
 
 /* Fills in the defaults of a scene file: 9 m/s along +y, a little above the centre, 0.567 kg, end mass

@@ -84,13 +84,13 @@ kernel::ImpactResult Resolver::collide(int one, int two, const kernel::Ball& b1,
     const BallParams& p = plan_.balls;
     const BallSize &size1 = plan_.sizes[one], &size2 = plan_.sizes[two];
     const BallBallModelInfo& model = *plan_.ball_ball;
-    const double mu_s = plan_.cloth_in_impact ? p.mu_s : 0.0;
+    const double mu_s = plan_.in_force(Effect::kClothInImpact) ? p.mu_s : 0.0;
     const kernel::ImpactParams params{
         .R = size1.R,
         .m = size1.m,
         .mu_s1 = mu_s,
         .mu_s2 = mu_s,
-        .mu_b = plan_.friction ? pair_friction(plan_, balls_, one, two) : 0.0,
+        .mu_b = plan_.in_force(Effect::kThrow) ? pair_friction(plan_, balls_, one, two) : 0.0,
         .e_b = model.reads_restitution ? p.e_b : 1.0,
         .cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished
                           ? kernel::ClothSlip::kAsPublished
@@ -105,9 +105,9 @@ kernel::ImpactResult Resolver::collide(int one, int two, const kernel::Ball& b1,
             collide_unequal(size1, size2, b1, b2, params, result);
     }
     if (cost_ != nullptr) {
-        const bool mathavan = equal && model.model == BallBallModel::kMathavan;
+        const bool integrated = equal && model.reads_tolerance;
         cost_->steps = result.steps;
-        cost_->method = !mathavan                       ? model.name
+        cost_->method = !integrated                     ? model.name
                         : plan_.impact.march != nullptr ? "march"
                                                         : kernel::name(result.method);
     }
@@ -143,7 +143,7 @@ bool Resolver::cluster(int a, int b, double v_n) {
     if (slow && hold_in_cluster(Pressed::kBefore)) return true;
     log_.note_long_round();
     const bool compliant = plan_.clusters == ClusterModel::kCompliant;
-    const bool friction = compliant && plan_.friction && plan_.ball_ball->reads_friction;
+    const bool friction = compliant && plan_.in_force(Effect::kThrow) && plan_.ball_ball->reads_friction;
     long steps;
     {
         const Stopwatch watch(kernel_ns_);

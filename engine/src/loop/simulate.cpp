@@ -54,7 +54,7 @@ void Run::start_balls() {
     }
     for (int i = 0; scene.cue && i < balls_.count(); ++i) {
         if (log_.id(i) != scene.cue->ball) continue;
-        const StruckBall struck = strike(*scene.cue, plan_.sizes[i], plan_.squirt);
+        const StruckBall struck = strike(*scene.cue, plan_.sizes[i], plan_.in_force(Effect::kSquirt));
         log_.begin(i, start_segment(0.0, balls_.segment(i).r, struck.v, struck.w, balls_.motion(i)));
         log_.event(EventType::kCueStrike, i);
     }

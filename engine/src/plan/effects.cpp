@@ -2,190 +2,228 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cstddef>
+#include <span>
 #include <string>
-#include <vector>
 
 #include "plan/reach.h"
 
 namespace carom {
+
+/// What the decisions depend on. The plan holds those that are made already.
+struct EffectFacts {
+    const Scene& scene;
+    const Plan& plan;
+    const Reach& reach;
+
+    const BallParams& balls() const { return scene.balls; }
+    bool has_cushions() const { return !scene.table.cushions.empty() || !scene.table.jaws.empty(); }
+    bool impacts() const { return plan.pairs || (reach.cushions && has_cushions()); }
+};
+
 namespace {
 
-struct Need {
-    bool needed;
-    std::string reason;
+using Facts = EffectFacts;
+
+Need coefficient(const char* symbol, double value) {
+    return {value != 0.0, fmt::format("{} = {}", symbol, value)};
+}
+
+Need no_two_balls_meet(const Facts& f) {
+    return {false, "no two balls can meet: " + f.reach.why};
+}
+
+Need sliding(const Facts& f) {
+    if (f.scene.physics.gravity == 0.0) return {false, "gravity = 0: no friction on the cloth"};
+    if (f.balls().mu_s != 0.0 && !f.reach.slips && !f.impacts())
+        return {false, "no ball ever slips: none does at the start, and none meets anything"};
+    return coefficient("mu_s", f.balls().mu_s);
+}
+
+Need rolling(const Facts& f) {
+    if (f.scene.physics.gravity == 0.0) return {false, "gravity = 0: no resistance of the cloth"};
+    if (f.balls().mu_r != 0.0 && !f.reach.moves) return {false, "no ball ever moves"};
+    return coefficient("mu_r", f.balls().mu_r);
+}
+
+Need spin_decay(const Facts& f) {
+    const double mu_sp = f.balls().mu_sp;
+    if (f.scene.physics.gravity == 0.0) return {false, "gravity = 0: no friction on the cloth"};
+    if (mu_sp == 0.0) return coefficient("mu_sp", mu_sp);
+    const auto needed = [&](const char* why) {
+        return Need{true, fmt::format("mu_sp = {}; {}", mu_sp, why)};
+    };
+    bool side = f.scene.cue && f.scene.cue->side != 0.0 && f.scene.cue->speed != 0.0;
+    for (const BallStart& ball : f.scene.ball) side = side || ball.spin.z() != 0.0;
+    if (side) return needed("a ball starts with vertical spin");
+    if (f.plan.in_force(Effect::kThrow)) return needed("friction between balls makes vertical spin");
+    const bool rough = f.balls().f_c != 0.0 && (f.plan.cushion->reads_friction || f.plan.jaw->reads_friction);
+    if (rough && f.plan.in_force(Effect::kCushions)) return needed("cushion friction makes vertical spin");
+    return {false, "no ball can ever have vertical spin: none at the start, no friction in impacts"};
+}
+
+Need ball_friction_needed(const Facts& f) {
+    const BallParams& p = f.balls();
+    if (f.scene.ball.size() < 2) return {false, "one ball only"};
+    if (!f.plan.ball_ball->reads_friction)
+        return {false, fmt::format("model {} has no friction", f.plan.ball_ball->name)};
+    if (!p.ball_friction()) return coefficient("mu_b", 0.0);
+    if (!f.plan.pairs) return no_two_balls_meet(f);
+    if (p.mu_b_more == 0.0) return coefficient("mu_b", p.mu_b);
+    return {true, fmt::format("mu_b = {} + {} exp(-{} u)", p.mu_b, p.mu_b_more, p.mu_b_fall)};
+}
+
+Need cloth_in_impact(const Facts& f) {
+    const BallParams& p = f.balls();
+    if (f.scene.ball.size() < 2) return {false, "one ball only"};
+    if (!f.plan.ball_ball->reads_cloth)
+        return {false, fmt::format("model {} does not read the cloth", f.plan.ball_ball->name)};
+    if (p.mu_s == 0.0 || !p.ball_friction()) return {false, p.mu_s == 0.0 ? "mu_s = 0" : "mu_b = 0"};
+    if (!f.plan.pairs) return no_two_balls_meet(f);
+    return {true, "mu_s and mu_b > 0; without vertical slip it is 0 at that impact"};
+}
+
+Need cushions(const Facts& f) {
+    if (!f.has_cushions()) return {false, "the table has none"};
+    if (!f.reach.cushions) return {false, "none within reach: " + f.reach.why};
+    return {true,
+            fmt::format("{} cushions, {} jaws", f.scene.table.cushions.size(), f.scene.table.jaws.size())};
+}
+
+Need cushion_friction(const Facts& f) {
+    const Table& table = f.scene.table;
+    if (!f.has_cushions()) return {false, "the table has no cushions"};
+    if (!f.reach.cushions) return {false, "no cushion within reach: " + f.reach.why};
+    const CushionModelInfo &straight = *f.plan.cushion, &jaw = *f.plan.jaw;
+    if (&straight == &kSmooth && (&jaw == &kSmooth || table.jaws.empty())) return {false, "model smooth"};
+    bool level = f.balls().f_c == 0.0 && straight.reflects_when_level && jaw.reflects_when_level;
+    for (const BallSize& ball : f.plan.sizes) {
+        for (const Cushion& c : table.cushions) level = level && c.height == ball.R;
+        for (const Jaw& j : table.jaws) level = level && j.height == ball.R;
+    }
+    if (level) return {false, "f_c = 0 and the noses at ball height: smooth"};
+    return {true, &straight == &jaw
+                      ? fmt::format("model {}, f_c = {}", straight.name, f.balls().f_c)
+                      : fmt::format("model {}, jaws {}, f_c = {}", straight.name, jaw.name, f.balls().f_c)};
+}
+
+Need pockets(const Facts& f) {
+    if (f.scene.table.pockets.empty()) return {false, "the table has none"};
+    if (!f.reach.pockets) return {false, "none within reach: " + f.reach.why};
+    return {true, fmt::format("{} pockets", f.scene.table.pockets.size())};
+}
+
+Need squirt(const Facts& f) {
+    if (!f.scene.cue) return {false, "no cue"};
+    if (f.scene.cue->side == 0.0 || f.scene.cue->end_mass == 0.0)
+        return {false, "no side offset, or end mass 0"};
+    return {true, "the cue strikes off centre"};
+}
+
+Need clusters(const Facts& f) {
+    const ClusterModel model = f.scene.physics.clusters;
+    if (f.scene.ball.size() < 3) return {false, "fewer than three balls"};
+    if (model == ClusterModel::kSequential) return {false, "clusters = \"sequential\": pair by pair"};
+    if (!f.plan.pairs) return no_two_balls_meet(f);
+    return {true, fmt::format("clusters = \"{}\"; decided per impact: no third ball within reach means the "
+                              "pair alone",
+                              name(model))};
+}
+
+// In the order of Effect, in which people know them.
+constexpr EffectInfo kTable[kEffects] = {
+    {.keyword = "sliding",
+     .skipped_when = "`mu_s` or `gravity` is 0, or no ball ever slips",
+     .keys = "`mu_s`, `gravity`",
+     .need = sliding},
+    {.keyword = "rolling",
+     .skipped_when = "`mu_r` or `gravity` is 0, or nothing moves",
+     .keys = "`mu_r`, `gravity`",
+     .need = rolling},
+    {.keyword = "spin_decay",
+     .skipped_when = "`mu_sp` or `gravity` is 0, or no ball can ever have vertical spin",
+     .keys = "`mu_sp`, `gravity`, `spin`",
+     .need = spin_decay,
+     .last = true},
+    {.keyword = "throw",
+     .skipped_when = "no friction between balls, or no two balls can meet",
+     .keys = "`mu_b`, `mu_b_fit`, `ball_ball`",
+     .need = ball_friction_needed,
+     .leave_out = [](Plan& plan) { plan.balls.mu_b = plan.balls.mu_b_more = 0.0; }},
+    {.keyword = "cloth_in_impact",
+     .skipped_when = "`mu_s` or `mu_b` is 0, another model than `mathavan`, or no two balls can meet",
+     .keys = "`mu_s`, `cloth_slip`, `ball_ball`",
+     .need = cloth_in_impact},
+    {.keyword = "cushions",
+     .skipped_when = "none within reach",
+     .keys = "`cushion`, `jaw`, `e_c`, `preset`",
+     .need = cushions,
+     .leave_out =
+         [](Plan& plan) {
+             plan.geometry.cushions.clear();
+             plan.geometry.noses.clear();
+         }},
+    {.keyword = "cushion_friction",
+     .skipped_when =
+         "model `smooth`, or `f_c` = 0 and all noses at ball height (closed forms), or no cushion "
+         "within reach",
+     .keys = "`f_c`, `height`, `cushion`, `jaw`",
+     .need = cushion_friction,
+     .leave_out = [](Plan& plan) { plan.cushion = plan.jaw = &kSmooth; }},
+    {.keyword = "pockets",
+     .skipped_when = "none within reach",
+     .keys = "`pocket`, `preset`",
+     .need = pockets,
+     .leave_out = [](Plan& plan) { plan.geometry.pockets.clear(); }},
+    {.keyword = "squirt",
+     .skipped_when = "no cue, no side offset, or `end_mass` 0",
+     .keys = "`offset`, `end_mass`",
+     .need = squirt},
+    {.keyword = "clusters",
+     .skipped_when = "fewer than three balls, `sequential`, or no two balls can meet",
+     .keys = "`clusters`",
+     .need = clusters,
+     .leave_out = [](Plan& plan) { plan.clusters = ClusterModel::kSequential; }},
 };
 
-class Decisions {
-  public:
-    Decisions(const Scene& scene, Plan& plan)
-        : scene_(scene), plan_(plan), p_(scene.balls), reach_(reach_of(scene)) {}
-
-    void run() {
-        // Later decisions use earlier ones: what nothing can reach has no friction either.
-        plan_.pairs = scene_.ball.size() > 1 && reach_.pairs;
-        cushions_ = decide("cushions", cushions());
-        if (!cushions_) {
-            plan_.geometry.cushions.clear();
-            plan_.geometry.noses.clear();
-        }
-        if (!decide("pockets", pockets())) plan_.geometry.pockets.clear();
-        if (!decide("cushion_friction", cushion_friction())) {
-            plan_.cushion = &cushion_model(CushionModel::kSmooth);
-            plan_.jaw = plan_.cushion;
-        }
-        throw_ = decide("throw", ball_friction_needed());
-        plan_.friction = throw_;
-        if (!throw_) plan_.balls.mu_b = plan_.balls.mu_b_more = 0.0;
-        plan_.cloth_in_impact = decide("cloth_in_impact", cloth_in_impact());
-        plan_.spin_decay = decide("spin_decay", spin_decay());
-        plan_.sliding = decide("sliding", sliding());
-        plan_.rolling = decide("rolling", rolling());
-        plan_.squirt = decide("squirt", squirt());
-        plan_.clusters = decide("clusters", clusters()) ? scene_.physics.clusters : ClusterModel::kSequential;
-        sort_by_keyword();
-        plan_.effects.push_back({"airborne", false, "not simulated: the model is planar"});
+/// What the plan decides, with what [effects] says about it.
+EffectDecision decide(const EffectInfo& info, const Facts& facts) {
+    const Need need = info.need(facts);
+    EffectDecision decision{info.keyword, need.needed, need.reason};
+    for (const EffectOverride& o : facts.scene.effects) {
+        if (o.keyword != info.keyword || o.in_force == need.needed) continue;
+        if (need.needed)
+            throw SceneError(facts.scene.file, o.where,
+                             fmt::format("effects.{} = false, but the scene needs it: {}; remove the line",
+                                         info.keyword, need.reason));
+        decision.in_force = true;
+        decision.reason = "forced on; not needed: " + need.reason;
     }
-
-  private:
-    bool decide(const char* keyword, const Need& need) {
-        EffectDecision decision{keyword, need.needed, need.reason};
-        for (const EffectOverride& o : scene_.effects) {
-            if (o.keyword != keyword) continue;
-            if (!o.in_force && need.needed) {
-                throw SceneError(
-                    scene_.file, o.where,
-                    fmt::format("effects.{} = false, but the scene needs it: {}; remove the line", keyword,
-                                need.reason));
-            }
-            if (o.in_force && !need.needed) {
-                decision.in_force = true;
-                decision.reason = "forced on; not needed: " + need.reason;
-            }
-        }
-        plan_.effects.push_back(decision);
-        return decision.in_force;
-    }
-
-    Need coefficient(const char* symbol, double value) const {
-        return {value != 0.0, fmt::format("{} = {}", symbol, value)};
-    }
-
-    bool impacts() const { return plan_.pairs || (reach_.cushions && has_cushions()); }
-    bool has_cushions() const { return !scene_.table.cushions.empty() || !scene_.table.jaws.empty(); }
-
-    Need sliding() const {
-        if (scene_.physics.gravity == 0.0) return {false, "gravity = 0: no friction on the cloth"};
-        if (p_.mu_s == 0.0) return coefficient("mu_s", p_.mu_s);
-        if (!reach_.slips && !impacts())
-            return {false, "no ball ever slips: none does at the start, and none meets anything"};
-        return coefficient("mu_s", p_.mu_s);
-    }
-    Need rolling() const {
-        if (scene_.physics.gravity == 0.0) return {false, "gravity = 0: no resistance of the cloth"};
-        if (p_.mu_r == 0.0) return coefficient("mu_r", p_.mu_r);
-        if (!reach_.moves) return {false, "no ball ever moves"};
-        return coefficient("mu_r", p_.mu_r);
-    }
-    Need spin_decay() const {
-        if (scene_.physics.gravity == 0.0) return {false, "gravity = 0: no friction on the cloth"};
-        if (p_.mu_sp == 0.0) return coefficient("mu_sp", p_.mu_sp);
-        bool side = scene_.cue && scene_.cue->side != 0.0 && scene_.cue->speed != 0.0;
-        for (const BallStart& ball : scene_.ball) side = side || ball.spin.z() != 0.0;
-        if (side) return {true, fmt::format("mu_sp = {}; a ball starts with vertical spin", p_.mu_sp)};
-        if (throw_)
-            return {true, fmt::format("mu_sp = {}; friction between balls makes vertical spin", p_.mu_sp)};
-        const bool rough = p_.f_c != 0.0 && (plan_.cushion->reads_friction || plan_.jaw->reads_friction);
-        if (cushions_ && rough)
-            return {true, fmt::format("mu_sp = {}; cushion friction makes vertical spin", p_.mu_sp)};
-        return {false, "no ball can ever have vertical spin: none at the start, no friction in impacts"};
-    }
-    Need ball_friction_needed() const {
-        if (scene_.ball.size() < 2) return {false, "one ball only"};
-        if (!plan_.ball_ball->reads_friction)
-            return {false, fmt::format("model {} has no friction", plan_.ball_ball->name)};
-        if (!p_.ball_friction()) return coefficient("mu_b", 0.0);
-        if (!plan_.pairs) return {false, "no two balls can meet: " + reach_.why};
-        if (p_.mu_b_more == 0.0) return coefficient("mu_b", p_.mu_b);
-        return {true, fmt::format("mu_b = {} + {} exp(-{} u)", p_.mu_b, p_.mu_b_more, p_.mu_b_fall)};
-    }
-    Need cloth_in_impact() const {
-        if (scene_.ball.size() < 2) return {false, "one ball only"};
-        if (!plan_.ball_ball->reads_cloth)
-            return {false, fmt::format("model {} does not read the cloth", plan_.ball_ball->name)};
-        if (p_.mu_s == 0.0 || !p_.ball_friction()) return {false, p_.mu_s == 0.0 ? "mu_s = 0" : "mu_b = 0"};
-        if (!plan_.pairs) return {false, "no two balls can meet: " + reach_.why};
-        return {true, "mu_s and mu_b > 0; without vertical slip it is 0 at that impact"};
-    }
-    Need cushions() const {
-        if (!has_cushions()) return {false, "the table has none"};
-        if (!reach_.cushions) return {false, "none within reach: " + reach_.why};
-        return {true,
-                fmt::format("{} cushions, {} jaws", scene_.table.cushions.size(), scene_.table.jaws.size())};
-    }
-    // A frictionless nose at ball height reflects: the closed forms then are the smooth one. mathavan_2010 is
-    // left alone, because it gets there by an integration that rounds differently.
-    Need cushion_friction() const {
-        if (!has_cushions()) return {false, "the table has no cushions"};
-        if (!reach_.cushions) return {false, "no cushion within reach: " + reach_.why};
-        const CushionModelInfo &straight = *plan_.cushion, &jaw = *plan_.jaw;
-        if (straight.model == CushionModel::kSmooth &&
-            (jaw.model == CushionModel::kSmooth || scene_.table.jaws.empty()))
-            return {false, "model smooth"};
-        bool level = p_.f_c == 0.0 && straight.model != CushionModel::kMathavan2010 &&
-                     jaw.model != CushionModel::kMathavan2010;
-        for (const BallSize& ball : plan_.sizes) {
-            for (const Cushion& c : scene_.table.cushions) level = level && c.height == ball.R;
-            for (const Jaw& j : scene_.table.jaws) level = level && j.height == ball.R;
-        }
-        if (level) return {false, "f_c = 0 and the noses at ball height: smooth"};
-        return {true, straight.model == jaw.model
-                          ? fmt::format("model {}, f_c = {}", straight.name, p_.f_c)
-                          : fmt::format("model {}, jaws {}, f_c = {}", straight.name, jaw.name, p_.f_c)};
-    }
-    Need pockets() const {
-        if (scene_.table.pockets.empty()) return {false, "the table has none"};
-        if (!reach_.pockets) return {false, "none within reach: " + reach_.why};
-        return {true, fmt::format("{} pockets", scene_.table.pockets.size())};
-    }
-    Need squirt() const {
-        if (!scene_.cue) return {false, "no cue"};
-        if (scene_.cue->side == 0.0 || scene_.cue->end_mass == 0.0)
-            return {false, "no side offset, or end mass 0"};
-        return {true, "the cue strikes off centre"};
-    }
-    Need clusters() const {
-        if (scene_.ball.size() < 3) return {false, "fewer than three balls"};
-        if (scene_.physics.clusters == ClusterModel::kSequential)
-            return {false, "clusters = \"sequential\": pair by pair"};
-        if (!plan_.pairs) return {false, "no two balls can meet: " + reach_.why};
-        return {true,
-                fmt::format(
-                    "clusters = \"{}\"; decided per impact: no third ball within reach means the pair alone",
-                    name(scene_.physics.clusters))};
-    }
-
-    // The order in which people know them.
-    void sort_by_keyword() {
-        std::vector<EffectDecision> sorted;
-        for (const char* keyword : kEffectKeywords) {
-            for (const EffectDecision& d : plan_.effects)
-                if (d.keyword == keyword) sorted.push_back(d);
-        }
-        plan_.effects = std::move(sorted);
-    }
-
-    const Scene& scene_;
-    Plan& plan_;
-    const BallParams& p_;
-    Reach reach_;
-    bool cushions_ = false, throw_ = false;
-};
+    return decision;
+}
 
 }  // namespace
 
+std::span<const EffectInfo> effect_table() {
+    return kTable;
+}
+
 void decide_effects(const Scene& scene, Plan& plan) {
-    Decisions(scene, plan).run();
+    const Reach reach = reach_of(scene);
+    plan.pairs = scene.ball.size() > 1 && reach.pairs;
+    plan.clusters = scene.physics.clusters;
+    plan.effects.resize(kEffects);
+    for (const bool last : {false, true}) {
+        for (const EffectInfo& info : kTable) {
+            if (info.last != last) continue;
+            const std::ptrdiff_t i = &info - kTable;
+            plan.effects[i] = decide(info, {scene, plan, reach});
+            if (plan.effects[i].in_force) continue;
+            plan.skip(static_cast<Effect>(i));
+            if (info.leave_out != nullptr) info.leave_out(plan);
+        }
+    }
+    plan.effects.push_back({"airborne", false, "not simulated: the model is planar"});
 }
 
 }  // namespace carom

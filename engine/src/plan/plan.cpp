@@ -1,4 +1,4 @@
-// Which effects a scene can ever feel; geometry in final form.
+// Makes the plan of a scene: what must be computed for it, and the table in its final form.
 #include "carom/engine/plan.h"
 
 #include <fmt/format.h>
@@ -49,16 +49,16 @@ void add_geometry(const Table& table, Plan& plan) {
     plan.geometry.pockets = table.pockets;
 }
 
-// What moves a ball of this radius, without what the effects leave out.
+// The friction that moves a ball of this radius, without the effects that the plan skips.
 MotionParams motion_of(const Plan& plan, double R) {
     MotionParams p = motion_params(plan.balls, plan.gravity, R);
-    p.sliding = plan.sliding;
-    p.rolling = plan.rolling;
-    p.spin_decay = plan.spin_decay;
+    p.sliding = plan.in_force(Effect::kSliding);
+    p.rolling = plan.in_force(Effect::kRolling);
+    p.spin_decay = plan.in_force(Effect::kSpinDecay);
     return p;
 }
 
-// Where a tree beats the loop through all boxes.
+// Chooses a tree of boxes where it is faster than a loop through all of them.
 void choose_search(Plan& plan) {
     const std::size_t parts =
         plan.geometry.cushions.size() + plan.geometry.noses.size() + plan.geometry.pockets.size();
@@ -82,9 +82,9 @@ Plan make_plan(const Scene& scene, kernel::Isa isa) {
     for (const BallStart& ball : scene.ball) plan.sizes.push_back(scene.size_of(ball));
     plan.alike = scene.alike();
     add_geometry(scene.table, plan);
-    plan.ball_ball = &ball_ball_model(scene.physics.ball_ball);
-    plan.cushion = &cushion_model(scene.physics.cushion);
-    plan.jaw = &cushion_model(scene.physics.jaw_model());
+    plan.ball_ball = scene.physics.ball_ball;
+    plan.cushion = scene.physics.cushion;
+    plan.jaw = scene.physics.jaw_model();
     decide_effects(scene, plan);
     for (const BallSize& size : plan.sizes) plan.motion.push_back(motion_of(plan, size.R));
     choose_search(plan);

@@ -19,19 +19,13 @@ constexpr double kReachMargin = 1e-9;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-// A ball with the velocities that it starts with, struck by the cue or not.
+// A ball at the start. Where the cue strikes it, the velocities are those after the strike.
 struct Start {
     Vec2 place;
     Vec3 v, w;
     Segment segment;
     BallSize size;
 };
-
-double distance_to(const Cushion& c, const Vec2& p) {
-    const Vec2 along = c.to - c.from;
-    const double s = std::clamp((p - c.from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    return length(p - c.from - s * along);
-}
 
 class Bounds {
   public:
@@ -104,12 +98,12 @@ class Bounds {
 
     double by_energy() const {
         const Physics& p = scene_.physics;
-        // The published sign, a coarse march and a loose tolerance gain energy.
+        // An impact can gain energy with the published sign of the cloth slip, with few steps, and with a loose tolerance.
         const bool coarse = p.substeps ? *p.substeps < 100 : p.tolerance > 1e-6;
-        const bool gains = p.ball_ball == BallBallModel::kMathavan &&
-                           (p.cloth_slip == ClothSlipSign::kAsPublished || coarse);
+        const bool gains =
+            p.ball_ball->reads_tolerance && (p.cloth_slip == ClothSlipSign::kAsPublished || coarse);
         if (gains || !(time_ < kUnbounded)) return kUnbounded;
-        // Per mass of the lightest ball, which could have all of it.
+        // The lightest ball could receive all the energy, so it is taken per mass of that ball.
         double lightest = kUnbounded, energy = 0.0;
         for (const Start& s : starts_) lightest = std::min(lightest, s.size.m);
         for (const Start& s : starts_)
@@ -134,7 +128,7 @@ class Bounds {
             if (radius[i] == 0.0) continue;
             const double near = wide(starts_[i].size.R) + radius[i];
             for (const Cushion& c : scene_.table.cushions)
-                if (distance_to(c, starts_[i].place) <= near) return true;
+                if (distance_to_segment(starts_[i].place, c.from, c.to) <= near) return true;
             for (const Jaw& j : scene_.table.jaws)
                 if (length(starts_[i].place - j.center) <= near + j.radius) return true;
         }

@@ -16,7 +16,7 @@ struct Reach {
     std::string why;  ///< the bound, for people: "ball cue, the only one that moves, rests within 0.81 m"
 };
 
-/// Two bounds, whichever is stronger. (1) The only moving ball that meets nothing goes no farther than its
+/// The smaller of two bounds. (1) The only moving ball that meets nothing goes no farther than its
 /// own friction lets it: |v| t + mu_s g t^2/2 while it slides (t = 2|u|/(7 mu_s g)), then v^2/(2 mu_r g) with
 /// v = v - 2u/7. (2) No ball is ever faster than sqrt(2E), E the energy per mass of all balls, in the time
 /// until the scene's stop; for models that do not gain energy.

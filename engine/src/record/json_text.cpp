@@ -208,7 +208,7 @@ std::string JsonValue::text() const {
     return value;
 }
 
-JsonObject::JsonObject(const JsonValue& value, std::initializer_list<std::string_view> keys) : value_(value) {
+JsonObject::JsonObject(const JsonValue& value, std::span<const std::string_view> keys) : value_(value) {
     if (!value.is_object()) value.fail("expected an object");
     if (keys.size() > kMost) throw std::logic_error("JsonObject: too many keys");
     for (const std::string_view key : keys) keys_[count_++] = key;

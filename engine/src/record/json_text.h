@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -98,7 +99,9 @@ class JsonValue {
 /// that is there twice is an error.
 class JsonObject {
   public:
-    JsonObject(const JsonValue& value, std::initializer_list<std::string_view> keys);
+    JsonObject(const JsonValue& value, std::span<const std::string_view> keys);
+    JsonObject(const JsonValue& value, std::initializer_list<std::string_view> keys)
+        : JsonObject(value, std::span(keys.begin(), keys.size())) {}
     JsonObject(JsonValue&&, std::initializer_list<std::string_view>) = delete;
 
     bool has(std::string_view key) const { return at_[index(key)] != JsonValue::kNone; }

@@ -3,10 +3,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <limits>
-#include <memory>
-#include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -25,10 +23,7 @@ using detail::JsonObject;
 using detail::JsonText;
 using detail::JsonValue;
 
-/// Names of methods that a file gives; they stay where they are while more come.
-using Names = std::set<std::string, std::less<>>;
-
-/// What reading the parts of a record needs beside them.
+/// What the readers of all parts of a record need to know about the file.
 struct Format {
     std::int64_t version;
     bool profiled;
@@ -38,68 +33,73 @@ int index_below(const JsonValue& value, std::int64_t least, std::size_t count) {
     return static_cast<int>(value.integer(least, static_cast<std::int64_t>(count) - 1));
 }
 
-/// Version 1 has no names of the table's parts.
-std::string part_name(const JsonObject& part, const Format& format) {
-    return format.version > 1 || part.has("name") ? part.at("name").text() : "";
+/// Reads a value that the row allows. Only the sign of its range is checked, because nobody types a record.
+FieldValue read_value(const Key& key, const JsonValue& value) {
+    const Interval& range = key.range;
+    const bool positive = range.low > 0.0 || (range.low == 0.0 && range.low_open);
+    switch (key.kind) {
+        case Key::Kind::kNumber:
+            return positive ? value.positive() : range.low == 0.0 ? value.non_negative() : value.number();
+        case Key::Kind::kText:
+            return value.text();
+        default:
+            break;
+    }
+    const bool whole = key.kind == Key::Kind::kIntegers;
+    if (value.size() != key.count())
+        value.fail(whole ? std::string("expected ") + key.options.shape
+                         : "expected a list of " + std::to_string(key.count()) + " numbers");
+    std::vector<double> list;
+    value.each([&](const JsonValue& item, std::size_t) {
+        list.push_back(whole ? static_cast<double>(item.integer(static_cast<std::int64_t>(range.low),
+                                                                static_cast<std::int64_t>(range.high)))
+                             : item.number());
+    });
+    return list;
+}
+
+template <class T, std::size_t kRows>
+void read_fields(const JsonObject& all, const Field<T> (&fields)[kRows], const Format& format, T& object) {
+    for (const Field<T>& f : fields) {
+        if (!f.in(Files::kRecord)) continue;
+        const bool may_lack = f.optional || f.options.since > format.version;
+        if (may_lack && !all.has(f.record_key())) continue;
+        f.set(object, read_value(f, all.at(f.record_key())));
+    }
+}
+
+template <class T, std::size_t kRows>
+T read_object(const JsonValue& value, const Field<T> (&fields)[kRows], const Format& format) {
+    const JsonObject all(value, keys_of(fields, Files::kRecord));
+    T object{};
+    read_fields(all, fields, format, object);
+    return object;
+}
+
+template <class T, std::size_t kRows>
+std::vector<T> read_list(const JsonValue& value, const Field<T> (&fields)[kRows], const Format& format) {
+    std::vector<T> list;
+    value.each(
+        [&](const JsonValue& item, std::size_t) { list.push_back(read_object(item, fields, format)); });
+    return list;
 }
 
 Table read_table(const JsonValue& value, const Format& format) {
-    const JsonObject all(value, {"preset", "width", "length", "corner", "cushions", "jaws", "pockets"});
+    std::vector<std::string_view> keys = keys_of(kTableFields, Files::kRecord);
+    keys.insert(keys.end(), {"cushions", "jaws", "pockets"});
+    const JsonObject all(value, keys);
     Table table;
-    table.preset = all.at("preset").text();
-    table.width = all.at("width").non_negative();
-    table.length = all.at("length").non_negative();
-    table.corner = all.at("corner").vector<2>();
-    all.at("cushions").each([&](const JsonValue& item, std::size_t) {
-        const JsonObject c(item, {"id", "from", "to", "height", "name"});
-        table.cushions.push_back({c.at("id").text(), c.at("from").vector<2>(), c.at("to").vector<2>(),
-                                  c.at("height").number(), part_name(c, format)});
-    });
-    all.at("jaws").each([&](const JsonValue& item, std::size_t) {
-        const JsonObject j(item, {"id", "center", "radius", "height", "name"});
-        table.jaws.push_back({j.at("id").text(), j.at("center").vector<2>(), j.at("radius").non_negative(),
-                              j.at("height").number(), part_name(j, format)});
-    });
-    all.at("pockets").each([&](const JsonValue& item, std::size_t) {
-        const JsonObject p(item, {"id", "center", "radius", "depth", "name"});
-        table.pockets.push_back({p.at("id").text(), p.at("center").vector<2>(), p.at("radius").positive(),
-                                 p.at("depth").number(), part_name(p, format)});
-    });
+    read_fields(all, kTableFields, format, table);
+    table.cushions = read_list(all.at("cushions"), kCushionFields, format);
+    table.jaws = read_list(all.at("jaws"), kJawFields, format);
+    table.pockets = read_list(all.at("pockets"), kPocketFields, format);
     return table;
 }
 
-BallParams read_balls(const JsonValue& value, const Format& format) {
-    const JsonObject all(
-        value, {"R", "m", "mu_s", "mu_r", "mu_sp", "mu_b", "mu_b_more", "mu_b_fall", "e_b", "e_c", "f_c"});
-    BallParams p{};
-    p.R = all.at("R").positive();
-    p.m = all.at("m").positive();
-    p.mu_s = all.at("mu_s").non_negative();
-    p.mu_r = all.at("mu_r").non_negative();
-    p.mu_sp = all.at("mu_sp").non_negative();
-    p.mu_b = all.at("mu_b").non_negative();
-    if (format.version > 1 || all.has("mu_b_more")) p.mu_b_more = all.at("mu_b_more").non_negative();
-    if (format.version > 1 || all.has("mu_b_fall")) p.mu_b_fall = all.at("mu_b_fall").non_negative();
-    p.e_b = all.at("e_b").non_negative();
-    p.e_c = all.at("e_c").non_negative();
-    p.f_c = all.at("f_c").non_negative();
-    return p;
-}
-
-RenderSettings read_render(const JsonValue& value) {
-    const JsonObject all(value, {"fps", "size", "camera", "eye", "target"});
-    RenderSettings render;
-    render.fps = all.at("fps").positive();
-    const JsonValue size = all.at("size");
-    if (size.size() != 2) size.fail("expected [width, height]");
-    size.each([&](const JsonValue& side, std::size_t i) {
-        (i == 0 ? render.width : render.height) = static_cast<int>(side.integer(1, kMaxImageSize));
-    });
-    render.camera = all.at("camera").text();
-    if (all.has("eye") || all.has("target")) {
-        render.eye = all.at("eye").vector<3>();
-        render.target = all.at("target").vector<3>();
-    }
+RenderSettings read_render(const JsonValue& value, const Format& format) {
+    const RenderSettings render = read_object(value, kRenderFields, format);
+    if (render.eye.has_value() != render.target.has_value())
+        value.fail(std::string("the key \"") + (render.eye ? "target" : "eye") + "\" is missing");
     return render;
 }
 
@@ -182,19 +182,18 @@ Event read_event(const JsonObject& all, Record& record) {
     return event;
 }
 
-EventCost read_cost(const JsonObject& all, const Format& format, Names& methods) {
+EventCost read_cost(const JsonObject& all, const Format& format) {
     EventCost cost;
     cost.detect_ns = all.at("detect_ns").non_negative();
     cost.resolve_ns = all.at("resolve_ns").non_negative();
     cost.kernel_ns = all.at("kernel_ns").non_negative();
     cost.steps = static_cast<long>(all.at("steps").integer(0, std::numeric_limits<std::int64_t>::max()));
-    cost.method = *methods.insert(all.at("method").text()).first;
+    cost.method = all.at("method").text();
     if (format.version > 1 || all.has("queue_ns")) cost.queue_ns = all.at("queue_ns").non_negative();
     return cost;
 }
 
 void read_events(const JsonValue& list, const Format& format, Record& record) {
-    const auto methods = std::make_shared<Names>();
     const std::size_t count = list.size();
     record.events.reserve(count);
     if (format.profiled) record.costs.reserve(count);
@@ -205,15 +204,14 @@ void read_events(const JsonValue& list, const Format& format, Record& record) {
         if (i > 0 && record.events[i].time < record.events[i - 1].time) {
             item.fail("happens before the event in front of it");
         }
-        if (format.profiled) record.costs.push_back(read_cost(all, format, *methods));
+        if (format.profiled) record.costs.push_back(read_cost(all, format));
     });
-    record.keep(methods);
 }
 
 std::string text_of_file(const std::string& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) throw SceneError(path, {}, "there is no such file");
-    // A device or a pipe might never end.
+    // Reading a device or a pipe might never end.
     if (!std::filesystem::is_regular_file(path, error))
         throw SceneError(path, {}, "this is not a regular file");
     const std::uintmax_t size = std::filesystem::file_size(path, error);
@@ -281,9 +279,9 @@ Record parse_record(std::string_view text, const std::string& name, std::vector<
     record.start_time = all.at("start_time").number();
     record.gravity = all.at("gravity").number();
     record.setup_detect_ns = all.at("setup_detect_ns").non_negative();
-    record.render = read_render(all.at("render"));
+    record.render = read_render(all.at("render"), format);
     record.table = read_table(all.at("table"), format);
-    record.balls = read_balls(all.at("balls"), format);
+    record.balls = read_object(all.at("balls"), kBallFields, format);
     const JsonValue tracks = all.at("tracks");
     if (tracks.size() == 0) tracks.fail("a record needs at least one ball");
     tracks.each(

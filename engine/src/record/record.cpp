@@ -144,7 +144,7 @@ Record::Record() = default;
 
 Record::Aside::Aside() : orientations(std::make_shared<Orientations>()) {}
 
-Record::Aside::Aside(const Aside& other) : orientations(std::make_shared<Orientations>()), kept(other.kept) {}
+Record::Aside::Aside(const Aside&) : orientations(std::make_shared<Orientations>()) {}
 
 Record::Aside& Record::Aside::operator=(const Aside& other) {
     if (this != &other) *this = Aside(other);

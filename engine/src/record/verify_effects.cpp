@@ -63,11 +63,13 @@ class Skipped {
     void check_frictions(const Segment& s, bool lasts) {
         if (!lasts) return;
         const BallParams& p = plan_.scene.balls;
-        if (!plan_.spin_decay && p.mu_sp * plan_.gravity != 0.0 && s.w.z() != 0.0)
+        if (!plan_.in_force(Effect::kSpinDecay) && p.mu_sp * plan_.gravity != 0.0 && s.w.z() != 0.0)
             need("spin_decay", "has vertical spin");
-        if (!plan_.sliding && p.mu_s * plan_.gravity != 0.0 && s.state == MotionState::kSliding)
+        if (!plan_.in_force(Effect::kSliding) && p.mu_s * plan_.gravity != 0.0 &&
+            s.state == MotionState::kSliding)
             need("sliding", "slips");
-        if (!plan_.rolling && p.mu_r * plan_.gravity != 0.0 && s.state == MotionState::kRolling)
+        if (!plan_.in_force(Effect::kRolling) && p.mu_r * plan_.gravity != 0.0 &&
+            s.state == MotionState::kRolling)
             need("rolling", "rolls");
     }
 

@@ -1,8 +1,12 @@
 // write_record: a record as JSON, one segment or event per line. The reader is read.cpp.
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "base/output_file.h"
 #include "carom/engine/record.h"
@@ -26,47 +30,39 @@ OrderedJson duration_or_null(double seconds) {
     return std::isinf(seconds) ? OrderedJson(nullptr) : OrderedJson(seconds);
 }
 
-OrderedJson table_json(const Table& table) {
-    OrderedJson cushions = OrderedJson::array(), jaws = OrderedJson::array(), pockets = OrderedJson::array();
-    for (const Cushion& c : table.cushions) {
-        cushions.push_back({{"id", c.id},
-                            {"from", numbers(c.from)},
-                            {"to", numbers(c.to)},
-                            {"height", c.height},
-                            {"name", c.name}});
-    }
-    for (const Jaw& j : table.jaws) {
-        jaws.push_back({{"id", j.id},
-                        {"center", numbers(j.center)},
-                        {"radius", j.radius},
-                        {"height", j.height},
-                        {"name", j.name}});
-    }
-    for (const Pocket& p : table.pockets) {
-        pockets.push_back({{"id", p.id},
-                           {"center", numbers(p.center)},
-                           {"radius", p.radius},
-                           {"depth", p.depth},
-                           {"name", p.name}});
-    }
-    return {{"preset", table.preset}, {"width", table.width},
-            {"length", table.length}, {"corner", numbers(table.corner)},
-            {"cushions", cushions},   {"jaws", jaws},
-            {"pockets", pockets}};
+OrderedJson json_of(const Key& key, const FieldValue& value) {
+    const auto* list = std::get_if<std::vector<double>>(&value);
+    if (list != nullptr && key.kind == Key::Kind::kIntegers)
+        return std::vector<std::int64_t>(list->begin(), list->end());
+    if (list != nullptr) return *list;
+    if (const auto* text = std::get_if<std::string>(&value)) return *text;
+    return std::get<double>(value);
 }
 
-OrderedJson balls_json(const BallParams& p) {
-    return {{"R", p.R},
-            {"m", p.m},
-            {"mu_s", p.mu_s},
-            {"mu_r", p.mu_r},
-            {"mu_sp", p.mu_sp},
-            {"mu_b", p.mu_b},
-            {"mu_b_more", p.mu_b_more},
-            {"mu_b_fall", p.mu_b_fall},
-            {"e_b", p.e_b},
-            {"e_c", p.e_c},
-            {"f_c", p.f_c}};
+/// The values that are given, by the keys of record files.
+template <class T, std::size_t kRows>
+OrderedJson json_of(const Field<T> (&fields)[kRows], const T& object) {
+    OrderedJson json;
+    for (const Field<T>& f : fields) {
+        const FieldValue value = f.value(object);
+        if (f.in(Files::kRecord) && value.index() != 0) json[f.record_key()] = json_of(f, value);
+    }
+    return json;
+}
+
+template <class T, std::size_t kRows>
+OrderedJson json_of(const Field<T> (&fields)[kRows], const std::vector<T>& list) {
+    OrderedJson json = OrderedJson::array();
+    for (const T& item : list) json.push_back(json_of(fields, item));
+    return json;
+}
+
+OrderedJson table_json(const Table& table) {
+    OrderedJson json = json_of(kTableFields, table);
+    json["cushions"] = json_of(kCushionFields, table.cushions);
+    json["jaws"] = json_of(kJawFields, table.jaws);
+    json["pockets"] = json_of(kPocketFields, table.pockets);
+    return json;
 }
 
 OrderedJson segment_json(const Segment& s) {
@@ -152,16 +148,9 @@ void write_record(const Record& record, const std::string& path) {
                ", \"start_time\": " + dump(record.start_time) + ", \"gravity\": " + dump(record.gravity) +
                ", \"profiled\": " + (record.costs.empty() ? "false" : "true") +
                ", \"setup_detect_ns\": " + dump(record.setup_detect_ns));
-    const RenderSettings& render = record.render;
-    OrderedJson view = {
-        {"fps", render.fps}, {"size", {render.width, render.height}}, {"camera", render.camera}};
-    if (render.eye && render.target) {
-        view["eye"] = numbers(*render.eye);
-        view["target"] = numbers(*render.target);
-    }
-    file.write(",\n\"render\": " + dump(view));
+    file.write(",\n\"render\": " + dump(json_of(kRenderFields, record.render)));
     file.write(",\n\"table\": " + dump(table_json(record.table)));
-    file.write(",\n\"balls\": " + dump(balls_json(record.balls)) + ",\n");
+    file.write(",\n\"balls\": " + dump(json_of(kBallFields, record.balls)) + ",\n");
     write_tracks(record, file);
     file.write("\"events\": [");
     Lines lines(file, " ");

@@ -28,14 +28,6 @@ double touch_tolerance(const Vec2& p) {
     return std::max(kTouchTolerance, kTouchRounding * std::max(std::abs(p.x()), std::abs(p.y())));
 }
 
-double distance_to_segment(const Vec2& p, const Cushion& c) {
-    const Vec2 along = c.to - c.from;
-    const double s = std::clamp((p - c.from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    if (s <= 0.0) return (p - c.from).norm();
-    if (s >= 1.0) return (p - c.to).norm();
-    return std::abs(cross(p - c.from, along)) / along.norm();
-}
-
 void check_ids(const Section& top, const Scene& scene) {
     std::unordered_map<std::string, SourceLocation> seen;
     for (const BallStart& ball : scene.ball) {
@@ -54,7 +46,7 @@ void check_overlaps(const Section& top, const Scene& scene) {
         for (std::size_t j = 0; j < i; ++j) {
             const double diameter = contact_distance(R, scene.size_of(scene.ball[j]).R);
             const double least = diameter - touch_tolerance(p);
-            // Per axis first: most pairs are far apart.
+            // The axes are compared first, because most pairs are far apart.
             const Vec2 d = p - planar(scene.ball[j]);
             if (std::abs(d.x()) >= diameter || std::abs(d.y()) >= diameter) continue;
             const double distance = d.norm();
@@ -75,7 +67,7 @@ void check_reach(const Section& top, const Scene& scene) {
         const Vec2 p = planar(ball);
         const double touch = touch_tolerance(p), R = scene.size_of(ball).R;
         for (const Cushion& c : scene.table.cushions) {
-            const double depth = R - distance_to_segment(p, c);
+            const double depth = R - distance_to_segment(p, c.from, c.to);
             if (depth > touch) refuse(ball, "cushion", c.id, depth);
         }
         for (const Jaw& j : scene.table.jaws) {
@@ -85,7 +77,7 @@ void check_reach(const Section& top, const Scene& scene) {
     }
 }
 
-/// A nose at or above the top of the ball meets nothing.
+/// Refuses a nose at or above the top of a ball, which would meet nothing.
 void check_noses(const Section& top, const Scene& scene) {
     const auto check = [&](const char* kind, const std::string& id, double height) {
         for (const BallStart& ball : scene.ball) {
@@ -103,10 +95,10 @@ void check_noses(const Section& top, const Scene& scene) {
     for (const Jaw& j : scene.table.jaws) check("jaw", j.id, j.height);
 }
 
-/// Balls of their own size: where the models of this scene have formulas for them.
+/// Refuses balls of different size where the models of the scene have no formula for them.
 void check_sizes(const Section& top, const Scene& scene) {
     if (scene.alike()) return;
-    const BallBallModelInfo& model = ball_ball_model(scene.physics.ball_ball);
+    const BallBallModelInfo& model = *scene.physics.ball_ball;
     const bool rough = model.reads_friction && scene.balls.ball_friction();
     const BallSize first = scene.size_of(scene.ball.front());
     for (const BallStart& ball : scene.ball) {
@@ -134,36 +126,36 @@ void check_sizes(const Section& top, const Scene& scene) {
     }
 }
 
-/// The integration of mathavan_2010 has to end.
+/// Every impact has to have a solution in its model.
 void check_cushion_model(const Section& top, const Scene& scene) {
     const BallParams& p = scene.balls;
-    const auto check = [&](CushionModel model, const char* kind, const std::string& id, double height) {
-        if (model != CushionModel::kMathavan2010) return;
+    const auto check = [&](const CushionModelInfo& model, const char* kind, const std::string& id,
+                           double height) {
+        if (model.accepts == nullptr) return;
         for (const BallStart& ball : scene.ball) {
             const BallSize size = scene.size_of(ball);
-            if (mathavan_2010_ends({size.R, size.m, p.mu_s, p.e_c, p.f_c, height})) continue;
+            if (model.accepts({size.R, size.m, p.mu_s, p.e_c, p.f_c, height})) continue;
             top.fail(
                 top.has("physics") ? "physics" : "balls",
                 fmt::format("with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the "
-                            "model mathavan_2010; "
-                            "lower one of them or use another cushion model",
-                            p.f_c, p.mu_s, kind, id));
+                            "model {}; lower one of them or use another cushion model",
+                            p.f_c, p.mu_s, kind, id, model.name));
         }
     };
-    for (const Cushion& c : scene.table.cushions) check(scene.physics.cushion, "cushion", c.id, c.height);
-    for (const Jaw& j : scene.table.jaws) check(scene.physics.jaw_model(), "jaw", j.id, j.height);
+    for (const Cushion& c : scene.table.cushions) check(*scene.physics.cushion, "cushion", c.id, c.height);
+    for (const Jaw& j : scene.table.jaws) check(*scene.physics.jaw_model(), "jaw", j.id, j.height);
 }
 
 /// Whether impacts with the table can give a ball vertical spin.
 bool cushions_twist(const Scene& scene) {
-    const auto twists = [&](CushionModel model) {
-        return cushion_model(model).reads_friction && scene.balls.f_c > 0.0;
+    const auto twists = [&](const CushionModelInfo* model) {
+        return model->reads_friction && scene.balls.f_c > 0.0;
     };
     return (!scene.table.cushions.empty() && twists(scene.physics.cushion)) ||
            (!scene.table.jaws.empty() && twists(scene.physics.jaw_model()));
 }
 
-/// What can be set going in a scene.
+/// Which motions can occur in a scene.
 struct Motions {
     bool travel = false;  ///< some ball can move over the cloth
     bool slip = false;    ///< some ball can slide on the cloth

@@ -1,24 +1,12 @@
 // Racked balls: which ball stands where.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "carom/engine/table.h"
+#include "carom/engine/scene.h"
 
 namespace carom {
-
-enum class RackGame : std::uint8_t { kEightBall, kNineBall, kSnooker, kTriangle, kThreeCushion, kLine };
-
-struct Rack {
-    RackGame game = RackGame::kEightBall;
-    double gap = 1e-4;    ///< between neighbours [m]
-    double jitter = 0.0;  ///< each coordinate moves by a uniform draw from [-jitter, jitter] [m]
-    std::uint64_t seed = 1;
-    int count = 5;  ///< balls of a line
-    int rows = 5;   ///< of a triangle
-};
 
 struct RackedBall {
     std::string id;  ///< "1", "2", ..., or a colour

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace carom::detail {
 namespace {
@@ -57,7 +58,7 @@ SourceLocation place(const toml::node& node) {
 }
 
 Section::Section(const toml::table& table, const std::string& file, std::string path,
-                 std::initializer_list<std::string_view> keys)
+                 const std::vector<std::string_view>& keys)
     : table_(table),
       file_(file),
       path_(std::move(path)),
@@ -70,13 +71,11 @@ Section::Section(const toml::table& table, const std::string& file, std::string 
     }
     if (!unknown) return;
     if (path_.empty()) {
-        fail(place(unknown->source()),
-             fmt::format("unknown section or key {}; the sections are {}", in_quotes(unknown->str()),
-                         fmt::join(keys.begin(), keys.end(), ", ")));
+        fail(place(unknown->source()), fmt::format("unknown section or key {}; the sections are {}",
+                                                   in_quotes(unknown->str()), fmt::join(keys, ", ")));
     }
-    fail(place(unknown->source()),
-         fmt::format("unknown key {} in [{}]; the keys there are {}", in_quotes(unknown->str()), path_,
-                     fmt::join(keys.begin(), keys.end(), ", ")));
+    fail(place(unknown->source()), fmt::format("unknown key {} in [{}]; the keys there are {}",
+                                               in_quotes(unknown->str()), path_, fmt::join(keys, ", ")));
 }
 
 std::string Section::full(std::string_view key) const {
@@ -96,12 +95,7 @@ void Section::fail(std::string_view key, const std::string& message) const {
     fail(where(key), message);
 }
 
-void Section::fail_choice(std::string_view key, const std::string& got,
-                          const std::vector<const char*>& names) const {
-    fail(key, fmt::format("unknown {} {}; use {}", full(key), in_quotes(got), listed(names)));
-}
-
-double Section::checked(const toml::node& node, const std::string& what, const Interval& allowed) const {
+double Section::number(const toml::node& node, const std::string& what, const Interval& allowed) const {
     if (!node.is_number())
         fail(place(node), fmt::format("{} must be a number, not {}", what, type_name(node)));
     const double x = *node.value<double>();
@@ -114,40 +108,71 @@ double Section::checked(const toml::node& node, const std::string& what, const I
     return x;
 }
 
-std::optional<double> Section::number(std::string_view key, const Interval& allowed) const {
-    const toml::node* node = table_.get(key);
-    if (!node) return std::nullopt;
-    return checked(*node, full(key), allowed);
-}
-
-double Section::number(std::string_view key, double fallback, const Interval& allowed) const {
-    return number(key, allowed).value_or(fallback);
-}
-
-double Section::need_number(std::string_view key, const Interval& allowed) const {
-    if (const auto x = number(key, allowed)) return *x;
-    fail(where_, fmt::format("[{}] needs {} = a number", path_, key));
-}
-
-std::optional<std::int64_t> Section::integer(std::string_view key, std::int64_t low,
-                                             std::int64_t high) const {
-    const toml::node* node = table_.get(key);
-    if (!node) return std::nullopt;
-    if (!node->is_integer()) {
-        const char* got = node->is_floating_point() ? "a number with a decimal point" : type_name(*node);
-        fail(key, fmt::format("{} must be an integer, not {}", full(key), got));
+std::int64_t Section::integer(const toml::node& node, const Key& key) const {
+    if (!node.is_integer()) {
+        const char* got = node.is_floating_point() ? "a number with a decimal point" : type_name(node);
+        fail(place(node), fmt::format("{} must be an integer, not {}", full(key.key), got));
     }
-    const std::int64_t x = *node->value<std::int64_t>();
+    const std::int64_t x = *node.value<std::int64_t>(), low = static_cast<std::int64_t>(key.range.low);
+    const std::int64_t high =
+        key.range.high < kAnyInteger ? static_cast<std::int64_t>(key.range.high) : INT64_MAX;
     if (x < low || x > high) {
-        fail(key, fmt::format("{} = {} is out of range; it must be at least {} and at most {}", full(key), x,
-                              low, high));
+        fail(place(node), fmt::format("{} = {} is out of range; it must be at least {} and at most {}",
+                                      full(key.key), x, low, high));
     }
     return x;
 }
 
-std::int64_t Section::integer(std::string_view key, std::int64_t fallback, std::int64_t low,
-                              std::int64_t high) const {
-    return integer(key, low, high).value_or(fallback);
+std::string Section::text(const toml::node& node, const Key& key) const {
+    if (!node.is_string())
+        fail(place(node),
+             fmt::format("{} must be a string in quotes, not {}", full(key.key), type_name(node)));
+    const std::string got = *node.value<std::string>();
+    const std::vector<const char*> names = key.names();
+    if (!names.empty() && std::find(names.begin(), names.end(), got) == names.end())
+        fail(place(node), fmt::format("unknown {} {}; use {}", full(key.key), in_quotes(got), listed(names)));
+    return got;
+}
+
+std::vector<double> Section::numbers(const toml::node& node, const Key& key) const {
+    const toml::array* array = node.as_array();
+    const char* shape = key.options.shape;
+    if (!array)
+        fail(place(node),
+             fmt::format("{} must be an array {}, not {}", full(key.key), shape, type_name(node)));
+    if (array->size() != key.count())
+        fail(place(node),
+             fmt::format("{} has {} values; write {} = {}", full(key.key), array->size(), key.key, shape));
+    std::vector<double> out;
+    for (const toml::node& element : *array)
+        out.push_back(number(element, fmt::format("{}[{}]", full(key.key), out.size()), key.range));
+    return out;
+}
+
+FieldValue Section::value(const Key& key) const {
+    const toml::node* node = table_.get(key.key);
+    if (!node) {
+        if (!key.options.needed) return {};
+        fail(where_, fmt::format("[{}] needs {} = {}", path_, key.key,
+                                 key.kind == Key::Kind::kNumber ? "a number" : key.options.shape));
+    }
+    switch (key.kind) {
+        case Key::Kind::kNumber:
+            return number(*node, full(key.key), key.range);
+        case Key::Kind::kInteger:
+            return integer(*node, key);
+        case Key::Kind::kText:
+            return text(*node, key);
+        case Key::Kind::kNumbers:
+        case Key::Kind::kIntegers:
+            break;
+    }
+    const std::vector<double> list = numbers(*node, key);
+    if (key.kind == Key::Kind::kIntegers &&
+        std::any_of(list.begin(), list.end(), [](double x) { return x != std::floor(x); }))
+        fail(place(*node),
+             fmt::format("{} must be whole {}; drop the fraction", full(key.key), key.range.unit));
+    return list;
 }
 
 std::optional<bool> Section::boolean(std::string_view key) const {
@@ -158,50 +183,15 @@ std::optional<bool> Section::boolean(std::string_view key) const {
     return *node->value<bool>();
 }
 
-std::string Section::text(std::string_view key, const std::string& fallback) const {
-    const toml::node* node = table_.get(key);
-    if (!node) return fallback;
-    if (!node->is_string())
-        fail(key, fmt::format("{} must be a string in quotes, not {}", full(key), type_name(*node)));
-    return *node->value<std::string>();
-}
-
-std::optional<std::vector<double>> Section::numbers(std::string_view key, std::size_t count,
-                                                    const char* shape, const Interval& allowed) const {
+std::optional<Section> Section::section(const char* key, const std::vector<std::string_view>& keys) const {
     const toml::node* node = table_.get(key);
     if (!node) return std::nullopt;
-    const toml::array* array = node->as_array();
-    if (!array) fail(key, fmt::format("{} must be an array {}, not {}", full(key), shape, type_name(*node)));
-    if (array->size() != count) {
-        fail(key, fmt::format("{} has {} values; write {} = {}", full(key), array->size(), key, shape));
-    }
-    std::vector<double> out;
-    for (const toml::node& element : *array) {
-        out.push_back(checked(element, fmt::format("{}[{}]", full(key), out.size()), allowed));
-    }
-    return out;
-}
-
-Vec2 Section::vec2(std::string_view key, const Vec2& fallback, const char* shape,
-                   const Interval& allowed) const {
-    const auto values = numbers(key, 2, shape, allowed);
-    return values ? Vec2((*values)[0], (*values)[1]) : fallback;
-}
-
-Vec2 Section::need_vec2(std::string_view key, const char* shape, const Interval& allowed) const {
-    if (!has(key)) fail(where_, fmt::format("[{}] needs {} = {}", path_, key, shape));
-    return vec2(key, Vec2::Zero(), shape, allowed);
-}
-
-const toml::table* Section::table(std::string_view key) const {
-    const toml::node* node = table_.get(key);
-    if (!node) return nullptr;
     if (!node->is_table()) {
         const char* hint = node->is_array_of_tables() ? " (single brackets, once)" : "";
         fail(key, fmt::format("{} must be a section [{}]{}, not {}", full(key), full(key), hint,
                               type_name(*node)));
     }
-    return node->as_table();
+    return Section(*node->as_table(), file_, full(key), keys);
 }
 
 std::optional<std::vector<const toml::table*>> Section::tables(std::string_view key) const {

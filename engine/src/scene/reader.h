@@ -3,8 +3,8 @@
 
 #include <toml++/toml.h>
 #include <cstdint>
-#include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,29 +13,6 @@
 #include "carom/engine/scene.h"
 
 namespace carom::detail {
-
-/// The values a number may take. `unit` comes after a blank, "" for none.
-struct Interval {
-    double low;
-    bool low_open;
-    double high;
-    bool high_open;
-    const char* unit;
-};
-
-constexpr Interval at_least(double low, double high, const char* unit = "") {
-    return {low, false, high, false, unit};
-}
-constexpr Interval more_than(double low, double high, const char* unit = "") {
-    return {low, true, high, false, unit};
-}
-
-/// One name that a key may take.
-template <class T>
-struct Choice {
-    const char* name;
-    T value;
-};
 
 using carom::in_quotes;
 
@@ -46,7 +23,7 @@ class Section {
   public:
     /// @throws SceneError for a key that is not in `keys`
     Section(const toml::table& table, const std::string& file, std::string path,
-            std::initializer_list<std::string_view> keys);
+            const std::vector<std::string_view>& keys);
 
     SourceLocation where() const { return where_; }
     const std::string& file() const { return file_; }
@@ -54,36 +31,26 @@ class Section {
     /// Where a key's value stands, or the section if the key is absent.
     SourceLocation where(std::string_view key) const;
 
-    double number(std::string_view key, double fallback, const Interval& allowed) const;
-    std::optional<double> number(std::string_view key, const Interval& allowed) const;
-    std::int64_t integer(std::string_view key, std::int64_t fallback, std::int64_t low,
-                         std::int64_t high) const;
-    std::optional<std::int64_t> integer(std::string_view key, std::int64_t low, std::int64_t high) const;
-    std::optional<bool> boolean(std::string_view key) const;
-    std::string text(std::string_view key, const std::string& fallback) const;
-    /// `count` numbers in an array; nothing if the key is absent. `shape` shows how to write it: "[x, y]".
-    std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, const char* shape,
-                                               const Interval& allowed) const;
-    Vec2 vec2(std::string_view key, const Vec2& fallback, const char* shape, const Interval& allowed) const;
-    /// As vec2, but the key has to be there.
-    Vec2 need_vec2(std::string_view key, const char* shape, const Interval& allowed) const;
-    double need_number(std::string_view key, const Interval& allowed) const;
-
-    /// One of the names in `choices`; they are listed in the error for any other.
-    template <class T, std::size_t N>
-    T choice(std::string_view key, T fallback, const Choice<T> (&choices)[N]) const {
-        if (!has(key)) return fallback;
-        const std::string got = text(key, "");
-        std::vector<const char*> names;
-        for (const Choice<T>& c : choices) {
-            if (got == c.name) return c.value;
-            names.push_back(c.name);
+    /// Takes over what the section says; where it says nothing, the object stays as it is.
+    template <class T, std::size_t kRows>
+    void read(const Field<T> (&fields)[kRows], T& object) const {
+        for (const Field<T>& f : fields) {
+            if (!f.in(Files::kScene)) continue;
+            const FieldValue found = value(f);
+            if (found.index() != 0) f.set(object, found);
         }
-        fail_choice(key, got, names);
     }
+    std::optional<bool> boolean(std::string_view key) const;
 
-    /// A section inside this one; null if absent.
-    const toml::table* table(std::string_view key) const;
+    /// A section inside this one, if it is there.
+    std::optional<Section> section(const char* key, const std::vector<std::string_view>& keys) const;
+    /// The same, taken over into the object.
+    template <class T, std::size_t kRows>
+    std::optional<Section> read(const char* key, const Field<T> (&fields)[kRows], T& object) const {
+        std::optional<Section> inner = section(key, keys_of(fields, Files::kScene));
+        if (inner) inner->read(fields, object);
+        return inner;
+    }
     /// The tables of an array of tables; nothing if the key is absent.
     std::optional<std::vector<const toml::table*>> tables(std::string_view key) const;
 
@@ -93,9 +60,11 @@ class Section {
     std::string full(std::string_view key) const;
 
   private:
-    double checked(const toml::node& node, const std::string& what, const Interval& allowed) const;
-    [[noreturn]] void fail_choice(std::string_view key, const std::string& got,
-                                  const std::vector<const char*>& names) const;
+    FieldValue value(const Key& key) const;
+    double number(const toml::node& node, const std::string& what, const Interval& allowed) const;
+    std::int64_t integer(const toml::node& node, const Key& key) const;
+    std::string text(const toml::node& node, const Key& key) const;
+    std::vector<double> numbers(const toml::node& node, const Key& key) const;
 
     const toml::table& table_;
     const std::string& file_;

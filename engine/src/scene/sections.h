@@ -8,9 +8,6 @@
 
 namespace carom::detail {
 
-/// Places on and off the table.
-inline constexpr Interval kCoordinate = at_least(-kMaxCoordinate, kMaxCoordinate, "m");
-
 void read_balls(const Section& top, Scene& scene);
 /// Needs scene.balls (default nose height).
 void read_table(const Section& top, Scene& scene);

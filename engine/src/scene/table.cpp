@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <string_view>
+#include <vector>
 
 #include "carom/engine/tolerances.h"
 #include "scene/sections.h"
@@ -10,62 +11,26 @@
 namespace carom::detail {
 namespace {
 
-constexpr Choice<bool> kTablePresets[] = {
-    {"seven_foot", true}, {"eight_foot", true}, {"nine_foot", true}, {"snooker", true}, {"carom", true}};
-
 /// Nose height over ball radius of pool tables (physics.md: 1.28 R), the default of a custom outline.
-constexpr double kNoseHeight = 1.28;
+constexpr double kNoseShare = 1.28;
 
-void check_count(const Section& s, std::string_view key, std::size_t count) {
-    if (count > kMaxTableParts) {
-        s.fail(key,
-               fmt::format("{} has {} entries; at most {} are allowed", s.full(key), count, kMaxTableParts));
-    }
-}
-
-void read_cushions(const Section& outline, Scene& scene) {
-    const auto tables = outline.tables("cushion");
+/// Reads every item of a list into a part of the table, and calls `check(section, part)`; their ids are a letter and a
+/// number from 1.
+template <class Part, std::size_t kRows, class Check>
+void read_parts(const Section& outline, const char* key, char letter, const Field<Part> (&fields)[kRows],
+                const Part& standard, std::vector<Part>& parts, Check&& check) {
+    const auto tables = outline.tables(key);
     if (!tables) return;
-    check_count(outline, "cushion", tables->size());
+    if (tables->size() > kMaxTableParts)
+        outline.fail(key, fmt::format("{} has {} entries; at most {} are allowed", outline.full(key),
+                                      tables->size(), kMaxTableParts));
+    const auto keys = keys_of(fields, Files::kScene);
     for (const toml::table* table : *tables) {
-        const Section s(*table, outline.file(), "table.cushion", {"from", "to", "height"});
-        Cushion c{fmt::format("c{}", scene.table.cushions.size() + 1), {}, {}, 0.0, {}};
-        c.from = s.need_vec2("from", "[x, y]", kCoordinate);
-        c.to = s.need_vec2("to", "[x, y]", kCoordinate);
-        c.height = s.number("height", kNoseHeight * scene.balls.R, more_than(0.0, kMaxLength, "m"));
-        if (c.from == c.to) {
-            s.fail("to",
-                   "a cushion ends where it begins; move one end, or use a [[table.jaw]] of radius 0 for a "
-                   "post");
-        }
-        scene.table.cushions.push_back(c);
-    }
-}
-
-void read_jaws(const Section& outline, Scene& scene) {
-    const auto tables = outline.tables("jaw");
-    if (!tables) return;
-    check_count(outline, "jaw", tables->size());
-    for (const toml::table* table : *tables) {
-        const Section s(*table, outline.file(), "table.jaw", {"center", "radius", "height"});
-        Jaw j{fmt::format("j{}", scene.table.jaws.size() + 1), {}, 0.0, 0.0, {}};
-        j.center = s.need_vec2("center", "[x, y]", kCoordinate);
-        j.radius = s.need_number("radius", at_least(0.0, kMaxLength, "m"));
-        j.height = s.number("height", kNoseHeight * scene.balls.R, more_than(0.0, kMaxLength, "m"));
-        scene.table.jaws.push_back(j);
-    }
-}
-
-void read_pockets(const Section& outline, Scene& scene) {
-    const auto tables = outline.tables("pocket");
-    if (!tables) return;
-    check_count(outline, "pocket", tables->size());
-    for (const toml::table* table : *tables) {
-        const Section s(*table, outline.file(), "table.pocket", {"center", "radius"});
-        Pocket p{fmt::format("p{}", scene.table.pockets.size() + 1), {}, 0.0, kPocketDepth, {}};
-        p.center = s.need_vec2("center", "[x, y]", kCoordinate);
-        p.radius = s.need_number("radius", more_than(0.0, kMaxLength, "m"));
-        scene.table.pockets.push_back(p);
+        const Section s(*table, outline.file(), outline.full(key), keys);
+        Part& part = parts.emplace_back(standard);
+        part.id = fmt::format("{}{}", letter, parts.size());
+        s.read(fields, part);
+        check(s, part);
     }
 }
 
@@ -94,26 +59,33 @@ void set_surface(Table& table) {
 }  // namespace
 
 void read_table(const Section& top, Scene& scene) {
-    const toml::table* table = top.table("table");
-    if (!table) {
-        scene.table = make_table("nine_foot");
-        return;
-    }
-    const Section s(*table, top.file(), "table", {"preset", "cushion", "jaw", "pocket"});
-    const bool custom = s.has("cushion") || s.has("jaw") || s.has("pocket");
-    if (s.has("preset") && custom) {
-        s.fail(
+    std::vector<std::string_view> keys = keys_of(kTableFields, Files::kScene);
+    keys.insert(keys.end(), {"cushion", "jaw", "pocket"});
+    const auto s = top.section("table", keys);
+    const bool custom = s && (s->has("cushion") || s->has("jaw") || s->has("pocket"));
+    if (custom && s->has("preset")) {
+        s->fail(
             "preset",
             "a table has a preset or cushions, jaws and pockets of its own, not both; remove one of the two");
     }
     if (!custom) {
-        s.choice("preset", true, kTablePresets);
-        scene.table = make_table(s.text("preset", "nine_foot"));
+        Table named;
+        named.preset = kStandardTable;
+        if (s) s->read(kTableFields, named);
+        scene.table = make_table(named.preset);
         return;
     }
-    read_cushions(s, scene);
-    read_jaws(s, scene);
-    read_pockets(s, scene);
+    const double height = kNoseShare * scene.balls.R;
+    const auto any = [](const Section&, const auto&) {};
+    read_parts(*s, "cushion", 'c', kCushionFields, Cushion{"", {}, {}, height}, scene.table.cushions,
+               [](const Section& section, const Cushion& c) {
+                   if (c.from == c.to)
+                       section.fail("to",
+                                    "a cushion ends where it begins; move one end, or use a "
+                                    "[[table.jaw]] of radius 0 for a post");
+               });
+    read_parts(*s, "jaw", 'j', kJawFields, Jaw{"", {}, 0.0, height}, scene.table.jaws, any);
+    read_parts(*s, "pocket", 'p', kPocketFields, Pocket{"", {}, 0.0, kPocketDepth}, scene.table.pockets, any);
     set_surface(scene.table);
 }
 

@@ -1,9 +1,16 @@
 // From a scene back to a scene file, and the check of scenes that were built in code.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "carom/engine/scene.h"
 
@@ -26,107 +33,61 @@ std::string quote(const std::string& text) {
     return out + '"';
 }
 
-std::string point(const Vec2& p) {
-    return fmt::format("[{}, {}]", p.x(), p.y());
+std::string text_of(const FieldValue& value) {
+    if (const auto* list = std::get_if<std::vector<double>>(&value))
+        return fmt::format("[{}]", fmt::join(*list, ", "));
+    if (const auto* text = std::get_if<std::string>(&value)) return quote(*text);
+    if (const auto* integer = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *integer);
+    return fmt::format("{}", std::get<double>(value));
 }
 
-std::string point(const Vec3& p) {
-    return fmt::format("[{}, {}, {}]", p.x(), p.y(), p.z());
+/// A line for each value, under a heading that is there only if a line is.
+template <class T, std::size_t kRows>
+void write_fields(Out out, const char* heading, const Field<T> (&fields)[kRows], const T& object) {
+    const auto is_given = [&](const Field<T>& f) { return f.value(object).index() != 0; };
+    for (const Field<T>& f : fields) {
+        // Another key may stand in for this one.
+        const bool replaced = std::any_of(std::begin(fields), std::end(fields), [&](const Field<T>& other) {
+            const char* key = other.options.instead_of;
+            return key != nullptr && key == std::string_view(f.key) && is_given(other);
+        });
+        if (!f.in(Files::kScene) || replaced || !is_given(f)) continue;
+        fmt::format_to(out, "{}{} = {}\n", std::exchange(heading, ""), f.key, text_of(f.value(object)));
+    }
 }
 
-bool same_parts(const Table& a, const Table& b) {
-    if (a.cushions.size() != b.cushions.size() || a.jaws.size() != b.jaws.size() ||
-        a.pockets.size() != b.pockets.size())
-        return false;
-    for (std::size_t i = 0; i < a.cushions.size(); ++i) {
-        const Cushion &x = a.cushions[i], &y = b.cushions[i];
-        if (x.from != y.from || x.to != y.to || x.height != y.height) return false;
-    }
-    for (std::size_t i = 0; i < a.jaws.size(); ++i) {
-        const Jaw &x = a.jaws[i], &y = b.jaws[i];
-        if (x.center != y.center || x.radius != y.radius || x.height != y.height) return false;
-    }
-    for (std::size_t i = 0; i < a.pockets.size(); ++i) {
-        const Pocket &x = a.pockets[i], &y = b.pockets[i];
-        if (x.center != y.center || x.radius != y.radius) return false;
-    }
-    return true;
+/// Whether a scene file would say the same of the parts of two tables.
+template <class Part, std::size_t kRows>
+bool same_parts(const Field<Part> (&fields)[kRows], const std::vector<Part>& a, const std::vector<Part>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](const Part& x, const Part& y) {
+        return std::all_of(std::begin(fields), std::end(fields), [&](const Field<Part>& f) {
+            return !f.in(Files::kScene) || f.value(x) == f.value(y);
+        });
+    });
 }
 
 /// Whether the table is still that of its preset.
 bool is_preset(const Table& table) {
     if (table.preset.empty()) return false;
     try {
-        return same_parts(table, make_table(table.preset));
+        const Table preset = make_table(table.preset);
+        return same_parts(kCushionFields, table.cushions, preset.cushions) &&
+               same_parts(kJawFields, table.jaws, preset.jaws) &&
+               same_parts(kPocketFields, table.pockets, preset.pockets);
     } catch (const std::invalid_argument&) {
         return true;  // the reader will say what is wrong with the name
     }
 }
 
 void write_table(Out out, const Table& table) {
-    fmt::format_to(out, "[table]\n");
-    if (is_preset(table)) {
-        fmt::format_to(out, "preset = {}\n", quote(table.preset));
-        return;
-    }
-    if (table.cushions.empty()) fmt::format_to(out, "cushion = []\n");
-    for (const Cushion& c : table.cushions)
-        fmt::format_to(out, "[[table.cushion]]\nfrom = {}\nto = {}\nheight = {}\n", point(c.from),
-                       point(c.to), c.height);
-    for (const Jaw& j : table.jaws)
-        fmt::format_to(out, "[[table.jaw]]\ncenter = {}\nradius = {}\nheight = {}\n", point(j.center),
-                       j.radius, j.height);
-    for (const Pocket& p : table.pockets)
-        fmt::format_to(out, "[[table.pocket]]\ncenter = {}\nradius = {}\n", point(p.center), p.radius);
+    if (is_preset(table)) return write_fields(out, "[table]\n", kTableFields, table);
+    fmt::format_to(out, "[table]\n{}", table.cushions.empty() ? "cushion = []\n" : "");
+    for (const Cushion& c : table.cushions) write_fields(out, "[[table.cushion]]\n", kCushionFields, c);
+    for (const Jaw& j : table.jaws) write_fields(out, "[[table.jaw]]\n", kJawFields, j);
+    for (const Pocket& p : table.pockets) write_fields(out, "[[table.pocket]]\n", kPocketFields, p);
 }
 
-void write_balls(Out out, const Scene& scene) {
-    const BallParams& p = scene.balls;
-    fmt::format_to(
-        out,
-        "[balls]\npreset = {}\nradius = {}\nmass = {}\nmu_s = {}\nmu_r = {}\nmu_sp = {}\ne_b = {}\n"
-        "e_c = {}\nf_c = {}\n",
-        quote(scene.ball_preset), p.R, p.m, p.mu_s, p.mu_r, p.mu_sp, p.e_b, p.e_c, p.f_c);
-    if (p.mu_b_more != 0.0 || p.mu_b_fall != 0.0)
-        fmt::format_to(out, "mu_b_fit = [{}, {}, {}]\n", p.mu_b, p.mu_b_more, p.mu_b_fall);
-    else
-        fmt::format_to(out, "mu_b = {}\n", p.mu_b);
-    for (const BallStart& ball : scene.ball) {
-        fmt::format_to(out, "[[ball]]\nid = {}\nposition = {}\nvelocity = {}\nspin = {}\n", quote(ball.id),
-                       point(Vec2(ball.position.head<2>())), point(Vec2(ball.velocity.head<2>())),
-                       point(ball.spin));
-        if (ball.own) fmt::format_to(out, "radius = {}\nmass = {}\n", ball.own->R, ball.own->m);
-    }
-}
-
-void write_cue(Out out, const Cue& cue) {
-    fmt::format_to(
-        out,
-        "[cue]\nball = {}\nspeed = {}\naim_deg = {}\nelevation_deg = {}\noffset = [{}, {}]\nmass = {}\n"
-        "end_mass = {}\n",
-        quote(cue.ball), cue.speed, cue.aim_deg, cue.elevation_deg, cue.side, cue.height, cue.mass,
-        cue.end_mass);
-}
-
-void write_physics(Out out, const Physics& p) {
-    fmt::format_to(out, "[physics]\ngravity = {}\nball_ball = \"{}\"\ncushion = \"{}\"\n", p.gravity,
-                   name(p.ball_ball), name(p.cushion));
-    if (p.jaw) fmt::format_to(out, "jaw = \"{}\"\n", name(*p.jaw));
-    fmt::format_to(out, "cloth_slip = \"{}\"\nclusters = \"{}\"\n", name(p.cloth_slip), name(p.clusters));
-    if (p.substeps)
-        fmt::format_to(out, "substeps = {}\n", *p.substeps);
-    else
-        fmt::format_to(out, "tolerance = {}\n", p.tolerance);
-}
-
-void write_render(Out out, const RenderSettings& r) {
-    fmt::format_to(out, "[render]\nfps = {}\nsize = [{}, {}]\n", r.fps, r.width, r.height);
-    if (r.eye) fmt::format_to(out, "eye = {}\n", point(*r.eye));
-    if (r.target) fmt::format_to(out, "target = {}\n", point(*r.target));
-    if (!r.eye && !r.target) fmt::format_to(out, "camera = {}\n", quote(r.camera));
-}
-
-/// What no file can say: a ball that is not on the cloth.
+/// Refuses a ball that is not on the cloth, which no file can describe.
 void check_heights(const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
         if (ball.position.z() == scene.size_of(ball).R && ball.velocity.z() == 0.0) continue;
@@ -144,16 +105,19 @@ std::string scene_text(const Scene& scene) {
     fmt::memory_buffer buffer;
     const Out out(buffer);
     write_table(out, scene.table);
-    write_balls(out, scene);
-    if (scene.cue) write_cue(out, *scene.cue);
-    write_physics(out, scene.physics);
+    write_fields(out, "[balls]\n", kBallPresetFields, scene);
+    write_fields(out, "", kBallFields, scene.balls);
+    for (const BallStart& ball : scene.ball) {
+        write_fields(out, "[[ball]]\n", kBallStartFields, ball);
+        if (ball.own) write_fields(out, "", kSizeFields, *ball.own);
+    }
+    if (scene.cue) write_fields(out, "[cue]\n", kCueFields, *scene.cue);
+    write_fields(out, "[physics]\n", kPhysicsFields, scene.physics);
     if (!scene.effects.empty()) fmt::format_to(out, "[effects]\n");
     for (const EffectOverride& effect : scene.effects)
         fmt::format_to(out, "{} = {}\n", effect.keyword, effect.in_force);
-    if (scene.stop.time || scene.stop.events) fmt::format_to(out, "[stop]\n");
-    if (scene.stop.time) fmt::format_to(out, "time = {}\n", *scene.stop.time);
-    if (scene.stop.events) fmt::format_to(out, "events = {}\n", *scene.stop.events);
-    write_render(out, scene.render);
+    write_fields(out, "[stop]\n", kStopFields, scene.stop);
+    write_fields(out, "[render]\n", kRenderFields, scene.render);
     return fmt::to_string(buffer);
 }
 
@@ -162,7 +126,7 @@ void validate(const Scene& scene) {
     try {
         parse_scene(scene_text(scene), scene.file);
     } catch (const SceneError& error) {
-        // The lines are those of a text that nobody wrote.
+        // The error has a line in a text that nobody wrote, so the line is left out.
         throw SceneError(scene.file, {}, error.message());
     }
 }

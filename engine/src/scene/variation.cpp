@@ -19,7 +19,7 @@ using detail::Distribution;
 using detail::Drawn;
 using detail::in_quotes;
 
-/// One step: into a table by name, or into an array, where the name is empty, by index.
+/// One step of a path: into a table by its name, or, where the name is empty, into an array by its index.
 struct Step {
     std::string name;
     std::size_t index = 0;
@@ -54,7 +54,7 @@ toml::node* follow(toml::node& from, const std::vector<Step>& path) {
     return at;
 }
 
-/// Puts a value where the path ends; all but its last step is there.
+/// Puts a value at the end of the path. All places before the last step exist.
 void put(toml::table& file, const std::vector<Step>& path, const Drawn& value) {
     toml::node* parent = follow(file, std::vector<Step>(path.begin(), path.end() - 1));
     const auto place = [&](const auto& v) {
@@ -93,7 +93,7 @@ bool take(std::string_view& key, std::string_view name) {
     return true;
 }
 
-/// Takes the id of a written ball; its place in the list.
+/// Takes the id of a written ball from the front of a key, and returns its place in the list.
 std::size_t take_ball(toml::table& file, std::string_view& key) {
     const toml::array* balls = file["ball"].as_array();
     std::string ids;
@@ -107,7 +107,7 @@ std::size_t take_ball(toml::table& file, std::string_view& key) {
                      ids.empty() ? "none is written" : ids));
 }
 
-/// Takes "c2" of a list of cushions, and so on; its place in the list.
+/// Takes the name of a part of the table ("c2") from the front of a key, and returns its place in the list.
 std::size_t take_part(std::string_view& key, char letter) {
     std::size_t number = 0;
     const char* const end = key.data() + key.size();
@@ -123,7 +123,7 @@ std::size_t take_part(std::string_view& key, char letter) {
     return number - 1;
 }
 
-/// "x", "side" or "0" as the place in an array; the names are those of docs/scene_format.md.
+/// Returns the place in an array that "x", "side" or "0" stands for; the names are those of docs/scene_format.md.
 std::size_t element_index(std::string_view name) {
     constexpr struct {
         const char* name;
@@ -139,7 +139,7 @@ std::size_t element_index(std::string_view name) {
     return index;
 }
 
-/// The section that a key begins with; where it is missing and holds settings only, an empty one.
+/// Finds the section that a key begins with. A missing one that holds only settings is added without a key.
 std::vector<Step> find_section(toml::table& file, std::string_view& key) {
     if (take(key, "ball")) return {{"ball"}, {"", take_ball(file, key)}};
     const std::size_t dot = key.find('.');
@@ -240,7 +240,7 @@ Variation::Variation(const std::string& path, const std::vector<std::string>& ru
     }
     parts->fingerprint = print.value();
     parts_ = std::move(parts);
-    // A mistyped key or a hopeless range shows in every shot: better said now than in every row.
+    // A mistyped key or a range without valid values spoils every shot: it is reported here, once.
     for (int i = 0; i < kVariationTrials; ++i)
         if (shot(static_cast<std::uint64_t>(i)).scene) return;
     throw VariationError(fmt::format("none of the first {} shots is a valid scene; shot 0: {}",

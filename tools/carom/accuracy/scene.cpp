@@ -10,6 +10,7 @@
 #include "accuracy/kernel.h"
 #include "bench/clock.h"
 #include "bench/rounds.h"
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/simulate.h"
 #include "console.h"
 #include "options.h"
@@ -231,7 +232,7 @@ int run(const AccuracySceneArgs& args) {
     if (!(args.target > 0.0 && std::isfinite(args.target)))
         throw UsageError(fmt::format("--target {}: expected a number of metres greater than 0", args.target));
     const Plan plan = plan_scene(args.scene);
-    if (plan.scene.physics.ball_ball != BallBallModel::kMathavan)
+    if (!plan.scene.physics.ball_ball->reads_tolerance)
         throw UsageError(
             fmt::format("{}: ball_ball = \"{}\" is one formula, without an accuracy to choose; set ball_ball "
                         "= \"mathavan\"",

@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "carom/engine/ball_ball.h"
+#include "carom/engine/cushion.h"
 #include "carom/engine/math.h"
 #include "reference/random_impacts.h"
 
@@ -91,8 +93,8 @@ Scene gas_scene(int n, long events, std::uint64_t seed) {
     BallParams& b = scene.balls = make_ball_params("pool");
     b.mu_s = b.mu_r = b.mu_sp = b.mu_b = b.f_c = 0.0;
     b.e_b = b.e_c = 1.0;
-    scene.physics.ball_ball = BallBallModel::kElastic;
-    scene.physics.cushion = CushionModel::kSmooth;
+    scene.physics.ball_ball = ball_ball_model("elastic");
+    scene.physics.cushion = &kSmooth;
     scene.physics.clusters = ClusterModel::kSequential;
     scene.stop.events = events;
     int rows = 1;

@@ -11,6 +11,7 @@
 
 #include "accuracy/scene.h"
 #include "bench/clock.h"
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/simulate.h"
 #include "console.h"
 #include "margin/margin.h"
@@ -46,7 +47,7 @@ struct SettingRow {
 
 std::vector<Setting> settings_of(const Plan& plan) {
     std::vector<Setting> list;
-    if (plan.scene.physics.ball_ball != BallBallModel::kMathavan) {
+    if (!plan.scene.physics.ball_ball->reads_tolerance) {
         list.push_back({name(plan.scene.physics.ball_ball), "", plan});
         return list;
     }

@@ -1,13 +1,16 @@
 // Ball-ball impact models: one function each, behind one interface.
 #pragma once
 
+#include <span>
+#include <string_view>
+
 #include "carom/engine/scene.h"
 #include "carom/kernel/march.h"
 #include "carom/kernel/tolerance.h"
 
 namespace carom {
 
-/// What is set once for a run: how accurate the model mathavan is, and which of its kernels runs.
+/// What is set once for a run: how accurate an integrated model is, and which kernel integrates it.
 struct BallBallSettings {
     kernel::MarchFunction march = nullptr;             ///< set where the scene asks for substeps
     kernel::ToleranceFunction by_tolerance = nullptr;  ///< set otherwise
@@ -24,19 +27,21 @@ using BallBallFunction = void (*)(const BallBallSettings& settings, const kernel
 /// One model: its function, the state that it reads and writes, and which balls it takes. Every model reads
 /// and writes the velocities.
 struct BallBallModelInfo {
-    BallBallModel model;
     const char* name;
+    const char* source;
     BallBallFunction collide;
     bool reads_spin = false;         ///< the spins before matter, and the spins change
     bool reads_friction = false;     ///< mu_b matters
     bool reads_restitution = false;  ///< e_b matters
     bool reads_cloth = false;        ///< mu_s and the sign of the cloth slip matter
+    bool reads_tolerance = false;    ///< the settings matter: an integration, no closed form
     bool rough_masses = false;  ///< with friction, takes balls of different mass; without it every model does
-    const char* source = "";
 };
 
-/// The three models; equations and sources in docs/physics.md, "Ball-ball impact".
-const BallBallModelInfo& ball_ball_model(BallBallModel model);
+/// All models; equations and sources in docs/physics.md, "Ball-ball impact".
+std::span<const BallBallModelInfo* const> all_of(const BallBallModelInfo*);
+/// The model of this name, or null.
+const BallBallModelInfo* ball_ball_model(std::string_view name);
 
 /// Two balls of different size. The planar model holds both to the cloth: the horizontal velocities along the
 /// line of centres part at e_b times the approach, whatever the tilt of that line. Friction is known for equal

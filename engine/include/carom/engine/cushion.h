@@ -2,8 +2,8 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
-#include "carom/engine/scene.h"
 #include "carom/engine/vec.h"
 
 namespace carom {
@@ -22,33 +22,32 @@ struct CushionContact {
 ///
 /// @param normal  unit, horizontal, from the cushion into the table.
 /// A ball that does not approach (v . normal >= 0) is left alone.
-/// @return false where the model found no solution (mathavan_2010 beyond its bound on steps, which takes
+/// @return false where the model found no solution (an iteration beyond its bound on steps, which takes
 /// frictions that no cloth has); the velocities are then as they came
 using CushionFunction = bool (*)(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
 
 /// One model: its function and what it looks at. All models are homogeneous in the velocities and do not read
-/// the mass (all impulses are per mass).
+/// the mass (all impulses are per mass). Equations and sources: docs/physics.md, "Cushion impact".
 struct CushionModelInfo {
-    CushionModel model;
     const char* name;
+    const char* source;
     CushionFunction resolve;
     bool reads_spin = false;      ///< the spin before matters, and the spin changes
     bool reads_friction = false;  ///< f_c matters
     bool reads_cloth = false;     ///< mu_s matters
     bool reads_height = false;    ///< the height of the nose matters
-    const char* source = "";
+    /// Without friction, and with the nose at the height of the centre, the result has the bits of `smooth`.
+    bool reflects_when_level = false;
+    /// Whether the model has a solution for all velocities; null: for every contact. In mathavan_2010 a ball can jam.
+    bool (*accepts)(const CushionContact& contact) = nullptr;
 };
 
-/// All models, as messages list them; equations and sources in docs/physics.md, "Cushion impact".
-std::span<const CushionModelInfo> cushion_models();
-const CushionModelInfo& cushion_model(CushionModel model);
+/// The models that others refer to; cushion_model("stronge") and all_of() find the rest.
+extern const CushionModelInfo kHan2005, kSmooth;
 
-/// Shorthand for cushion_model(model).resolve(...).
-bool resolve_cushion(CushionModel model, const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
-
-/// Whether a ball can jam in mathavan_2010. It cannot while the normal velocity falls all along,
-/// f_c s + mu_s (s + f_c c) < c with (s, c) sine and cosine of the nose's height angle, and while the cloth
-/// cannot hold the ball at any friction of the nose.
-bool mathavan_2010_ends(const CushionContact& contact);
+/// All models, as messages list them.
+std::span<const CushionModelInfo* const> all_of(const CushionModelInfo*);
+/// The model of this name, or null.
+const CushionModelInfo* cushion_model(std::string_view name);
 
 }  // namespace carom

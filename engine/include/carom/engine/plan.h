@@ -1,8 +1,11 @@
 // Plan: what must be computed for a scene. Constant during a run; the loop reads nothing else.
 #pragma once
 
+#include <bitset>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +25,27 @@ struct EffectDecision {
     std::string reason;
 };
 
+struct Plan;
+struct EffectFacts;
+
+/// Whether a scene can ever feel an effect, and why.
+struct Need {
+    bool needed;
+    std::string reason;
+};
+
+/// One effect: a row of effect_table().
+struct EffectInfo {
+    const char* keyword;       ///< of [effects]
+    const char* skipped_when;  ///< for people
+    const char* keys;          ///< of a scene, that belong to it, with commas between them
+    Need (*need)(const EffectFacts&);
+    void (*leave_out)(Plan&) = nullptr;  ///< takes it out of the plan, beside Plan::skipped
+    bool last = false;                   ///< decided when all others are: it asks what came of them
+};
+/// All effects, in the order of Effect and of Plan::effects.
+std::span<const EffectInfo> effect_table();
+
 /// How detection looks for what a ball can meet: through all boxes, or in a tree of them (Box2D's). The
 /// events are the same to the last bit; docs/speed.md has the measured crossing.
 enum class Search : std::uint8_t { kDirect, kTree };
@@ -37,20 +61,16 @@ struct Plan {
     Geometry geometry;                          ///< empty lists where nothing can reach them
     const CushionModelInfo* cushion = nullptr;  ///< of straight noses and their ends
     const CushionModelInfo* jaw = nullptr;      ///< of round jaws
-    std::vector<EffectDecision> effects;
-    // What the effects leave in the loop.
-    bool pairs = true;            ///< two balls can meet
-    bool sliding = true;          ///< friction of slipping balls
-    bool rolling = true;          ///< resistance of rolling balls
-    bool spin_decay = true;       ///< vertical spin decays
-    bool friction = true;         ///< between balls
-    bool cloth_in_impact = true;  ///< the cloth acts during a ball-ball impact
-    bool squirt = true;           ///< a struck ball leaves the line of aim
+    std::vector<EffectDecision> effects;        ///< of effect_table(), then what no scene can ask for
+    std::bitset<kEffects> skipped;
+    bool in_force(Effect effect) const { return !skipped[static_cast<std::size_t>(effect)]; }
+    void skip(Effect effect) { skipped.set(static_cast<std::size_t>(effect)); }
+    bool pairs = true;  ///< two balls can meet
     kernel::Isa isa = kernel::Isa::kScalar;
     const BallBallModelInfo* ball_ball = nullptr;
     BallBallSettings impact;
     kernel::ContactPhaseFunction contact_phase = nullptr;  ///< of compliant clusters
-    /// KSequential where fewer than three balls leave nothing to decide
+    /// kSequential where fewer than three balls leave nothing to decide
     ClusterModel clusters = ClusterModel::kSequential;
     Search ball_search = Search::kDirect;   ///< among balls
     Search table_search = Search::kDirect;  ///< among cushions, noses and pockets

@@ -125,10 +125,8 @@ struct EventCost {
     double resolve_ns = 0.0;  ///< advancing and resolving, kernel included
     double kernel_ns = 0.0;   ///< inside the impact kernel
     long steps = 0;           ///< of the kernel
-    /// "march", "elastic", "han_2005", ...: text that lives as long as the program, or as the record that was
-    /// read from a file, and its copies.
-    std::string_view method = "";
-    double queue_ns = 0.0;  ///< part of detect_ns: which event is next
+    std::string method{};     ///< "march", "elastic", "han_2005", ...
+    double queue_ns = 0.0;    ///< part of detect_ns: which event is next
     bool operator==(const EventCost&) const = default;
 };
 
@@ -193,9 +191,6 @@ class Record {
     /// Name of what an event's b is: a ball, cushion, jaw or pocket id, or "".
     std::string partner_id(const Event& event) const;
 
-    /// Keeps what views in this record (EventCost::method) point into, for as long as it or a copy lives.
-    void keep(std::shared_ptr<const void> texts) { aside_.kept = std::move(texts); }
-
   private:
     struct Orientations;
     /// What is no part of what happened: any two of these are equal.
@@ -208,7 +203,6 @@ class Record {
         ~Aside() = default;
         bool operator==(const Aside&) const { return true; }
         std::shared_ptr<Orientations> orientations;  // made on first use, by any thread
-        std::shared_ptr<const void> kept;
     };
     Aside aside_;
 };

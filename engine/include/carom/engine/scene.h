@@ -1,15 +1,21 @@
 // Scene: what a scene file says, validated, with every default written out.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "carom/engine/field.h"
 #include "carom/engine/frame_size.h"
 #include "carom/engine/table.h"
+#include "carom/engine/tolerances.h"
+#include "carom/kernel/tolerance.h"
 
 namespace carom {
 
@@ -35,24 +41,32 @@ class SceneError : public std::runtime_error {
 // The structs below compare all that they hold, so that a test which compares a whole one cannot forget a
 // field that is added later.
 
+inline constexpr Interval kBallRadius = at_least(kMinLength, kMaxLength, "m");
+inline constexpr Interval kMass = at_least(kMinMass, kMaxMass, "kg");
+inline constexpr Interval kFriction = at_least(0.0, kMaxFriction);
+inline constexpr Interval kRestitution = at_least(0.0, 1.0);
+
 /// What may differ from ball to ball.
 struct BallSize {
     double R;  ///< radius [m]
     double m;  ///< mass [kg]
     bool operator==(const BallSize&) const = default;
 };
+inline constexpr Field<BallSize> kSizeFields[] = {
+    field<&BallSize::R>("radius", kBallRadius, "of this ball", {.standard = "as `[balls]`"}),
+    field<&BallSize::m>("mass", kMass, "of this ball", {.standard = "as `[balls]`"}),
+};
 
 /// Properties shared by all balls of a scene (SI; frictions and restitutions are numbers).
 struct BallParams {
-    double R;      ///< radius [m]
-    double m;      ///< mass [kg]
-    double mu_s;   ///< sliding friction, ball on cloth
-    double mu_r;   ///< rolling friction
-    double mu_sp;  ///< spinning friction: w_z decays at 5 mu_sp g / (2 R)
-    double mu_b;   ///< ball-ball friction
-    double e_b;    ///< ball-ball restitution
-    double e_c;    ///< cushion restitution
-    double f_c;    ///< cushion friction
+    double R, m;
+    double mu_s;
+    double mu_r;
+    double mu_sp;  ///< w_z decays at 5 mu_sp g / (2 R)
+    double mu_b;
+    double e_b;
+    double e_c;
+    double f_c;
     /// Ball-ball friction that falls with the slip u [m/s]:
     /// mu_b + mu_b_more exp(-mu_b_fall u). 0: mu_b at every speed.
     double mu_b_more = 0.0;
@@ -60,6 +74,43 @@ struct BallParams {
     BallSize size() const { return {R, m}; }
     bool ball_friction() const { return mu_b != 0.0 || mu_b_more != 0.0; }
     bool operator==(const BallParams&) const = default;
+};
+inline constexpr Field<BallParams> kBallFields[] = {
+    field<&BallParams::R>("radius", kBallRadius, "radius", {.record_key = "R"}),
+    field<&BallParams::m>("mass", kMass, "mass", {.record_key = "m"}),
+    field<&BallParams::mu_s>("mu_s", kFriction, "sliding friction on the cloth"),
+    field<&BallParams::mu_r>("mu_r", kFriction, "rolling friction"),
+    field<&BallParams::mu_sp>("mu_sp", kFriction, "spinning friction"),
+    field<&BallParams::mu_b>("mu_b", kFriction, "ball-ball friction"),
+    field<&BallParams::mu_b_more>(
+        "mu_b_more", kFriction,
+        "at a slip of u m/s the ball-ball friction is `mu_b` + `mu_b_more` exp(-`mu_b_fall` u)",
+        {.files = Files::kRecord, .since = 2}),
+    field<&BallParams::mu_b_fall>("mu_b_fall", at_least(0.0, kMaxFriction, "s/m"), "see `mu_b_more`",
+                                  {.files = Files::kRecord, .since = 2}),
+    // Three members that have rows of their own, written as one list where the friction falls at all.
+    {{"mu_b_fit",
+      Key::Kind::kNumbers,
+      kFriction,
+      "ball-ball friction a + b exp(-c u) at the slip u in m/s before the impact; `[0.009951, 0.108, 1.088]` "
+      "is the "
+      "fit of Alciatore's TP A.14",
+      {.shape = "[a, b, c] for a + b exp(-c u)", .files = Files::kScene, .instead_of = "mu_b"},
+      true,
+      0,
+      nullptr},
+     [](const BallParams& p) {
+         return p.mu_b_more == 0.0 && p.mu_b_fall == 0.0
+                    ? FieldValue()
+                    : std::vector<double>{p.mu_b, p.mu_b_more, p.mu_b_fall};
+     },
+     [](BallParams& p, const FieldValue& value) {
+         const auto& fit = std::get<std::vector<double>>(value);
+         p.mu_b = fit[0], p.mu_b_more = fit[1], p.mu_b_fall = fit[2];
+     }},
+    field<&BallParams::e_b>("e_b", kRestitution, "ball-ball restitution"),
+    field<&BallParams::e_c>("e_c", kRestitution, "cushion restitution"),
+    field<&BallParams::f_c>("f_c", kFriction, "cushion friction"),
 };
 
 /// Friction between two balls whose surfaces slip by `slip` [m/s] at the contact. Source of the form: D.
@@ -69,47 +120,145 @@ double ball_friction(const BallParams& balls, double slip);
 
 /// A ball at the start.
 struct BallStart {
-    std::string id;
-    Vec3 position;                               ///< centre [m], z = its radius
+    std::string id = "cue";
+    Vec3 position = {0.635, 0.5, 0.0};           ///< centre [m], z = its radius
     Vec3 velocity = Vec3::Zero();                ///< [m/s], z = 0
     Vec3 spin = Vec3::Zero();                    ///< [rad/s]
     SourceLocation where;                        ///< where the file puts it ([rack] for a racked ball)
     std::optional<BallSize> own = std::nullopt;  ///< radius and mass of its own; nothing: those of all balls
     bool operator==(const BallStart&) const = default;
 };
+inline constexpr Field<BallStart> kBallStartFields[] = {
+    field<&BallStart::id>("id", at_least(1.0, kMaxIdLength, "bytes"),
+                          "used once; no commas, quotes or control characters"),
+    field<&BallStart::position>("position", kCoordinate, "of the centre", {.shape = "[x, y]"}),
+    field<&BallStart::velocity>("velocity", at_least(-kMaxSpeed, kMaxSpeed, "m/s"),
+                                "to start moving without a cue", {.shape = "[vx, vy]"}),
+    field<&BallStart::spin>("spin", at_least(-kMaxSpin, kMaxSpin, "rad/s"), "angular velocity at the start",
+                            {.shape = "[wx, wy, wz]"}),
+};
+
+enum class RackGame : std::uint8_t { kEightBall, kNineBall, kSnooker, kThreeCushion, kTriangle, kLine };
+constexpr auto names_of(RackGame) {
+    return std::array{"eight_ball", "nine_ball", "snooker", "three_cushion", "triangle", "line"};
+}
+
+/// Balls that a file does not place one by one.
+struct Rack {
+    RackGame game = RackGame::kEightBall;
+    double gap = 1e-4;
+    double jitter = 0.0;  ///< each coordinate moves by a uniform draw from [-jitter, jitter] [m]
+    std::uint64_t seed = 1;
+    int count = 5;
+    int rows = 5;
+};
+inline constexpr Field<Rack> kRackFields[] = {
+    field<&Rack::game>("game", "which balls stand where"),
+    field<&Rack::gap>("gap", at_least(0.0, kMaxLength, "m"), "between neighbours, 0 = touching"),
+    field<&Rack::jitter>("jitter", at_least(0.0, kMaxLength, "m"),
+                         "every ball moves by up to this much in x and in y"),
+    field<&Rack::seed>("seed", at_least(0.0, kAnyInteger), "of the random numbers"),
+    field<&Rack::count>("count", at_least(1.0, kMaxBalls), "balls of a `line`"),
+    field<&Rack::rows>("rows", at_least(1.0, kMaxRackRows), "rows of a `triangle`"),
+};
 
 /// What strikes the ball. Its defaults are those of a scene file with an empty [cue], and of the C interface.
 struct Cue {
     std::string ball = "cue";
-    double speed = 9.0;     ///< of the cue [m/s]
-    double aim_deg = 90.0;  ///< 0 = +x, 90 = +y
+    double speed = 9.0;
+    double aim_deg = 90.0;
     double elevation_deg = 0.0;
     double side = 0.0, height = 0.1;  ///< offset in ball radii: left +, up +; a little above the centre
-    double mass = 0.567;              ///< [kg]
-    double end_mass = 0.00567;        ///< [kg], for squirt
+    double mass = 0.567;
+    double end_mass = 0.00567;
     SourceLocation where;
     bool operator==(const Cue&) const = default;
 };
+inline constexpr Field<Cue> kCueFields[] = {
+    field<&Cue::ball>("ball", "id of the ball that is struck"),
+    field<&Cue::speed>("speed", at_least(0.0, kMaxSpeed, "m/s"), "of the cue"),
+    field<&Cue::aim_deg>("aim_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"), "0 is +x, 90 is +y"),
+    field<&Cue::elevation_deg>("elevation_deg", {0.0, false, 90.0, true, "degrees"},
+                               "of the butt; the vertical velocity is dropped"),
+    field<&Cue::side, &Cue::height>(
+        "offset", at_least(-1.0, 1.0, "ball radii"),
+        "left and up positive, together at most 0.5: farther out the tip slips off",
+        {.shape = "[side, height]"}),
+    field<&Cue::mass>("mass", kMass, "of the cue"),
+    field<&Cue::end_mass>("end_mass", at_least(0.0, kMaxMass, "kg"),
+                          "of its end, for squirt; 0 for none, at most `mass`"),
+};
 
-enum class BallBallModel : std::uint8_t { kMathavan, kInelastic, kElastic };
-enum class CushionModel : std::uint8_t { kSmooth, kHan2005, kMathavan2010, kImpulse, kStronge };
-enum class ClusterModel : std::uint8_t { kCompliant, kSequential, kRigid };
 enum class ClothSlipSign : std::uint8_t { kConsistent, kAsPublished };
+constexpr auto names_of(ClothSlipSign) {
+    return std::array{"consistent", "as_published"};
+}
+enum class ClusterModel : std::uint8_t { kCompliant, kSequential, kRigid };
+constexpr auto names_of(ClusterModel) {
+    return std::array{"compliant", "sequential", "rigid"};
+}
+
+// The models of an impact are rows of tables: ball_ball.h and cushion.h.
+struct BallBallModelInfo;
+struct CushionModelInfo;
+const char* name(const BallBallModelInfo* model);
+const char* name(const CushionModelInfo* model);
+std::span<const BallBallModelInfo* const> all_of(const BallBallModelInfo*);
+std::span<const CushionModelInfo* const> all_of(const CushionModelInfo*);
+extern const BallBallModelInfo kMathavan;
+extern const CushionModelInfo kHan2005;
 
 struct Physics {
-    double gravity = 9.81;  ///< [m/s^2]
-    BallBallModel ball_ball = BallBallModel::kMathavan;
-    CushionModel cushion = CushionModel::kHan2005;  ///< straight noses
-    std::optional<CushionModel> jaw;                ///< round jaws; nothing: as the straight noses
-    CushionModel jaw_model() const { return jaw.value_or(cushion); }
+    double gravity = 9.81;
+    const BallBallModelInfo* ball_ball = &kMathavan;
+    const CushionModelInfo* cushion = &kHan2005;  ///< straight noses
+    const CushionModelInfo* jaw = nullptr;        ///< round jaws; null: as the straight noses
+    const CushionModelInfo* jaw_model() const { return jaw != nullptr ? jaw : cushion; }
     ClothSlipSign cloth_slip = ClothSlipSign::kConsistent;
     ClusterModel clusters = ClusterModel::kCompliant;
-    double tolerance = 1e-6;      ///< of the impact (mathavan), relative to the approach speed
+    double tolerance = 1e-6;
     std::optional<int> substeps;  ///< set: the published march with N of them, instead of the tolerance
     bool operator==(const Physics&) const = default;
 };
+inline constexpr Field<Physics> kPhysicsFields[] = {
+    field<&Physics::gravity>("gravity", at_least(0.0, kMaxGravity, "m/s^2"), "acceleration"),
+    field<&Physics::ball_ball>("ball_ball", "impact of two balls"),
+    field<&Physics::cushion>(
+        "cushion",
+        "impact with a straight cushion; `mathavan_2010` refuses a friction under which a ball could jam"),
+    field<&Physics::jaw>("jaw", "impact with a round jaw", {.standard = "as `cushion`"}),
+    field<&Physics::cloth_slip>(
+        "cloth_slip",
+        "sign of the cloth slip during an impact: `as_published` has the sign of the published "
+        "code, for parity with its numbers"),
+    field<&Physics::clusters>(
+        "clusters",
+        "several contacts at once: Hertz contacts in one event, pair by pair with the deepest "
+        "closing first, or a symmetric projection without friction"),
+    field<&Physics::tolerance>("tolerance", at_least(kernel::kTightestTolerance, kernel::kLoosestTolerance),
+                               "error allowed in a ball-ball impact (`mathavan`), relative to the approach "
+                               "speed; frictions up to 1"),
+    field<&Physics::substeps>("substeps", at_least(1.0, kMaxSubsteps), "the published march with this N",
+                              {.instead_of = "tolerance"}),
+};
 
-/// [effects]: one effect forced in or out of the plan (plan.h).
+/// What a plan computes or leaves out. The keywords of [effects], and when one is left out: effect_table() in plan.h, in this
+/// order.
+enum class Effect : std::uint8_t {
+    kSliding,
+    kRolling,
+    kSpinDecay,
+    kThrow,
+    kClothInImpact,
+    kCushions,
+    kCushionFriction,
+    kPockets,
+    kSquirt,
+    kClusters,
+};
+inline constexpr std::size_t kEffects = 10;
+
+/// [effects]: one effect forced in or out of the plan.
 struct EffectOverride {
     std::string keyword;
     bool in_force;
@@ -117,24 +266,35 @@ struct EffectOverride {
     bool operator==(const EffectOverride&) const = default;
 };
 
-/// The keywords of [effects], in the order of Plan::effects.
-inline constexpr const char* kEffectKeywords[] = {
-    "sliding",  "rolling",          "spin_decay", "throw",  "cloth_in_impact",
-    "cushions", "cushion_friction", "pockets",    "squirt", "clusters"};
-
 struct Stop {
-    std::optional<double> time;  ///< [s]
+    std::optional<double> time;
     std::optional<std::int64_t> events;
     bool operator==(const Stop&) const = default;
 };
+inline constexpr Field<Stop> kStopFields[] = {
+    field<&Stop::time>("time", at_least(0.0, kMaxTime, "s"), "end after this much time"),
+    field<&Stop::events>("events", at_least(0.0, kAnyInteger), "end after this many events"),
+};
+
+inline constexpr const char* kCameras[] = {"top", "rail", "player", "follow"};
 
 struct RenderSettings {
     double fps = 60.0;
     int width = FrameSize().width, height = FrameSize().height;
-    std::string camera = "top";  ///< top, rail, player or follow; not used where eye and target are set
-    std::optional<Vec3> eye = std::nullopt, target = std::nullopt;  ///< [m]; both or neither
+    std::string camera = "top";                                     ///< not used where eye and target are set
+    std::optional<Vec3> eye = std::nullopt, target = std::nullopt;  ///< both or neither
     FrameSize size() const { return {width, height}; }
     bool operator==(const RenderSettings&) const = default;
+};
+inline constexpr Field<RenderSettings> kRenderFields[] = {
+    field<&RenderSettings::fps>("fps", more_than(0.0, kMaxFps, "frames per second"), "frame rate"),
+    field<&RenderSettings::width, &RenderSettings::height>("size", at_least(1.0, kMaxImageSize, "pixels"),
+                                                           "of an image", {.shape = "[width, height]"}),
+    field<&RenderSettings::camera>("camera", "where one looks from", {.names = kCameras}),
+    field<&RenderSettings::eye>("eye", kCoordinate, "place of a free camera, with `target`",
+                                {.shape = "[x, y, z]", .instead_of = "camera"}),
+    field<&RenderSettings::target>("target", kCoordinate, "point that a free camera looks at, with `eye`",
+                                   {.shape = "[x, y, z]", .instead_of = "camera"}),
 };
 
 struct Scene {
@@ -153,6 +313,11 @@ struct Scene {
     bool alike() const;
     bool operator==(const Scene&) const = default;
 };
+inline constexpr const char* kBallPresets[] = {"pool", "snooker", "carom"};
+/// The first key of [balls]; the others are kBallFields.
+inline constexpr Field<Scene> kBallPresetFields[] = {
+    field<&Scene::ball_preset>("preset", "ball properties to start from", {.names = kBallPresets}),
+};
 
 /// Reads and validates a scene file. @throws SceneError
 Scene read_scene(const std::string& path);
@@ -170,10 +335,5 @@ void validate(const Scene& scene);
 /// A preset by name. @throws std::invalid_argument for an unknown one
 Table make_table(std::string_view preset);
 BallParams make_ball_params(std::string_view preset);
-
-const char* name(BallBallModel model);
-const char* name(CushionModel model);
-const char* name(ClusterModel model);
-const char* name(ClothSlipSign sign);
 
 }  // namespace carom

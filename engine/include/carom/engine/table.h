@@ -6,9 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/field.h"
+#include "carom/engine/tolerances.h"
 #include "carom/engine/vec.h"
 
 namespace carom {
+
+/// Places on and off the table.
+inline constexpr Interval kCoordinate = at_least(-kMaxCoordinate, kMaxCoordinate, "m");
+inline constexpr Interval kNoseHeight = more_than(0.0, kMaxLength, "m");
 
 /// A straight cushion nose from one point to the other. It acts on both sides, and its ends are round with
 /// radius 0: neighbouring cushions leave no gap.
@@ -16,8 +22,18 @@ struct Cushion {
     std::string id;
     Vec2 from, to;
     double height;
-    std::string name{};  ///< for people: "left rail, head half"
+    std::string name{};
     bool operator==(const Cushion&) const = default;
+};
+inline constexpr Field<Cushion> kCushionFields[] = {
+    field<&Cushion::id>("id", "`c1`, `c2`, ...", {.files = Files::kRecord}),
+    field<&Cushion::from>("from", kCoordinate, "one end of a straight nose line",
+                          {.shape = "[x, y]", .needed = true}),
+    field<&Cushion::to>("to", kCoordinate, "the other end", {.shape = "[x, y]", .needed = true}),
+    field<&Cushion::height>("height", kNoseHeight, "of the nose above the cloth",
+                            {.standard = "1.28 x ball radius"}),
+    field<&Cushion::name>("name", "for people, such as: left rail, head half",
+                          {.files = Files::kRecord, .since = 2}),
 };
 
 /// A rounded jaw: a full circle. A ball touches it at centre distance R + radius.
@@ -29,6 +45,15 @@ struct Jaw {
     std::string name{};
     bool operator==(const Jaw&) const = default;
 };
+inline constexpr Field<Jaw> kJawFields[] = {
+    field<&Jaw::id>("id", "`j1`, `j2`, ...", {.files = Files::kRecord}),
+    field<&Jaw::center>("center", kCoordinate, "of the circle", {.shape = "[x, y]", .needed = true}),
+    field<&Jaw::radius>("radius", at_least(0.0, kMaxLength, "m"), "of the full circle; 0 is a post",
+                        {.needed = true}),
+    field<&Jaw::height>("height", kNoseHeight, "of the nose above the cloth",
+                        {.standard = "1.28 x ball radius"}),
+    field<&Jaw::name>("name", "for people", {.files = Files::kRecord, .since = 2}),
+};
 
 /// A ball is pocketed when its centre crosses the circle.
 struct Pocket {
@@ -38,6 +63,15 @@ struct Pocket {
     double depth;  ///< a pocketed ball rests at (center, -depth)
     std::string name{};
     bool operator==(const Pocket&) const = default;
+};
+inline constexpr Field<Pocket> kPocketFields[] = {
+    field<&Pocket::id>("id", "`p1`, `p2`, ...", {.files = Files::kRecord}),
+    field<&Pocket::center>("center", kCoordinate, "of the circle", {.shape = "[x, y]", .needed = true}),
+    field<&Pocket::radius>("radius", more_than(0.0, kMaxLength, "m"),
+                           "a ball is pocketed when its centre crosses this circle", {.needed = true}),
+    field<&Pocket::depth>("depth", kCoordinate, "at which a pocketed ball lies below the cloth, for drawing",
+                          {.files = Files::kRecord}),
+    field<&Pocket::name>("name", "for people", {.files = Files::kRecord, .since = 2}),
 };
 
 /// Cushions are "c1", "c2", ..., jaws "j1", ..., pockets "p1", ..., in the order in which they are listed.
@@ -51,6 +85,18 @@ struct Table {
     std::vector<Jaw> jaws;
     std::vector<Pocket> pockets;
     bool operator==(const Table&) const = default;
+};
+inline constexpr const char* kStandardTable = "nine_foot";
+inline constexpr const char* kTablePresets[] = {"seven_foot", "eight_foot", "nine_foot", "snooker", "carom"};
+/// The lists of cushions, jaws and pockets beside.
+inline constexpr Field<Table> kTableFields[] = {
+    field<&Table::preset>("preset", "a table with published sizes", {.names = kTablePresets}),
+    field<&Table::width>("width", at_least(0.0, kMaxCoordinate, "m"), "between the nose lines along x",
+                         {.files = Files::kRecord}),
+    field<&Table::length>("length", at_least(0.0, kMaxCoordinate, "m"), "the same along y",
+                          {.files = Files::kRecord}),
+    field<&Table::corner>("corner", kCoordinate, "the corner of smallest x and y",
+                          {.shape = "[x, y]", .files = Files::kRecord}),
 };
 
 /// Foot spot, where racks stand: (w/2, 3l/4) from the table's corner.

@@ -34,4 +34,14 @@ inline double cross(const Vec2& a, const Vec2& b) {
     return a.x() * b.y() - a.y() * b.x();
 }
 
+/// Distance of p from the segment between two points that differ. The cross product keeps it exact to rounding where p is
+/// close to the line.
+inline double distance_to_segment(const Vec2& p, const Vec2& from, const Vec2& to) {
+    const Vec2 along = to - from;
+    const double s = dot(p - from, along);
+    if (s <= 0.0) return length(p - from);
+    if (s >= dot(along, along)) return length(p - to);
+    return std::abs(cross(p - from, along)) / length(along);
+}
+
 }  // namespace carom

@@ -1,17 +1,16 @@
 // Cushion model `mathavan_2010`: Mathavan, Jackson, Parkin, "A theoretical analysis of billiard ball dynamics
-// under cushion impacts", Proc. IMechE C 224 (2010). The published code marches it by Euler steps in the
-// normal impulse; here it is integrated to a tolerance.
+// under cushion impacts", Proc. IMechE C 224 (2010). The published code integrates by explicit Euler steps in the
+// normal impulse; here the error per step is controlled.
 //
-// Frame: y into the cushion, z up, x = y x z. a = R w. s, c: sine and cosine of the nose's height angle. Per
-// unit of normal impulse over mass, with the nose's friction q (|q| <= f) against the slip I at the nose and
-// the cloth's friction p
-// (|p| <= mu_s N) against the slip C at the cloth, N = max(0, s + c q_y) the load on the cloth:
+// Frame: y points into the cushion, z up, and x = y x z. a = R w. s and c are the sine and cosine of the nose's height
+// angle. q is the friction of the nose (|q| <= f) against the slip I there, p that of the cloth (|p| <= mu_s N) against
+// the slip C, and N = max(0, s + c q_y) is the load on the cloth. Per unit of normal impulse over mass:
 //   dv_x = -(q_x + p_x)          da_x = -(5/2) (q_y + p_y)       I = (v_x + s a_y - c a_z, -s v_y + a_x)
 //   dv_y = -(c - s q_y + p_y)    da_y = -(5/2) (s q_x - p_x)     C = (v_x - a_y, v_y + a_x)
 //                                da_z =  (5/2) c q_x
-// Slip gives q = f I/|I|, p = mu_s N C/|C|. Where a slip vanishes, the contact sticks if static friction can
-// hold it (the limit of the march for ever smaller steps), else it slips on in the direction in which it is
-// driven. The two never stick together: that would stop the ball.
+// A slip gives q = f I/|I| and p = mu_s N C/|C|. Where a slip vanishes, the contact sticks if static friction can hold it,
+// which is the limit of explicit Euler steps that become ever smaller. Otherwise it goes on to slip in the direction in
+// which it is driven. The two contacts never stick at the same time, because that would stop the ball.
 //
 // The independent variable is the fall of v_y, from the approach speed (1, all velocities are relative to it)
 // to 0 and on until the work of restitution is e^2 times that of compression. Method: Dormand and Prince 5(4)
@@ -21,20 +20,21 @@
 
 #include "physics/cushion/dormand_prince.h"
 #include "physics/cushion/mathavan_laws.h"
-#include "physics/cushion/models.h"
+#include "physics/cushion/nose.h"
 
-namespace carom::detail {
+namespace carom {
+namespace detail {
 namespace {
 
-// [of the approach speed] Error per step of the cushion model mathavan_2010; a result of its ten or so steps
-// errs by about as much. Far below the ball-ball impact's default.
+// [of the approach speed] Error allowed in each step. The error of a result, after about ten steps, is about as large,
+// and far below the default tolerance of a ball-ball impact.
 constexpr double kCushionTolerance = 1e-7;
-// [of the approach speed] Slip at the nose that a nose which can stick is taken to have lost; what that
-// leaves out is of second order (docs/physics.md, "Cushion impact").
+// [of the approach speed] A nose that can stick is taken to stick below this slip. What that leaves out is of second
+// order (docs/physics.md, "Cushion impact").
 constexpr double kCushionStick = 3e-5;
-// A nose that has let go slips by less than this for a while, and its direction follows the drive at once
-// (stiff): it is taken as driven. What that leaves out is of second order, about the square root of this
-// times its square.
+// [of the approach speed] A nose that has stopped to stick slips by less than this for a while. Its direction then follows
+// the drive without delay, which makes the equations stiff, so it is set to that of the drive. What that leaves out is of
+// second order: about the square root of this constant times its square.
 constexpr double kCushionCreep = 1e-4;
 constexpr int kCushionSteps = 5000;  // [-] bound on its steps; an impact takes 3 to 300
 
@@ -50,7 +50,7 @@ constexpr double kNoSlip = 1e-9;         // slip without a direction
 constexpr double kLateStick = 1e-6;      // slip at which a contact sticks whose sticking is of first order
 constexpr double kLetGo = 1e-9;          // share of static friction by which a stuck contact lets go early
 constexpr double kTurned = 1e-26;        // squared turn at which the fixed point of a direction has settled
-constexpr int kTurns = 40;               // its most turns
+constexpr int kTurns = 40;               // largest number of iterations
 constexpr int kLateSteps = 100;          // after so many a slip is taken as lost earlier
 
 class Impact {
@@ -60,25 +60,27 @@ class Impact {
         noise_ = 0x1p-48 * (1.0 + std::abs(y_.v_x) + std::abs(y_.a_x) + std::abs(y_.a_y) + std::abs(y_.a_z));
     }
 
-    /// False where the bound on steps was met: then `end` is not the end.
+    /// Returns false where the bound on steps was met; `end` is then left alone.
     bool run(State& end) {
-        settle();
-        while (y_.v_y > kStill && !spent()) advance(y_.v_y, 0.0);
+        update_stick_state();
+        while (y_.v_y > kStill && !out_of_steps()) advance(y_.v_y, 0.0);
         const double target = e_ * e_ * y_.work;
         y_.work = 0.0;
         y_.v_y = 0.0;
         known_ = false;
         restoring_ = true;
-        while (target - y_.work > kWorkShare * target && !spent()) advance(0.0, target);
+        while (target - y_.work > kWorkShare * target && !out_of_steps()) advance(0.0, target);
         end = y_;
-        return !spent();
+        return !out_of_steps();
     }
 
   private:
-    bool none(double slip) const { return slip <= kNoSlip + noise_; }
-    double floor() const { return kNoSlip + noise_; }
-    bool no_cloth_slip(double slip) const { return slip <= (steps_ < kLateSteps ? floor() : late_stick()); }
-    bool spent() const { return steps_ >= kCushionSteps; }
+    bool is_zero_slip(double slip) const { return slip <= kNoSlip + noise_; }
+    double zero_slip() const { return kNoSlip + noise_; }
+    bool no_cloth_slip(double slip) const {
+        return slip <= (steps_ < kLateSteps ? zero_slip() : late_stick());
+    }
+    bool out_of_steps() const { return steps_ >= kCushionSteps; }
 
     Forces forces(const Vec2& nose_direction, const Vec2& cloth_direction) const {
         Forces f;
@@ -89,11 +91,11 @@ class Impact {
     }
     Forces forces(const State& y) const {
         const Vec2 nose = laws_.nose_slip(y), cloth = laws_.cloth_slip(y);
-        // A slip of rounding size has no direction; the contact goes where settle() found that it is driven.
+        // A slip of rounding size has no direction; the contact goes where update_stick_state() found that it is driven.
         const double nose_size = norm(nose), cloth_size = norm(cloth);
         const Vec2 cloth_direction = no_cloth_slip(cloth_size) ? cloth_direction_ : Vec2(cloth / cloth_size);
         if (nose_creeps_) return forces(driven_nose(cloth_direction), cloth_direction);
-        return forces(nose_size <= floor() ? nose_direction_ : Vec2(nose / nose_size), cloth_direction);
+        return forces(nose_size <= zero_slip() ? nose_direction_ : Vec2(nose / nose_size), cloth_direction);
     }
 
     // Where a nose that static friction no longer holds goes: the drive less the friction points along the
@@ -121,11 +123,11 @@ class Impact {
 
     // Decides for both contacts whether they stick, and where a vanished slip goes. A contact that stuck lets
     // go a little early: the steps come no closer to that point.
-    void settle() {
+    void update_stick_state() {
         // A direction that the slip itself has; a vanished one keeps its last (at first: none).
         const Vec2 nose = laws_.nose_slip(y_), cloth = laws_.cloth_slip(y_);
         const double nose_size = norm(nose), cloth_size = norm(cloth);
-        const bool nose_gone = none(nose_size), cloth_gone = no_cloth_slip(cloth_size);
+        const bool nose_gone = is_zero_slip(nose_size), cloth_gone = no_cloth_slip(cloth_size);
         if (!nose_gone) nose_direction_ = nose / nose_size;
         if (!cloth_gone) cloth_direction_ = cloth / cloth_size;
         const bool was_stuck = nose_stuck_;
@@ -211,7 +213,7 @@ class Impact {
     // Most that v_y may fall before a slip vanishes; a little less, so that its direction is still one at the end.
     double until_gone(const Vec2& slip, const Vec2& rate) const {
         const double size = norm(slip);
-        const double closing = size > floor() ? -(slip.x() * rate.x() + slip.y() * rate.y()) / size : 0.0;
+        const double closing = size > zero_slip() ? -(slip.x() * rate.x() + slip.y() * rate.y()) / size : 0.0;
         return closing > 0.0 ? 0.95 * size / closing : 2.0;
     }
 
@@ -267,7 +269,7 @@ class Impact {
             known_ = true;
             const double wish = h * scaled(error / allowed) * shrinking;
             step_ = h < step_ ? std::min(step_, wish) : wish;
-            settle_after();
+            update_stick_state_near_zero_slip();
             return;
         }
     }
@@ -280,7 +282,7 @@ class Impact {
 
     double shrunk(const Vec2& before, const Vec2& after) const {
         const double size = norm(before);
-        return size > floor() ? std::min(1.0, norm(after) / size) : 1.0;
+        return size > zero_slip() ? std::min(1.0, norm(after) / size) : 1.0;
     }
 
     // By how much a step may change for an error of `x` times what is allowed: x^(-1/5) with some margin,
@@ -295,14 +297,14 @@ class Impact {
         return nose_stuck_ ? norm(f.q) / laws_.f : norm(f.p) / (laws_.mu * f.load);
     }
 
-    void settle_after() {
+    void update_stick_state_near_zero_slip() {
         const double nose = norm(laws_.nose_slip(y_)), cloth = norm(laws_.cloth_slip(y_));
         const bool nose_ends =
             laws_.f > 0.0 &&
-            (none(nose) || nose <= ends_below(laws_.nose_slip(y_).y() / nose, cloth, nose_strain()));
+            (is_zero_slip(nose) || nose <= ends_below(laws_.nose_slip(y_).y() / nose, cloth, nose_strain()));
         const bool cloth_ends = laws_.mu > 0.0 && cloth <= late_stick();
         if (!(nose_ends || cloth_ends || nose_stuck_ || cloth_stuck_ || nose_creeps_)) return;
-        settle();
+        update_stick_state();
         known_ = false;
     }
 
@@ -343,10 +345,8 @@ bool cushion_mathavan_2010_to(const CushionContact& p, const Vec2& normal, Vec3&
     return true;
 }
 
-}  // namespace carom::detail
-
-namespace carom {
-
+// A ball cannot jam while the normal velocity falls all along, f_c s + mu_s (s + f_c c) < c, and while the cloth cannot hold the
+// ball at any friction of the nose.
 bool mathavan_2010_ends(const CushionContact& p) {
     const double s = (p.height - p.R) / p.R, c = std::sqrt((1.0 - s) * (1.0 + s)), f = p.f_c;
     if (!(f * std::abs(s) + p.mu_s * (std::abs(s) + f * c) < c)) return false;
@@ -356,5 +356,18 @@ bool mathavan_2010_ends(const CushionContact& p) {
     const double low = std::max(-f, -s / c);
     return low > f || (slips(low) && slips(f));
 }
+
+}  // namespace detail
+
+extern constinit const CushionModelInfo kMathavan2010 = {
+    .name = "mathavan_2010",
+    .source = "Mathavan, Jackson, Parkin, Proc. IMechE C 224 (2010)",
+    .resolve = detail::cushion_mathavan_2010,
+    .reads_spin = true,
+    .reads_friction = true,
+    .reads_cloth = true,
+    .reads_height = true,
+    .accepts = detail::mathavan_2010_ends,
+};
 
 }  // namespace carom

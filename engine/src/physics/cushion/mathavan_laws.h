@@ -71,4 +71,8 @@ struct MathavanLaws {
     }
 };
 
+/// The model mathavan_2010 to a tolerance of one's own, of the approach speed and per step.
+bool cushion_mathavan_2010_to(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w,
+                              double tolerance);
+
 }  // namespace carom::detail

@@ -10,9 +10,10 @@
 #include <cmath>
 
 #include "carom/engine/math.h"
-#include "physics/cushion/models.h"
+#include "physics/cushion/nose.h"
 
-namespace carom::detail {
+namespace carom {
+namespace detail {
 namespace {
 
 // [-] Grid on which the cushion model stronge brackets the end of stick: a thirtieth of the restitution, far
@@ -120,4 +121,16 @@ bool cushion_stronge(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3&
     return true;
 }
 
-}  // namespace carom::detail
+}  // namespace detail
+
+extern constinit const CushionModelInfo kStronge = {
+    .name = "stronge",
+    .source = "Stronge, Impact Mechanics, compliant contact",
+    .resolve = detail::cushion_stronge,
+    .reads_spin = true,
+    .reads_friction = true,
+    .reads_height = true,
+    .reflects_when_level = true,
+};
+
+}  // namespace carom

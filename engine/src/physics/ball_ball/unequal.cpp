@@ -1,65 +1,14 @@
-#include "carom/engine/ball_ball.h"
-
+// Impacts of two balls of different size.
 #include <algorithm>
 #include <cmath>
 
-#include "carom/kernel/closed_forms.h"
+#include "carom/engine/ball_ball.h"
 
 namespace carom {
-namespace {
 
 using kernel::Ball;
 using kernel::ImpactParams;
 using kernel::ImpactResult;
-
-void mathavan(const BallBallSettings& settings, const Ball& ball1, const Ball& ball2,
-              const ImpactParams& params, ImpactResult& result) {
-    if (settings.march != nullptr)
-        settings.march(ball1, ball2, params, settings.substeps, result);
-    else
-        settings.by_tolerance(ball1, ball2, params, settings.tolerance, result);
-}
-
-void inelastic(const BallBallSettings&, const Ball& ball1, const Ball& ball2, const ImpactParams& params,
-               ImpactResult& result) {
-    kernel::collide_inelastic(ball1, ball2, params, result);
-}
-
-void elastic(const BallBallSettings&, const Ball& ball1, const Ball& ball2, const ImpactParams& params,
-             ImpactResult& result) {
-    kernel::collide_elastic(ball1, ball2, params, result);
-}
-
-}  // namespace
-
-const BallBallModelInfo& ball_ball_model(BallBallModel model) {
-    static constexpr BallBallModelInfo kModels[] = {
-        {.model = BallBallModel::kMathavan,
-         .name = "mathavan",
-         .collide = mathavan,
-         .reads_spin = true,
-         .reads_friction = true,
-         .reads_restitution = true,
-         .reads_cloth = true,
-         .source = "Mathavan, Jackson, Parkin, Sports Engineering 17 (2014)"},
-        {.model = BallBallModel::kInelastic,
-         .name = "inelastic",
-         .collide = inelastic,
-         .reads_spin = true,
-         .reads_friction = true,
-         .reads_restitution = true,
-         .rough_masses = true,
-         .source = "D. Alciatore, Technical Proof A.14"},
-        {.model = BallBallModel::kElastic,
-         .name = "elastic",
-         .collide = elastic,
-         .rough_masses = true,
-         .source = "exchange of the normal velocities"},
-    };
-    for (const BallBallModelInfo& info : kModels)
-        if (info.model == model) return info;
-    return kModels[0];
-}
 
 double contact_distance(double R1, double R2) {
     return R1 == R2 ? 2.0 * R1 : 2.0 * std::sqrt(R1 * R2);

@@ -1,4 +1,4 @@
-// The cushion models, one function per model; see cushion.h. The ball approaches when they are called.
+// What several cushion models share: the contact of a ball with an inclined nose.
 #pragma once
 
 #include <cmath>
@@ -7,22 +7,12 @@
 
 namespace carom::detail {
 
-bool cushion_smooth(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
-bool cushion_han_2005(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
-bool cushion_impulse(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
-bool cushion_stronge(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
-bool cushion_mathavan_2010(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
-
-/// The same to a tolerance of one's own, of the approach speed and per step.
-bool cushion_mathavan_2010_to(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w,
-                              double tolerance);
-
 /// Speed at which the ball comes towards the cushion.
 inline double approach_speed(const Vec2& normal, const Vec3& v) {
     return -(v.x() * normal.x() + v.y() * normal.y());
 }
 
-/// The inclined contact of the models `impulse` and `stronge`: normal from the nose to the centre of the ball.
+/// The inclined contact: its normal points from the nose to the centre of the ball.
 struct NoseContact {
     Vec3 n;          ///< unit
     double u_n;      ///< normal contact velocity, < 0

@@ -1,0 +1,230 @@
+// Fields: the keys of a section as rows of a table. What reads and writes scenes and records, the schemas, the tables of
+// docs/scene_format.md and the C interface all go through the rows, so that a key which is added is known to each of them.
+// The rows of a section stand below its struct, in scene.h and table.h.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+namespace carom {
+
+/// The values that a number may take. `unit` is written after a blank; "" for none.
+struct Interval {
+    double low;
+    bool low_open;
+    double high;
+    bool high_open;
+    const char* unit;
+};
+
+constexpr Interval at_least(double low, double high, const char* unit = "") {
+    return {low, false, high, false, unit};
+}
+constexpr Interval more_than(double low, double high, const char* unit = "") {
+    return {low, true, high, false, unit};
+}
+/// The upper end of integers that have no limit of their own.
+inline constexpr double kAnyInteger = 0x1p63;
+
+/// What a field holds: nothing where an optional value is left open, and a list for a vector.
+using FieldValue = std::variant<std::monostate, double, std::int64_t, std::string, std::vector<double>>;
+
+/// Which files have the key.
+enum class Files : std::uint8_t { kBoth, kScene, kRecord };
+
+struct KeyOptions {
+    const char* shape = "";            ///< of a list: "[x, y]"
+    const char* record_key = nullptr;  ///< the key in record files, where it is another one
+    Files files = Files::kBoth;
+    int since = 1;                            ///< the version of record files that brought the key
+    bool needed = false;                      ///< the scene has to give it
+    const char* standard = nullptr;           ///< the default in words, where it is no value
+    const char* instead_of = nullptr;         ///< the key whose place this one takes where it is given
+    std::span<const char* const> names = {};  ///< the texts that are allowed; empty: all
+};
+
+/// One row without its type: all that can be said about a key.
+struct Key {
+    enum class Kind : std::uint8_t { kNumber, kInteger, kText, kNumbers, kIntegers };
+
+    const char* key;
+    Kind kind;
+    Interval range;       ///< of a number, and of every number in a list
+    const char* meaning;  ///< for people, without the unit
+    KeyOptions options;
+    bool optional;                          ///< the scene may leave it open
+    int members;                            ///< of the struct, that it stands for
+    std::vector<const char*> (*choices)();  ///< the texts that are allowed; null: options.names
+
+    bool in(Files files) const { return options.files == Files::kBoth || options.files == files; }
+    const char* record_key() const { return options.record_key ? options.record_key : key; }
+    /// Numbers in the list: those of its shape.
+    std::size_t count() const {
+        const std::string_view shape = options.shape;
+        return 1 + static_cast<std::size_t>(std::count(shape.begin(), shape.begin() + shape.find(']'), ','));
+    }
+    std::vector<const char*> names() const {
+        return choices ? choices() : std::vector<const char*>(options.names.begin(), options.names.end());
+    }
+};
+
+/// A row of the struct T.
+template <class T>
+struct Field : Key {
+    FieldValue (*get)(const T&);
+    void (*set)(T&, const FieldValue&);  ///< the value is of this kind, and one of the choices
+
+    FieldValue value(const T& object) const {
+        FieldValue value = get(object);
+        // The height of a ball is no part of its place.
+        if (auto* list = std::get_if<std::vector<double>>(&value)) list->resize(count());
+        return value;
+    }
+};
+
+/// What files call a value of an enumeration.
+template <class E>
+auto name(E e) -> typename decltype(names_of(e))::value_type {
+    return names_of(e)[static_cast<std::size_t>(e)];
+}
+
+namespace detail {
+
+template <class V>
+struct OptionalOf : std::false_type {
+    using type = V;
+};
+template <class V>
+struct OptionalOf<std::optional<V>> : std::true_type {
+    using type = V;
+};
+
+template <class T, class V>
+T class_of(V T::*);
+template <class T, class V>
+V value_of(V T::*);
+template <auto kMember>
+using ClassOf = decltype(class_of(kMember));
+template <auto kMember>
+using ValueOf = decltype(value_of(kMember));
+
+template <class V>
+constexpr Key::Kind kind_of() {
+    if constexpr (OptionalOf<V>::value) return kind_of<typename OptionalOf<V>::type>();
+    if constexpr (std::is_floating_point_v<V>) return Key::Kind::kNumber;
+    if constexpr (std::is_integral_v<V>) return Key::Kind::kInteger;
+    if constexpr (requires(V v) { v.data() + v.rows(); }) return Key::Kind::kNumbers;
+    return Key::Kind::kText;
+}
+
+template <class V>
+FieldValue get(const V& v) {
+    if constexpr (OptionalOf<V>::value)
+        return v ? get(*v) : FieldValue();
+    else if constexpr (std::is_pointer_v<V>)
+        return v ? FieldValue(std::string(name(v))) : FieldValue();
+    else if constexpr (std::is_enum_v<V>)
+        return std::string(name(v));
+    else if constexpr (std::is_integral_v<V>)
+        return static_cast<std::int64_t>(v);
+    else if constexpr (kind_of<V>() == Key::Kind::kNumbers)
+        return std::vector<double>(v.data(), v.data() + v.size());
+    else
+        return v;
+}
+
+template <class V>
+std::vector<const char*> choice_names() {
+    std::vector<const char*> names;
+    if constexpr (std::is_enum_v<V>)
+        for (const char* choice : names_of(V{})) names.push_back(choice);
+    else
+        for (const V choice : all_of(V{})) names.push_back(name(choice));
+    return names;
+}
+
+template <class V>
+void put(V& v, const FieldValue& value) {
+    if constexpr (OptionalOf<V>::value) {
+        put(v.emplace(), value);
+    } else if constexpr (std::is_pointer_v<V> || std::is_enum_v<V>) {
+        const std::vector<const char*> names = choice_names<V>();
+        const auto at = std::find(names.begin(), names.end(), std::get<std::string>(value)) - names.begin();
+        if constexpr (std::is_enum_v<V>)
+            v = static_cast<V>(at);
+        else
+            v = all_of(V{})[at];
+    } else if constexpr (std::is_integral_v<V>) {
+        v = static_cast<V>(std::get<std::int64_t>(value));
+    } else if constexpr (kind_of<V>() == Key::Kind::kNumbers) {
+        const auto& list = std::get<std::vector<double>>(value);
+        std::copy(list.begin(), list.end(), v.data());
+    } else {
+        v = std::get<V>(value);
+    }
+}
+
+template <class V>
+constexpr auto choices_of() -> std::vector<const char*> (*)() {
+    using Value = typename OptionalOf<V>::type;
+    if constexpr (std::is_pointer_v<Value> || std::is_enum_v<Value>) return choice_names<Value>;
+    return nullptr;
+}
+
+}  // namespace detail
+
+/// A row of one member: a number, an integer, a text, a vector, or a choice. A choice is an enumeration, whose names
+/// `names_of(V)` lists in the order of its values, or a pointer to a model: one of `all_of(V)`, called `name(v)`.
+template <auto kMember>
+constexpr Field<detail::ClassOf<kMember>> field(const char* key, const Interval& range, const char* meaning,
+                                                const KeyOptions& options = {}) {
+    using T = detail::ClassOf<kMember>;
+    using V = detail::ValueOf<kMember>;
+    const bool optional = detail::OptionalOf<V>::value || std::is_pointer_v<V>;
+    return {{key, detail::kind_of<V>(), range, meaning, options, optional, 1, detail::choices_of<V>()},
+            [](const T& object) { return detail::get(object.*kMember); },
+            [](T& object, const FieldValue& value) { detail::put(object.*kMember, value); }};
+}
+template <auto kMember>
+constexpr Field<detail::ClassOf<kMember>> field(const char* key, const char* meaning,
+                                                const KeyOptions& options = {}) {
+    return field<kMember>(key, at_least(0.0, 0.0), meaning, options);
+}
+
+/// A row of two numbers that files write as a list.
+template <auto kFirst, auto kSecond>
+constexpr Field<detail::ClassOf<kFirst>> field(const char* key, const Interval& range, const char* meaning,
+                                               const KeyOptions& options) {
+    using T = detail::ClassOf<kFirst>;
+    using V = detail::ValueOf<kFirst>;
+    const Key::Kind kind = std::is_integral_v<V> ? Key::Kind::kIntegers : Key::Kind::kNumbers;
+    return {{key, kind, range, meaning, options, false, 2, nullptr},
+            [](const T& object) -> FieldValue {
+                return std::vector<double>{static_cast<double>(object.*kFirst),
+                                           static_cast<double>(object.*kSecond)};
+            },
+            [](T& object, const FieldValue& value) {
+                const auto& list = std::get<std::vector<double>>(value);
+                object.*kFirst = static_cast<V>(list[0]);
+                object.*kSecond = static_cast<V>(list[1]);
+            }};
+}
+
+/// The keys of some rows, as far as these files have them.
+template <class T, std::size_t kRows>
+std::vector<std::string_view> keys_of(const Field<T> (&fields)[kRows], Files files) {
+    std::vector<std::string_view> keys;
+    for (const Field<T>& f : fields)
+        if (f.in(files)) keys.push_back(files == Files::kRecord ? f.record_key() : f.key);
+    return keys;
+}
+
+}  // namespace carom

@@ -1,0 +1,25 @@
+// Ball-ball model `inelastic`: one frictional impulse, in closed form.
+#include "carom/engine/ball_ball.h"
+#include "carom/kernel/closed_forms.h"
+
+namespace carom {
+namespace {
+
+void inelastic(const BallBallSettings&, const kernel::Ball& ball1, const kernel::Ball& ball2,
+               const kernel::ImpactParams& params, kernel::ImpactResult& result) {
+    kernel::collide_inelastic(ball1, ball2, params, result);
+}
+
+}  // namespace
+
+extern constinit const BallBallModelInfo kInelastic = {
+    .name = "inelastic",
+    .source = "D. Alciatore, Technical Proof A.14",
+    .collide = inelastic,
+    .reads_spin = true,
+    .reads_friction = true,
+    .reads_restitution = true,
+    .rough_masses = true,
+};
+
+}  // namespace carom

@@ -1,0 +1,32 @@
+// The list of ball-ball models, each a file beside this one, and the law of friction that they share.
+#include "carom/engine/ball_ball.h"
+
+#include <span>
+#include <string_view>
+#include "carom/engine/math.h"
+
+namespace carom {
+
+extern const BallBallModelInfo kInelastic, kElastic;
+
+std::span<const BallBallModelInfo* const> all_of(const BallBallModelInfo*) {
+    static constexpr const BallBallModelInfo* kModels[] = {&kMathavan, &kInelastic, &kElastic};
+    return kModels;
+}
+
+const char* name(const BallBallModelInfo* model) {
+    return model->name;
+}
+
+const BallBallModelInfo* ball_ball_model(std::string_view name) {
+    for (const BallBallModelInfo* model : all_of(&kMathavan))
+        if (name == model->name) return model;
+    return nullptr;
+}
+
+double ball_friction(const BallParams& balls, double slip) {
+    if (balls.mu_b_more == 0.0) return balls.mu_b;
+    return balls.mu_b + balls.mu_b_more * exponential(-balls.mu_b_fall * slip);
+}
+
+}  // namespace carom

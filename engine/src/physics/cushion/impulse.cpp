@@ -1,0 +1,31 @@
+// Cushion model `impulse`: one frictional impulse along the inclined normal, as for two rough spheres. It is Coulomb's f J_n,
+// or what ends the slip (2/7 of it). Equations: docs/physics.md, "Cushion impact", impulse.
+#include <algorithm>
+
+#include "physics/cushion/nose.h"
+
+namespace carom {
+namespace detail {
+
+bool cushion_impulse(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w) {
+    if (!(approach_speed(normal, v) > 0.0)) return true;
+    const NoseContact c = nose_contact(p, normal, v, w);
+    const double J_n = -(1.0 + p.e_c) * c.u_n;
+    const double J_t = std::min(p.f_c * J_n, 2.0 / 7.0 * c.speed_t);
+    apply_at_nose(p, c, J_n, J_t, v, w);
+    return true;
+}
+
+}  // namespace detail
+
+extern constinit const CushionModelInfo kImpulse = {
+    .name = "impulse",
+    .source = "one Coulomb impulse along the inclined normal",
+    .resolve = detail::cushion_impulse,
+    .reads_spin = true,
+    .reads_friction = true,
+    .reads_height = true,
+    .reflects_when_level = true,
+};
+
+}  // namespace carom

@@ -1,0 +1,45 @@
+#!/usr/bin/env python3
+"""Writes anew what docs/ says about file formats from the program's own tables: docs/scene.schema.json, the parts of
+docs/reference/record.schema.json that have rows, and the tables of docs/scene_format.md between the marks
+<!-- begin NAME --> and <!-- end NAME -->.
+
+    cmake --build --preset release --target carom_program
+    tools/measure/renew_formats.py [BUILD_FOLDER]
+"""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release") / "carom"
+
+
+def describe(what):
+    return subprocess.run([PROGRAM, "describe", what], check=True, capture_output=True, text=True).stdout
+
+
+def main():
+    (ROOT / "docs/scene.schema.json").write_text(describe("scene-schema"))
+
+    path = ROOT / "docs/reference/record.schema.json"
+    schema = json.loads(path.read_text())
+    for pointer, part in json.loads(describe("record-schema")).items():
+        *way, last = pointer.split("/")[1:]
+        place = schema
+        for key in way:
+            place = place[key]
+        place[last] = part
+    path.write_text(json.dumps(schema, indent=2, ensure_ascii=False) + "\n")
+
+    path = ROOT / "docs/scene_format.md"
+    page = path.read_text()
+    for block, name in re.findall(r"(<!-- begin (\w+) -->.*?<!-- end \2 -->)", describe("scene-format"), re.S):
+        page, found = re.subn(rf"<!-- begin {name} -->.*?<!-- end {name} -->", lambda _: block, page, flags=re.S)
+        if found != 1:
+            sys.exit(f"renew_formats: docs/scene_format.md has the marks of {name} {found} times")
+    path.write_text(page)
+
+
+main()
