@@ -76,7 +76,7 @@ const Case kCases[] = {
          s.physics.ball_ball = &kMathavan;
          s.balls.mu_b = 0.05;
      }},
-    {"cloth_in_impact", "carom::kernel::tolerance_scalar",
+    {"cloth_in_impact", "carom::kernel::scalar::tolerance_single",
      "the same with mu_s = 0.2, and gravity 0: the cloth acts in impacts only",
      [](Scene& s) {
          s.physics.ball_ball = &kMathavan;
