@@ -1,6 +1,8 @@
 // What happens to the balls when a candidate comes: impacts and transitions.
 #pragma once
 
+#include <cstdint>
+
 #include "loop/clusters.h"
 #include "loop/detector.h"
 #include "loop/log.h"

@@ -1,6 +1,7 @@
 // The contacts that last: when a contact becomes a resting one, what moves its balls meanwhile, when it ends.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
