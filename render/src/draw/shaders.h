@@ -12,7 +12,7 @@ extern const char* const kTableVertex;
 extern const char* const kTableFragment;
 extern const char* const kFullscreenVertex;
 extern const char* const kAddFragment;      ///< adds one jittered pass to the sum
-extern const char* const kDepthFragment;    ///< converts four depth buffers to distances along the view direction
+extern const char* const kDepthFragment;    ///< converts four depth buffers to distances along the view
 extern const char* const kResolveFragment;  ///< converts the sum to sRGB
 extern const char* const kShadowVertex;
 extern const char* const kShadowFragment;
@@ -27,11 +27,11 @@ extern const char* const kBoxFragment;
 inline constexpr int kRoundCorners = 8;
 
 // Numbers that C++ and GLSL share: every program defines them as SHADOW_REACH and MAX_HOLES.
-inline constexpr double kShadowReach = 2.5;  ///< [radii] where the shadow's shading reaches zero (shadow.frag)
+inline constexpr double kShadowReach = 2.5;  ///< [radii] where the shading of shadow.frag reaches zero
 inline constexpr int kMaxHoles = 128;        ///< [-] largest number of holes that a program accepts
 
 // Each of these lines, put before kTableFragment, selects one kind of surface. A software renderer executes both
-// sides of every branch, so there is one program per kind. The one for the floor has no discard: hidden pixels are free.
+// sides of every branch, so there is one program per kind. The floor has no discard, so that hidden pixels cost nothing.
 inline constexpr const char* kClothOnly = "#define CLOTH\n";
 inline constexpr const char* kWoodOnly = "#define WOOD\n";
 inline constexpr const char* kFloorOnly = "#define FLOOR\n";

@@ -43,7 +43,7 @@ View make_view(const Camera& camera, const TableMesh& table) {
         m(i, 3) = shift;
     };
     row(0, right / tan_x, -right.dot(eye) / tan_x);
-    row(1, -up / tan_y, up.dot(eye) / tan_y);  // negated: the lowest row of OpenGL is the first row of the image
+    row(1, -up / tan_y, up.dot(eye) / tan_y);  // negated: OpenGL's lowest row is the first of the image
     const double a = (far + near) / (far - near), b = -2.0 * far * near / (far - near);
     row(2, a * forward, -a * forward.dot(eye) + b);
     row(3, forward, -forward.dot(eye));

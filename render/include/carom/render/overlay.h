@@ -7,7 +7,7 @@ namespace carom::render {
 
 struct Overlay {
     bool trails = false;  ///< the path of every ball so far, coloured by its motion state
-    bool events = false;  ///< a dot at the position of each impact, with a ring for the first third of a second
+    bool events = false;  ///< a dot at each impact, with a ring around it for the first third of a second
     /// An arrow for the velocity of the top of a ball by its spin, and an arc for the spin about the vertical
     bool spin = false;
     bool ghost = false;   ///< position of a moving ball at its next collision with another ball
