@@ -31,7 +31,7 @@ inline constexpr double kShadowReach = 2.5;  ///< [radii] where the shading of s
 inline constexpr int kMaxHoles = 128;        ///< [-] largest number of holes that a program accepts
 
 // Each of these lines, put before kTableFragment, selects one kind of surface. A software renderer executes both
-// sides of every branch, so there is one program per kind. The floor has no discard, so that hidden pixels cost nothing.
+// sides of every branch, so there is one program per kind. The floor has no discard, so hidden pixels cost nothing.
 inline constexpr const char* kClothOnly = "#define CLOTH\n";
 inline constexpr const char* kWoodOnly = "#define WOOD\n";
 inline constexpr const char* kFloorOnly = "#define FLOOR\n";

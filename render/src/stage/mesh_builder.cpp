@@ -74,7 +74,7 @@ void MeshBuilder::sweep(const Chain& outline, const std::vector<ProfileRow>& row
     lines.reserve(rows.size());
     for (const ProfileRow& row : rows)
         lines.push_back(offset_left(outline.points, outline.closed, row.offset));
-    // Angle of the profile's normal from the vertical, towards the right-hand (playing) side, of each row.
+    // Angle of the profile's normal from the vertical towards the right-hand (playing) side, for each strip.
     const auto slope = [&](std::size_t row) {
         const double along = rows[row + 1].offset - rows[row].offset, up = rows[row + 1].z - rows[row].z;
         return std::atan2(up, along);

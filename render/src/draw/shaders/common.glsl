@@ -14,7 +14,7 @@ layout(std140) uniform View {   // the same layout as struct View in view.h
 };
 
 // Radiance to screen values and back with gamma 2: a square root costs a fraction of the exact curve, and the
-// difference is not visible because both directions agree. A soft shoulder above 0.5 avoids hard clipping of highlights.
+// difference is not visible because both directions agree. A soft shoulder above 0.5 avoids hard clipping.
 vec3 to_screen(vec3 c) {
     vec3 over = 1.0 + max(c - 0.5, 0.0);
     return sqrt(min(max(c, 0.0), 0.5) + 0.5 - 0.5 / (over * over));
