@@ -24,9 +24,9 @@ using carom::c::chosen_isa;
 using carom::c::guarded;
 using carom::c::need;
 
-/// The number that a name stands for.
+/// The parameter with this name.
 double& ball_param(carom::BallParams& p, const char* name) {
-    // A field that is added to BallParams does not compile here until it has a name.
+    // A new field of BallParams causes a compile error here until it gets a name.
     auto& [R, m, mu_s, mu_r, mu_sp, mu_b, e_b, e_c, f_c, mu_b_more, mu_b_fall] = p;
     const struct {
         const char* name;
@@ -60,7 +60,7 @@ void check_index(std::size_t index, std::size_t count, const char* what) {
                       std::to_string(count));
 }
 
-/// Hands a new object to the caller, or NULL.
+/// Returns a new object to the caller, or NULL on failure.
 template <class T, class Make>
 carom_status made(T** out, Make&& make) {
     return guarded([&] {
@@ -131,7 +131,7 @@ carom_status carom_scene_set_ball(carom_scene* scene, const char* id, const doub
         start.velocity = {rvw[3], rvw[4], rvw[5]};
         start.spin = {rvw[6], rvw[7], rvw[8]};
         if (carom::BallStart* ball = find_ball(scene->scene, start.id)) {
-            start.own = ball->own;  // elsewhere, but the same ball
+            start.own = ball->own;  // its own radius and mass
             *ball = start;
         } else {
             scene->scene.ball.push_back(start);
