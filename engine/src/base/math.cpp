@@ -110,7 +110,7 @@ SinCos sin_cos(double radians) {
     constexpr double kPart2 = 0x1.0b4611a6p-34;
     constexpr double kPart3 = 0x1.3198a2e0p-69;
     constexpr double kPart4 = 0x1.b839a252049c1p-104;
-    constexpr double kQuadrantsPerRadian = 0x1.45f306dc9c883p-1;
+    constexpr double kQuadrantsPerRadian = 0x1.45f306dc9c883p-1;  // 2 / pi
     const double k = nearest(radians * kQuadrantsPerRadian);
     const double first = radians - k * kPart1;  // exact: both have the same leading bits
     const Sum second = two_sum(first, -k * kPart2);

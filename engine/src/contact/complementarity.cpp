@@ -129,7 +129,7 @@ void Complementarity::refine(std::vector<double>& w) {
 }
 
 bool Complementarity::solve() {
-    constexpr double kRounding = 1e-12;
+    constexpr double kRounding = 1e-12;  // [-] relative; larger violations count as infeasible
     basic_.assign(size, 0);
     for (std::size_t i = 0; i < size; ++i) basic_[i] = free[i] || q[i] < 0.0;
     std::vector<double> w(size);

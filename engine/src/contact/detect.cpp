@@ -15,7 +15,7 @@ namespace {
 // roundings of position, end and projection.
 constexpr double kEndUlp = 4.0;
 
-constexpr double kNoise = kClosingUlp * std::numeric_limits<double>::epsilon();
+constexpr double kNoise = kClosingUlp * std::numeric_limits<double>::epsilon();  // [of the speeds]
 
 // Relative motion of two centres.
 struct Relative {

@@ -300,7 +300,7 @@ bool keep_returning(Group& g) {
 }
 
 Solution solve_forces(Group& g, double interval, SlowBalls slow) {
-    constexpr int kPasses = 4;
+    constexpr int kPasses = 4;  // [-] most updates of stiction and stabilisation
     Solution solution{};
     for (int pass = 0; pass < kPasses; ++pass) {
         solution = solve_forces_once(g, interval, slow);

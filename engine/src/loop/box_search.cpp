@@ -32,7 +32,7 @@ constexpr float kBlockMargin = 0.05f;
 // [-] Searches per box until the blocks are formed again: sorting costs about 100 ns per box.
 constexpr long kSearchesPerBox = 4;
 
-constexpr float kNowhere = std::numeric_limits<float>::infinity();
+constexpr float kNowhere = std::numeric_limits<float>::infinity();  // bound of boxes that are not placed
 
 }  // namespace
 

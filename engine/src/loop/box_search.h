@@ -54,7 +54,7 @@ class BoxSearch {
     }
 
   private:
-    static constexpr std::size_t kBlock = 64;
+    static constexpr std::size_t kBlock = 64;  // [-] boxes per block
     struct Rounded {
         float low_x, low_y, high_x, high_y;
     };

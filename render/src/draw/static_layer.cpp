@@ -22,7 +22,7 @@ double r2(int i, double step) {
 // Memory that only drawing the table needs: two images of 16-bit floats, and the depths of the first four passes.
 // It is kept between drawings only for a camera that moves.
 struct StaticLayer::Scratch {
-    static constexpr std::size_t kDepths = 4;
+    static constexpr std::size_t kDepths = 4;  // [-] one for each channel of the occluder texture
     const gl::Api& api;
     GLuint pass, sum, sum_framebuffer;
     std::array<GLuint, kDepths> depth{}, pass_framebuffer{};

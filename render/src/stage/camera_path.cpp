@@ -44,7 +44,7 @@ Camera player_camera(const Record& record, FrameSize size) {
 }
 
 int ball_by_id(const Record& record, const std::string& id) {
-    constexpr std::size_t kListed = 40;
+    constexpr std::size_t kListed = 40;  // [-] most ids in the message
     std::string known;
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         if (record.tracks[i].id == id) return static_cast<int>(i);

@@ -11,7 +11,7 @@ namespace {
 
 // Positions along the path of every ball: the ends of its segments and points between them.
 std::vector<Vec2> visited_places(const Record& record) {
-    constexpr int kPieces = 4;
+    constexpr int kPieces = 4;  // [-] per segment
     std::vector<Vec2> places;
     for (const BallTrack& track : record.tracks) {
         for (std::size_t i = 0; i < track.segments.size(); ++i) {

@@ -7,8 +7,8 @@
 namespace carom::render {
 
 namespace {
-constexpr double kTau = 6.28318530717958647692;
-constexpr int kCirclePieces = 96;
+constexpr double kTau = 6.28318530717958647692;  // [rad] full circle
+constexpr int kCirclePieces = 96;                // [-] straight pieces of a drawn circle
 
 bool is_blended(Material material) {
     return material == Material::kShade || material == Material::kChalk;

@@ -12,8 +12,8 @@ namespace carom::render {
 
 namespace {
 
-constexpr Rgba kPanel{0.0F, 0.0F, 0.0F, 0.60F};
-constexpr Rgba kInk{0.97F, 0.97F, 0.95F, 1.0F};
+constexpr Rgba kPanel{0.0F, 0.0F, 0.0F, 0.60F};  // background of the panels
+constexpr Rgba kInk{0.97F, 0.97F, 0.95F, 1.0F};  // text
 
 // [pixels] Height of a capital letter: readable in small frames, bounded in large ones; both panels fit side by side.
 double text_height(const DrawList& list) {

@@ -45,7 +45,7 @@ void add_diamonds(const Table& table, const TableMesh& mesh, MeshBuilder& builde
 void add_snooker_marks(const Table& table, MeshBuilder& builder) {
     const double w = table.width, l = table.length, baulk = 0.737, d = 0.292;
     line(builder, {0.0, baulk}, {w, baulk}, 0.003, 0.6);
-    constexpr int kPieces = 48;
+    constexpr int kPieces = 48;  // [-] straight pieces of the D
     Vec2 before(0.5 * w - d, baulk);
     for (int i = 1; i <= kPieces; ++i) {
         const double angle = 3.14159265358979323846 * i / kPieces;
