@@ -16,7 +16,7 @@ void remember(const char* text) noexcept {
     try {
         last_error = text;
     } catch (...) {
-        last_error.clear();  // no memory for the message: the status has to do
+        last_error.clear();  // no memory for the message: only the status is returned
     }
 }
 

@@ -1,4 +1,4 @@
-// Where exceptions become a status and a message.
+// Converts exceptions to a status and a message.
 #pragma once
 
 #include <initializer_list>
@@ -9,16 +9,16 @@
 
 namespace carom::c {
 
-/// CAROM_BAD_ARGUMENT; what() says which and why.
+/// Becomes CAROM_BAD_ARGUMENT; what() tells which argument is invalid and why.
 class BadArgument : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/// Keeps the message of the exception that is being handled. @returns the status that it stands for
+/// Stores the message of the exception that is being handled. @returns the corresponding status
 carom_status keep_error() noexcept;
 
-/// Runs what may throw.
+/// Calls `work`, which may throw.
 template <class Work>
 carom_status guarded(Work&& work) noexcept {
     try {
@@ -32,7 +32,7 @@ carom_status guarded(Work&& work) noexcept {
 /// @throws BadArgument if one of them is null
 void need(std::initializer_list<const void*> pointers);
 
-/// CAROM_ISA or the widest one. @throws BadArgument for a name that cannot be run here
+/// The instruction set in CAROM_ISA, or the widest available one. @throws BadArgument if CAROM_ISA cannot be used here
 kernel::Isa chosen_isa();
 
 }  // namespace carom::c

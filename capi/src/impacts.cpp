@@ -15,7 +15,7 @@ using carom::c::chosen_isa;
 using carom::c::guarded;
 using carom::c::need;
 
-/// Impacts that are turned into arrays and solved together; they stay in the first-level cache.
+/// [-] Number of impacts that are transposed and solved together; their data fit into the first-level cache.
 constexpr std::size_t kBlock = 64;
 
 void check_tolerance(double tolerance) {
@@ -39,10 +39,10 @@ bool computed(ImpactStatus status) {
     return status == ImpactStatus::kOk || status == ImpactStatus::kNotApproaching;
 }
 
-/// One number of every impact of a block.
+/// One value of every impact in a block.
 using Lane = std::array<double, kBlock>;
 
-/// One ball of every impact of a block: r, v, w.
+/// One ball of every impact in a block: r, v, w.
 struct BallBlock {
     std::array<Lane, 9> lanes;
 

@@ -63,7 +63,7 @@ void check_index(std::size_t index, std::size_t count, const char* what) {
                       std::to_string(count));
 }
 
-/// Hands a new object to the caller, or NULL.
+/// Returns a new object to the caller, or NULL on failure.
 template <class T, class Make>
 carom_status made(T** out, Make&& make) {
     return guarded([&] {
@@ -133,7 +133,7 @@ carom_status carom_scene_set_ball(carom_scene* scene, const char* id, const doub
         start.velocity = {rvw[3], rvw[4], rvw[5]};
         start.spin = {rvw[6], rvw[7], rvw[8]};
         if (carom::BallStart* ball = find_ball(scene->scene, start.id)) {
-            start.own = ball->own;  // elsewhere, but the same ball
+            start.own = ball->own;  // its own radius and mass
             *ball = start;
         } else {
             scene->scene.ball.push_back(start);

@@ -189,9 +189,8 @@ double looks_per_impact(const Scene& scene) {
     const SimulateOptions options;
     Run run(plan, options);
     const Record record = run.simulate(nullptr);
-    const auto impacts = std::count_if(record.events.begin(), record.events.end(), [](const Event& e) {
-        return balls_collide(e.type);
-    });
+    const auto impacts = std::count_if(record.events.begin(), record.events.end(),
+                                       [](const Event& e) { return balls_collide(e.type); });
     EXPECT_GT(impacts, 500);
     return static_cast<double>(run.clusters().looks()) / static_cast<double>(impacts);
 }

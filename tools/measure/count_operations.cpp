@@ -1,5 +1,5 @@
-// Operations a step: the ladder's own source, run through a number that counts. A program of its own, because
-// in it every `double` of the kernel is such a number; it links nothing of the library.
+// Counts the operations per step of the kernel variants: compiles their source with a number type that counts. It is a
+// separate program that does not link the library, because here every `double` of the kernel is such a number.
 #include <immintrin.h>
 
 #include <cstdio>
@@ -38,7 +38,7 @@ constexpr Counted operator/(Counted a, Counted b) {
 }
 constexpr Counted operator-(Counted a) {
     return Counted(-a.value);
-}  // a sign bit, no arithmetic
+}  // changes only the sign bit: not counted
 constexpr Counted& operator+=(Counted& a, Counted b) {
     return a = a + b;
 }
@@ -84,7 +84,7 @@ __m128 counted_rsqrt(__m128 a) {
 using namespace counting;
 
 #define double Counted
-// NOLINTBEGIN(clang-diagnostic-reserved-macro-identifier): these calls are what is counted
+// NOLINTBEGIN(clang-diagnostic-reserved-macro-identifier): these calls are counted
 #define __builtin_sqrt counted_root
 #define __builtin_fma counted_fma
 // NOLINTEND(clang-diagnostic-reserved-macro-identifier)
@@ -110,7 +110,7 @@ using March = void (*)(const Ball&, const Ball&, const ImpactParams&, int, Impac
 
 void report(const char* name, March march) {
     static bool first = true;
-    // The difference of two N, so that only the loop counts.
+    // The difference between two values of N, so that only the operations of the loop remain.
     double per_step[7] = {};
     long steps = 0;
     for (int n : {1000, 2000}) {

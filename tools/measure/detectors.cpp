@@ -1,6 +1,6 @@
-// Experiment E5: when do two balls meet? Ways to solve the quartic, side by side: time a pair, contacts
-// missed or made up, gap between the balls at the time returned. The truth is a cascade in __float128. Usage:
-// carom_detectors [pairs of each kind, default 20000]
+// Experiment E5: compares methods to find the time at which two balls meet (a quartic): time per pair, missed and false
+// contacts, gap between the balls at the returned time. The reference is a derivative cascade in __float128.
+// Usage: carom_detectors [pairs of each kind, default 20000]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace carom::tools {
 namespace {
 
 using namespace test;
-constexpr double kReach = 2.0 * 0.028575;
+constexpr double kReach = 2.0 * 0.028575;  // [m] two radii of pool balls
 
 struct Pair {
     Path one, two;
@@ -29,13 +29,13 @@ struct Pair {
     Meeting truth;
 };
 
-/// Coefficients of |difference of positions|^2 - reach^2.
+/// Coefficients of |difference of positions|^2 - reach^2, lowest power first.
 std::array<double, 5> quartic(const Pair& pair) {
     const Vec2 r = pair.two.r - pair.one.r, v = pair.two.v - pair.one.v, a = pair.two.a - pair.one.a;
     return {r.dot(r) - kReach * kReach, 2.0 * r.dot(v), v.dot(v) + r.dot(a), v.dot(a), 0.25 * a.dot(a)};
 }
 
-/// The first real root in (0, T] among complex ones; what is nearly real counts as real, as is usual.
+/// The first real root in (0, T] of complex roots; as usual, a root with a small imaginary part counts as real.
 template <typename Roots>
 double first_real(const Roots& roots, int count, double T) {
     double first = kNever;
@@ -57,7 +57,7 @@ double by_eigenvalues(const Pair& pair) {
     return first_real(solver.roots(), degree, pair.horizon);
 }
 
-/// Ferrari's formula as textbooks print it.
+/// Ferrari's formula as printed in textbooks.
 double by_ferrari(const Pair& pair) {
     using C = std::complex<double>;
     const std::array<double, 5> k = quartic(pair);
@@ -118,7 +118,7 @@ struct Verdict {
     double worst_gap = 0.0, worst_time = 0.0;
 };
 
-/// Deeper, or further apart, than this is no matter of rounding [m].
+/// [m] An overlap or distance larger than this is not due to rounding.
 constexpr double kDeep = 1e-9;
 
 Verdict judge(double (*find)(const Pair&), const std::vector<Pair>& list) {
@@ -162,7 +162,7 @@ int run(int count) {
             for (const Pair& pair : list) keep += kMethods[i].find(pair) < kNever ? 1.0 : 0.0;
             return (thread_ns() - start) / static_cast<double>(list.size());
         });
-        if (keep < 0.0) return 1;  // the results are used
+        if (keep < 0.0) return 1;  // uses the results, so that the compiler keeps the calls
         for (std::size_t i = 0; i < 3; ++i) {
             const Verdict v = judge(kMethods[i].find, list);
             fmt::print("| {} | {} | {:.0f}, {:.0f} | {} ({}) | {} ({}) | {:.0e} | {:.0e} |\n",

@@ -1,6 +1,6 @@
-// Runs one shot, for tools/measure/callgrind_shot.py: shot_probe NAME SEED [RUNS], or shot_probe gas N EVENTS (pair
-// by pair; "gas compliant" with the default model of clusters). Prints the kind of event of every round of
-// the loop in the last run, one a line.
+// Runs one shot, for tools/measure/callgrind_shot.py: shot_probe NAME SEED [RUNS], or shot_probe gas N EVENTS
+// (collisions pair by pair; "gas compliant" uses the default model of clusters). Prints the kind of event of every
+// iteration of the loop in the last run, one per line.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
                       : tools::shot_scene(name, static_cast<std::uint64_t>(number));
     if (name == "gas compliant") scene.physics.clusters = ClusterModel::kCompliant;
     const Plan plan = make_plan(scene, isa);
-    std::vector<std::size_t> ends;  // of every round, in events
+    std::vector<std::size_t> ends;  // number of events at the end of every iteration
     ends.reserve(100000);
     Record record;
     for (long run = gas ? 1 : third; run > 0; --run) {

@@ -1,4 +1,4 @@
-// 64-bit FNV-1a, for hashes that people compare.
+// The 64-bit FNV-1a hash, for hashes that users see and compare.
 #pragma once
 
 #include <cstddef>

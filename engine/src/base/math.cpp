@@ -11,14 +11,14 @@ struct Sum {
     double hi, lo;
 };
 
-/// a + b without error (Knuth).
+/// a + b as an exact sum (Knuth).
 Sum two_sum(double a, double b) {
     const double s = a + b;
     const double bb = s - a;
     return {s, (a - (s - bb)) + (b - bb)};
 }
 
-/// a * b without error (Dekker), for factors far from overflow.
+/// a * b as an exact sum (Dekker), for factors far from overflow.
 Sum two_product(double a, double b) {
     constexpr double kSplit = 134217729.0;  // 2^27 + 1
     const double p = a * b;
@@ -29,13 +29,13 @@ Sum two_product(double a, double b) {
     return {p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
 }
 
-/// Nearest integer, ties to even, for |x| < 2^51: the sum has no bits left below 1.
+/// Nearest integer, ties to even, for |x| < 2^51: the sum with kShift has no bits below 1.
 double nearest(double x) {
     constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
     return (x + kShift) - kShift;
 }
 
-/// Sine of r on |r| <= pi/4 and a little beyond. Taylor series in Horner form; the first term left out is
+/// Sine of r for |r| up to slightly above pi/4. Taylor series in Horner form; the first omitted term is
 /// r^19/19! < 1e-19.
 double sin_near_zero(Sum r) {
     const double z = r.hi * r.hi;
@@ -47,11 +47,11 @@ double sin_near_zero(Sum r) {
     p = p * z - 1.0 / 5040.0;            // 1/7!
     p = p * z + 1.0 / 120.0;             // 1/5!
     p = p * z - 1.0 / 6.0;               // 1/3!
-    // The low part enters by the derivative, cos r = 1 - r^2/2 + ...
+    // The low part is multiplied by the derivative, cos r = 1 - r^2/2 + ...
     return r.hi + (r.hi * z * p + r.lo * (1.0 - 0.5 * z));
 }
 
-/// Cosine of r on the same range; the first term left out is r^20/20! < 1e-20.
+/// Cosine of r on the same range; the first omitted term is r^20/20! < 1e-20.
 double cos_near_zero(Sum r) {
     const double z = r.hi * r.hi;
     double p = -1.0 / 6402373705728000.0;  // 1/18!
@@ -62,7 +62,7 @@ double cos_near_zero(Sum r) {
     p = p * z + 1.0 / 40320.0;             // 1/8!
     p = p * z - 1.0 / 720.0;               // 1/6!
     p = p * z + 1.0 / 24.0;                // 1/4!
-    // 1 - z/2 loses bits; what it loses (and the rounding of z itself) is added back with the rest.
+    // 1 - z/2 loses bits; the lost part and the rounding of z are added back with the other terms.
     const Sum square = two_product(r.hi, r.hi);
     const double half = 0.5 * square.hi;
     const double top = 1.0 - half;
@@ -70,7 +70,7 @@ double cos_near_zero(Sum r) {
     return top + (lost + (z * z * p - 0.5 * square.lo - r.hi * r.lo));
 }
 
-/// Turns the reduced angle by whole quadrants. Adding 0 turns -0 into +0.
+/// Rotates the reduced angle by whole quadrants. Adding 0 changes -0 to +0.
 SinCos in_quadrant(Sum r, int quadrant) {
     const double s = sin_near_zero(r);
     const double c = cos_near_zero(r);
@@ -89,8 +89,8 @@ SinCos in_quadrant(Sum r, int quadrant) {
 constexpr SinCos kUndefined{std::numeric_limits<double>::quiet_NaN(),
                             std::numeric_limits<double>::quiet_NaN()};
 
-/// Remainder of x >= 0 by 360, exact: each subtraction is (Sterbenz). Angles in files are small; the loops
-/// are for the rest.
+/// Remainder of x >= 0 by 360. It is exact because each subtraction is exact (Sterbenz). Angles in files are small;
+/// the loops serve all others.
 double remainder_360(double x) {
     while (x >= 360.0) {
         double part = 360.0;
@@ -110,9 +110,9 @@ SinCos sin_cos(double radians) {
     constexpr double kPart2 = 0x1.0b4611a6p-34;
     constexpr double kPart3 = 0x1.3198a2e0p-69;
     constexpr double kPart4 = 0x1.b839a252049c1p-104;
-    constexpr double kQuadrantsPerRadian = 0x1.45f306dc9c883p-1;
+    constexpr double kQuadrantsPerRadian = 0x1.45f306dc9c883p-1;  // 2 / pi
     const double k = nearest(radians * kQuadrantsPerRadian);
-    const double first = radians - k * kPart1;  // exact: the two agree in their leading bits
+    const double first = radians - k * kPart1;  // exact: both have the same leading bits
     const Sum second = two_sum(first, -k * kPart2);
     const Sum third = two_sum(second.hi, -k * kPart3);
     const Sum r = two_sum(third.hi, third.lo + second.lo - k * kPart4);
@@ -142,8 +142,8 @@ double arc_cos(double x) {
     constexpr double kPi = 3.141592653589793;
     if (!(x >= -1.0 && x <= 1.0)) return std::numeric_limits<double>::quiet_NaN();
     if (x < 0.0) return kPi - arc_cos(-x);
-    // Half the angle y in [0, pi/4]: sin y = sqrt((1 - x) / 2), by Newton from the series of the arc sine.
-    // The guess is off by less than 6e-3, and every step squares that.
+    // Half the angle, y in [0, pi/4], from sin y = sqrt((1 - x) / 2) by Newton's method. The series of the arc sine
+    // gives a first value with an error below 6e-3, and every step squares the error.
     const double s = __builtin_sqrt(0.5 * (1.0 - x));
     const double z = s * s;
     double y = s * (1.0 + z * (1.0 / 6.0 + z * (3.0 / 40.0)));
@@ -158,12 +158,12 @@ double exponential(double x) {
     if (x != x) return x;
     if (x > 709.8) return std::numeric_limits<double>::infinity();
     if (x < -745.2) return 0.0;
-    // e^x = 2^k e^r, |r| <= ln 2 / 2; ln 2 in two parts, so that k ln 2 is exact but for the last bits.
+    // e^x = 2^k e^r with |r| <= ln 2 / 2. ln 2 has two parts, so that k ln 2 is exact except for the last bits.
     constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
     const double k = nearest(x * 1.4426950408889634);
     const double high = x - k * kLn2High, low = k * kLn2Low;
     const double r = high - low;
-    // Taylor series; the first term left out is r^14/14! < 5e-18.
+    // Taylor series; the first omitted term is r^14/14! < 5e-18.
     double p = 1.0 / 6227020800.0;
     p = p * r + 1.0 / 479001600.0;
     p = p * r + 1.0 / 39916800.0;
@@ -176,9 +176,9 @@ double exponential(double x) {
     p = p * r + 1.0 / 24.0;
     p = p * r + 1.0 / 6.0;
     p = p * r + 0.5;
-    const double tail = (high - r) - low;  // what rounding r lost
+    const double tail = (high - r) - low;  // the rounding error of r
     const double value = 1.0 + (r + (r * r * p + tail));
-    // 2^k in two factors: the result may be subnormal where 2^k is not a number of its own.
+    // 2^k as two factors: the result may be representable (also as a subnormal number) where 2^k is not.
     const auto power = [](int n) {
         const std::uint64_t bits = static_cast<std::uint64_t>(n + 1023) << 52;
         double out;

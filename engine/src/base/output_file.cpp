@@ -19,7 +19,7 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(path_
     }
     const bool direct =
         std::filesystem::exists(target_, error) && !std::filesystem::is_regular_file(target_, error);
-    // The process id keeps two programs that write the same file apart.
+    // The process id distinguishes two programs that write the same file.
     if (!direct) temporary_ = target_ + "." + std::to_string(::getpid()) + ".tmp";
     file_ = std::fopen(direct ? target_.c_str() : temporary_.c_str(), "wb");
     if (file_ == nullptr) {
@@ -45,7 +45,7 @@ void OutputFile::write(std::string_view text) {
 void OutputFile::commit() {
     std::FILE* file = file_;
     file_ = nullptr;
-    // fclose reports what buffering has hidden until now: a full disk, say.
+    // fclose reports errors that buffering has hidden until now, for example a full disk.
     if (std::fclose(file) != 0) fail("cannot write");
     if (temporary_.empty()) return;
     if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot rename to this name");

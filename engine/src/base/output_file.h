@@ -9,8 +9,8 @@ namespace carom {
 
 /// Every failure is a std::runtime_error that names the file and the reason.
 ///
-/// What is not a regular file (/dev/null, a named pipe) is
-/// written to directly: renaming would replace the device itself.
+/// If the path is not a regular file (/dev/null, a named pipe), it is written to directly: renaming would replace the
+/// device itself.
 class OutputFile {
   public:
     explicit OutputFile(std::string path);
@@ -20,15 +20,15 @@ class OutputFile {
 
     void write(std::string_view text);
 
-    /// Closes and renames; before this nothing stands under the name asked for.
+    /// Closes and renames; before this call no file has the requested name.
     void commit();
 
   private:
     [[noreturn]] void fail(const char* what);
 
-    std::string path_;       ///< as asked for, for messages
-    std::string target_;     ///< symbolic links followed
-    std::string temporary_;  ///< empty where written to directly
+    std::string path_;       ///< as requested, for messages
+    std::string target_;     ///< after following symbolic links
+    std::string temporary_;  ///< empty if the target is written to directly
     std::FILE* file_ = nullptr;
 };
 

@@ -1,7 +1,7 @@
-// The generator behind racks: written down here so that a seed means the same rack everywhere, for ever.
+// The random generator for racks. It is implemented here so that a seed always gives the same rack on every system.
 //
-// SplitMix64: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014; constants of
-// its mix13 variant.
+// SplitMix64: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, with the constants
+// of the variant mix13.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,10 @@ class SplitMix64 {
         return z ^ (z >> 31);
     }
 
-    /// Uniform in [0, 1), a multiple of 2^-53.
+    /// Uniform in [0, 1); multiples of 2^-53.
     double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
 
-    /// Uniform in 0 .. n-1 for small n (bias below n 2^-32).
+    /// Uniform in 0 .. n-1 for small n (the bias is below n 2^-32).
     int below(int n) { return static_cast<int>(((next() >> 32) * static_cast<std::uint64_t>(n)) >> 32); }
 
   private:

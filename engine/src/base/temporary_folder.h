@@ -1,4 +1,4 @@
-// A folder of our own that goes with all that is in it.
+// A private temporary folder that is removed with its contents.
 #pragma once
 
 #include <stdlib.h>
@@ -11,7 +11,7 @@ namespace carom {
 
 class TemporaryFolder {
   public:
-    /// @throws std::runtime_error naming it
+    /// @throws std::runtime_error that names the folder
     TemporaryFolder() {
         std::string name = (std::filesystem::temp_directory_path() / "carom_XXXXXX").string();
         if (::mkdtemp(name.data()) == nullptr)

@@ -8,15 +8,16 @@
 namespace carom {
 
 namespace {
+// [-] Block exchanges without fewer infeasible rows before single exchanges (Murty's rule) begin.
 constexpr int kBlockTries = 8;
-// Beyond two refinements: each takes the softness divided by the smallest eigenvalue off the residual, so
-// more than this many help only where the matrix is singular to rounding.
+// [-] Further refinements after the first two: each multiplies the residual by the compliance divided by the
+// smallest eigenvalue, so more of them help only where the matrix is singular to rounding.
 constexpr int kMoreRefinements = 20;
-constexpr double kSlowRow = 0.25, kSlowestRow = 0.9999;  // ratio of successive refinements
-constexpr double kSumUlp = 4.0;  // of a row: a residual that is no more than the rounding of its sum
+constexpr double kSlowRow = 0.25, kSlowestRow = 0.9999;  // [-] extrapolated ratios of successive refinements
+constexpr double kSumUlp = 4.0;  // [ulp of a row's terms] a smaller residual is the rounding of their sum
 }  // namespace
 
-// LU with partial pivoting of the rows and columns that are basic.
+// LU factorisation with partial pivoting of the basic rows and columns.
 bool Complementarity::factor() {
     index_.clear();
     for (std::size_t i = 0; i < size; ++i)
@@ -68,7 +69,7 @@ void Complementarity::residual(std::vector<double>& w) const {
     }
 }
 
-// Largest residual of a basic row, as a share of what its terms add up to.
+// Largest residual of a basic row, relative to the sum of the absolute values of its terms.
 double Complementarity::worst_residual(const std::vector<double>& w) const {
     double worst = 0.0;
     for (const std::size_t i : index_) {
@@ -79,9 +80,9 @@ double Complementarity::worst_residual(const std::vector<double>& w) const {
     return worst;
 }
 
-// z of the basic rows for the factors at hand. Each refinement takes out what the softness has left, down to
-// rounding, as long as that halves it: not where contacts contradict each other. In a wedge whose smallest
-// eigenvalue is 1e-11, two refinements left 1e-9 m/s^2, which added up to 1e-12 m in some tenths of a second.
+// Solves for z of the basic rows with the present factors. The refinements remove the effect of the compliance down
+// to rounding, as long as each at least halves the residual; where contacts contradict each other it does not. In a
+// wedge whose smallest eigenvalue is 1e-11, two refinements left 1e-9 m/s^2: 1e-12 m after some tenths of a second.
 void Complementarity::solve_basic(std::vector<double>& w) {
     std::fill(z.begin(), z.end(), 0.0);
     w = q;
@@ -105,8 +106,8 @@ void Complementarity::solve_basic(std::vector<double>& w) {
     }
 }
 
-// Where the smallest eigenvalue is below the softness, each refinement takes out the same small share of what
-// is left: the last two tell the sum of the row.
+// If the smallest eigenvalue is below the compliance, every refinement removes the same small share of the error: the
+// corrections form a geometric series, whose sum follows from the last two.
 void Complementarity::extrapolate(std::vector<double>& w) {
     double both = 0.0, square = 0.0;
     for (std::size_t k = 0; k < part_.size(); ++k) {
@@ -128,7 +129,7 @@ void Complementarity::refine(std::vector<double>& w) {
 }
 
 bool Complementarity::solve() {
-    constexpr double kRounding = 1e-12;
+    constexpr double kRounding = 1e-12;  // [-] relative; larger violations count as infeasible
     basic_.assign(size, 0);
     for (std::size_t i = 0; i < size; ++i) basic_[i] = free[i] || q[i] < 0.0;
     std::vector<double> w(size);

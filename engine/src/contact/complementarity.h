@@ -1,5 +1,5 @@
 // Dense linear complementarity problems of a few dozen unknowns: the forces in a group of resting contacts, and the
-// impulses that take the closing speeds out of it.
+// impulses of the plastic projection, which removes its closing speeds.
 #pragma once
 
 #include <cstddef>
@@ -7,21 +7,21 @@
 
 namespace carom {
 
-/// [-] Compliance of each contact of a group, as a part of its mobility: contacts that are more than the group needs
-/// share the load.
+/// [-] Compliance of each contact of a group, relative to its mobility (the diagonal of A). It makes the solution
+/// unique: redundant contacts share the load.
 inline constexpr double kContactSoftness = 1e-12;
 
-/// z >= 0, w = A z + q >= 0, z . w = 0; where `free`, z has either sign and w = 0 instead.
+/// z >= 0, w = A z + q >= 0, z . w = 0. In rows with `free`, z may have either sign and w = 0.
 struct Complementarity {
     /// All zero, none free.
     explicit Complementarity(std::size_t n) : A(n * n, 0.0), q(n, 0.0), free(n, 0), z(n, 0.0), size(n) {}
 
-    /// Block principal pivoting: exchange all that is infeasible while their number falls, else one by least
-    /// index (Murty's rule), which ends for every P-matrix (Judice and Pires, "A block principal pivoting
+    /// Block principal pivoting: exchanges all infeasible rows while their number decreases, otherwise one row
+    /// (Murty's rule), which terminates for every P-matrix (Judice and Pires, "A block principal pivoting
     /// algorithm for large-scale strictly monotone linear complementarity problems", 1994). The diagonal is
-    /// raised by kContactSoftness of itself, so that contacts more than a group needs (a ball in three of them)
-    /// share their load evenly and have one answer; refinement takes its effect out again, down to rounding.
-    /// @return false if no answer was found within the bound on pivots (A is no P-matrix); z is then 0
+    /// increased by kContactSoftness of itself, so that redundant contacts (a ball in three of them) share their
+    /// load evenly and the solution is unique; iterative refinement removes this effect again, down to rounding.
+    /// @return false if no solution was found within the bound on pivots (A is not a P-matrix); z is then 0
     bool solve();
 
     double& at(std::size_t row, std::size_t column) { return A[row * size + column]; }

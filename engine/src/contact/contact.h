@@ -1,4 +1,4 @@
-// A ball and what it touches, or is about to touch.
+// A contact: a ball, and the ball or part of the table that it touches or will touch.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace carom {
 
-/// What a ball touches. The order is that of events at one and the same instant; a nose is a part of a cushion.
+/// What a ball touches, in the order of simultaneous events; a nose (a jaw or a cushion's end) counts as a cushion.
 enum class With : std::uint8_t { kPocket, kNothing, kBall, kCushion, kNose };
 
 struct Contact {
@@ -16,23 +16,23 @@ struct Contact {
     int other = -1;  ///< index into the balls, or into Geometry::pockets, cushions or noses
     bool operator==(const Contact&) const = default;
 
-    /// The same part of the table, with another ball.
+    /// The contact of another ball with the same part of the table.
     Contact of(int another) const { return {another, with, other}; }
     /// The other ball, or -1.
     int partner() const { return with == With::kBall ? other : -1; }
-    /// Whether both are the same contact; of two balls either one may stand first.
+    /// Whether both are the same contact; the order of two balls does not matter.
     bool same(const Contact& c) const {
         return *this == c ||
                (with == With::kBall && c.with == With::kBall && ball == c.other && other == c.ball);
     }
 };
 
-/// Whether the part of the table is a jaw, and not a cushion or its end.
+/// Whether the part of the table is a jaw, not a cushion or the end of one.
 inline bool is_jaw(const Contact& c, const Geometry& geometry) {
     return c.with == With::kNose && geometry.noses[c.other].type == EventType::kBallJaw;
 }
 
-/// What an event of this contact calls b and detail: see Event.
+/// The fields b and detail of an event of this contact: see Event.
 inline int event_partner(const Contact& c, const Geometry& geometry) {
     return c.with == With::kNose ? geometry.noses[c.other].index : c.other;
 }

@@ -11,16 +11,16 @@ namespace carom {
 
 namespace {
 
-// [ulp of the coordinates and the length] Foot points nearer than this to a cushion's end are at it: four
+// [ulp of the coordinates and the length] A foot point nearer than this to the end of a cushion is at the end: four
 // roundings of position, end and projection.
 constexpr double kEndUlp = 4.0;
 
-constexpr double kNoise = kClosingUlp * std::numeric_limits<double>::epsilon();
+constexpr double kNoise = kClosingUlp * std::numeric_limits<double>::epsilon();  // [of the speeds]
 
-// Relative motion of two centres, and how large a closing speed is rounding.
+// Relative motion of two centres.
 struct Relative {
     Vec2 r, v, a;
-    double noise;  // m/s
+    double noise;  // [m/s] closing speeds up to this are rounding
 };
 
 Vec2 at(const Relative& m, double t) {
@@ -30,16 +30,16 @@ Vec2 rate(const Relative& m, double t) {
     return {m.v.x() + t * m.a.x(), m.v.y() + t * m.a.y()};
 }
 
-// Closing speed at t [m/s], positive while the distance falls.
+// Closing speed at t [m/s], positive while the distance decreases.
 double closing_speed(const Relative& m, double t) {
     const Vec2 r = at(m, t);
     const double d = length(r);
     return d > 0.0 ? -dot(r, rate(m, t)) / d : length(rate(m, t));
 }
 
-// The polynomial root, refined by the distance itself: Newton steps on |r(t)| - reach that are kept only
-// while the gap falls (at a graze they would run away), then at most one ulp-sized step back to the side that
-// does not penetrate.
+// Refines a root of the polynomial with the distance itself: Newton steps on |r(t)| - reach, accepted only while
+// the gap decreases (at a graze they would diverge), then at most one small step back to the side without
+// penetration.
 double refine(const Relative& m, double reach, double t, double horizon) {
     double gap = length(at(m, t)) - reach;
     for (int i = 0; i < 3 && gap != 0.0; ++i) {
@@ -63,19 +63,19 @@ double refine(const Relative& m, double reach, double t, double horizon) {
     return t;
 }
 
-// Speed by which a contact that is pressed together has to close to count as an impact: above the rounding,
-// and a vanishing share of what the closing acceleration reaches within the horizon.
+// A contact that is pressed together counts as an impact once its closing speed is above the rounding and above this
+// share [-] of the speed that the closing acceleration reaches within the horizon (at most 1 s).
 constexpr double kPressShare = 1e-12;
 
 double press_delay(double closing_acceleration, double noise, double horizon) {
     return 2.0 * noise / closing_acceleration + kPressShare * std::min(horizon, 1.0);
 }
 
-// Steps towards a distant ball, and the share of the safe way that each of them takes.
+// [-] Steps towards a distant ball, and the share of the contact-free time that each of them uses.
 constexpr int kApproaches = 12;
 constexpr double kApproachShare = 0.99;
 
-// Straight relative path with signed acceleration `alpha` along it: solved in arc length, exact at grazing.
+// Straight relative path with the signed acceleration `alpha` along it. It is solved in arc length, exactly at a graze.
 double along_line(const Relative& m, double reach, double speed, double alpha, double horizon) {
     const Vec2 e = m.v / speed;
     const double along = -dot(m.r, e);  // arc length of the closest approach
@@ -83,19 +83,19 @@ double along_line(const Relative& m, double reach, double speed, double alpha, d
     const double miss = std::abs(cross(m.r, e));
     if (!(miss < reach)) return kNever;
     const double half_chord = std::sqrt((reach - miss) * (reach + miss));
-    // c / (b + sqrt(b^2 - c)) with c = |r|^2 - reach^2 from its factors: no cancellation near contact.
+    // c / (b + sqrt(b^2 - c)) with c = |r|^2 - reach^2 as a product, which avoids cancellation near contact.
     const double d = length(m.r);
     const double s = (d - reach) * (d + reach) / (along + half_chord);
     if (!(s >= 0.0)) return kNever;
     const double end_speed_squared = speed * speed + 2.0 * alpha * s;
-    if (!(end_speed_squared >= 0.0)) return kNever;  // stops short
+    if (!(end_speed_squared >= 0.0)) return kNever;  // stops before the contact
     const double t = 2.0 * s / (speed + std::sqrt(end_speed_squared));
     return t <= horizon ? refine(m, reach, t, horizon) : kNever;
 }
 
-// The same motion from a later origin, before which the gap cannot close. The coefficients of |r|^2 - reach^2
-// are as large as the squares of the ways until then; at a graze their rounding would decide (1e-11 m over
-// 100 m) instead of the distance.
+// The same motion from a later origin, before which the gap cannot close. The coefficients of |r|^2 - reach^2 are as
+// large as the squares of the distances travelled until then; at a graze their rounding (1e-11 m over 100 m) would
+// decide instead of the distance.
 Relative brought_near(Relative m, double reach, double horizon, double& elapsed) {
     for (int i = 0; i < kApproaches; ++i) {
         const double gap = length(m.r) - reach;
@@ -111,7 +111,7 @@ Relative brought_near(Relative m, double reach, double horizon, double& elapsed)
     return m;
 }
 
-// First time within the horizon at which |r| falls to reach, closing or only touching; c0 = |r|^2 - reach^2 now.
+// First time within the horizon at which |r| decreases to reach, closing or only touching; c0 = |r|^2 - reach^2 now.
 double first_touch(const Relative& m, double reach, double c0, double horizon, bool straight) {
     const double speed = length(m.v), pull = length(m.a);
     if (speed == 0.0 && pull == 0.0) return kNever;
@@ -121,12 +121,12 @@ double first_touch(const Relative& m, double reach, double c0, double horizon, b
         if (pull == 0.0) return along_line(m, reach, speed, 0.0, horizon);
         if (straight && speed > 0.0) {
             const double alpha = dot(m.a, m.v) / speed;
-            // The closed form holds while the motion does not turn back.
+            // The closed form is valid while the motion does not reverse.
             if (speed + alpha * horizon >= -4.0 * std::numeric_limits<double>::epsilon() * speed)
                 return along_line(m, reach, speed, alpha, horizon);
         }
     } else if (pull == 0.0) {
-        return kNever;  // touching, not closing, and on a straight line: parts for good
+        return kNever;  // touching, not closing, no acceleration: never again
     }
     double elapsed = 0.0;
     const Relative near = c0 > 0.0 ? brought_near(m, reach, horizon, elapsed) : m;
@@ -141,8 +141,8 @@ double first_touch(const Relative& m, double reach, double c0, double horizon, b
     return t == kNever ? kNever : refine(m, reach, std::min(horizon, elapsed + t), horizon);
 }
 
-// First contact that closes by more than rounding. A graze below that is passed over; a contact that closes
-// only because it is pressed together counts from when its closing speed can be told from 0.
+// First contact that closes by more than rounding. Grazes below that are skipped. A contact that closes only because it
+// is pressed together begins when its closing speed can be distinguished from 0.
 double time_to_reach(Relative m, double reach, double horizon, bool straight) {
     const double d = length(m.r);
     double c0 = (d - reach) * (d + reach);
@@ -189,7 +189,7 @@ double time_to_circle(const Path& ball, const Vec2& center, double reach) {
 
 namespace {
 
-// First time at which a foot point outside [0, end] gets inside.
+// First time at which a foot point outside [0, end] enters this interval.
 double time_to_enter(double foot, double rate, double pull, double end, double horizon) {
     if (foot < 0.0) return first_descent_quadratic(-foot, -rate, -pull, horizon);
     if (foot > end) return first_descent_quadratic(foot - end, rate, pull, horizon);
@@ -232,7 +232,7 @@ double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, d
         else
             t = first_descent_quadratic(h0, h1, h2, ball.horizon);
         if (t < best && t <= ball.horizon && h1 + t * h2 < -noise && foot_inside(t)) best = t;
-        // A ball that rests on the nose at the end comes round it and onto the cushion: closing when the foot point enters.
+        // A ball that touches the nose at its end can move round it onto the cushion: closing once the foot enters.
         const double enter = time_to_enter(dot(direction, offset), dot(direction, ball.v),
                                            dot(direction, ball.a), line_length, ball.horizon);
         if (enter == kNever) continue;

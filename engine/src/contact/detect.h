@@ -1,5 +1,6 @@
-// When does the next contact begin? One rule everywhere, instead of any epsilon or spacer: a pair collides
-// only while closing; overlapped and closing means now; overlapped and receding means no event.
+// The time at which the next contact begins. One rule replaces all epsilons and spacers:
+//  - a pair collides only while it is closing;
+//  - a pair that overlaps and is closing collides now; one that overlaps and is receding does not collide.
 #pragma once
 
 #include <algorithm>
@@ -10,48 +11,47 @@
 
 namespace carom {
 
-/// Translation of one ball from now on: r + v t + a t^2 / 2, for 0 <= t <= horizon (its own next transition).
+/// Translation of one ball from now on: r + v t + a t^2 / 2, for 0 <= t <= horizon (its next state transition).
 struct Path {
     Vec2 r, v, a;
     double horizon;  ///< s, may be infinite
     bool straight;   ///< v and a are parallel (rolling; sliding with u parallel to v; at rest)
     bool moves;
-    double surface = 0.0;  ///< R |w| [m/s]: the speed of the centre is not known better than to the rounding
-                           ///< of this, either
+    double surface = 0.0;  ///< R |w| [m/s]; its rounding also limits the accuracy of the speed of the centre
 };
 
-/// Closing speeds below this many ulp of the speeds involved (of the centres and of the surfaces) are
-/// rounding noise of the projection, not an approach.
+/// [ulp of the speeds of centres and surfaces] Closing speeds below this are rounding errors of the projection, not
+/// an approach.
 inline constexpr double kClosingUlp = 8.0;
 
-/// Time until the centres of two balls come within `reach`
-/// (R1 + R2) while closing; kNever if not within both horizons.
+/// Time until the distance of two centres decreases to `reach` (R1 + R2) while closing; kNever if not within both
+/// horizons.
 double time_to_ball(const Path& ball1, const Path& ball2, double reach);
 
-/// Time until the centre comes within `reach` of a fixed point while closing.
+/// Time until the distance of the centre from a fixed point decreases to `reach` while closing.
 double time_to_circle(const Path& ball, const Vec2& center, double reach);
 
-/// Time until the centre comes within R of a segment of a straight line (its ends are circles of their own),
-/// from either side, with the foot point between the ends.
-/// @param direction unit, from -> to
+/// Time until the distance of the centre from a straight segment decreases to R, from either side, with the foot
+/// point between the ends. The ends are separate circles.
+/// @param direction unit vector, from -> to
 double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, double line_length, double R);
 
-/// How far from a cushion's end [m] a foot point may be by rounding, for a centre at r.
+/// Rounding error [m] of the distance between a foot point and the end of a cushion, for a centre at r.
 double end_rounding(const Vec2& r, double line_length);
 
-/// Whether a foot point `left` [m] before a cushion's end has passed it. Within rounding its direction
-/// decides, so that a ball that runs off the end is not taken for one that arrives: what ends a contact here
-/// does not begin it. Beyond the end, its tip or the jaw takes over.
+/// Whether a foot point `left` [m] before the end of a cushion has passed it. Within rounding its direction of motion
+/// decides, so that a ball that leaves over the end is not mistaken for one that arrives: the condition that ends a
+/// contact here cannot begin it. Beyond the end, the end point or the jaw is responsible.
 bool past_end(double left, double rate, double pull, double rounding);
 
-/// Time until the centre enters a pocket's circle; 0 if it is inside.
+/// Time until the centre enters the circle of a pocket; 0 if it is inside.
 double time_to_pocket(const Path& ball, const Vec2& center, double radius);
 
-/// Margins of the rejects: a share of the reach, and a share of the terms that are summed.
+/// [-] Margins of the quick rejections: a share of the reach, and a share of the summed terms.
 inline constexpr double kApartShare = 1e-6;
 inline constexpr double kTermShare = 1e-12;
 
-/// Least value of c + b t + a t^2 on [0, T] less the rounding of its terms; T may be infinite.
+/// Minimum of c + b t + a t^2 on [0, T] minus the rounding of its terms; T may be infinite.
 inline double least(double c, double b, double a, double T) {
     if (b >= 0.0 && a >= 0.0) return c;
     if (!(T < kNever)) return -kNever;
@@ -61,9 +61,10 @@ inline double least(double c, double b, double a, double T) {
     return low - kTermShare * (std::abs(c) + std::abs(linear) + std::abs(square));
 }
 
-/// Whether a relative motion stays out of reach on [0, window], by a margin far above rounding: then the functions
-/// above would find nothing there. No root, no division by a length; false where a look is needed. Two projections
-/// bound the distance from below: on the direction to the other centre now, and across the relative velocity.
+/// Quick rejection: whether a relative motion stays out of reach on [0, window] by a margin far above rounding, so that
+/// the functions above would find nothing there. Needs no root and no division by a length; false means that they must
+/// be called. Two projections give lower bounds of the distance: on the present direction to the other centre, and on
+/// the normal of the relative velocity.
 inline bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reach, double window) {
     if (!(window >= 0.0)) return true;
     const double far = reach * (1.0 + kApartShare);
@@ -75,7 +76,7 @@ inline bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reac
     return across > 0.0 && across * across > far * far * dot(v, v);
 }
 
-/// The same for a straight line, from either side.
+/// The same for a straight line, on either side.
 bool stays_off_line(const Path& ball, const Vec2& from, const Vec2& direction, double R, double window);
 
 }  // namespace carom

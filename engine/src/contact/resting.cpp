@@ -13,12 +13,12 @@ namespace carom {
 
 namespace {
 
-// [-] Stands for a smaller restitution in the rule of holds(), where no bounce is left at all.
+// [-] Least restitution in the rule of holds(): with 0 the bounce would have no duration at any speed.
 constexpr double kLeastRestitution = 0.1;
-// [s] A speed that rolling friction would stop within this time counts as none at all.
+// [s] A speed that rolling friction would stop within this time counts as zero.
 constexpr double kStopNoise = 1e-12;
-// [s] The same where there is no rolling friction, against that of sliding: a speed that in an hour makes no
-// more than 1e-12 m.
+// [s] The same without rolling friction, with sliding friction instead: such a speed moves a ball by no more than
+// 1e-12 m in an hour.
 constexpr double kSlideNoise = 1e-16;
 
 }  // namespace
@@ -31,7 +31,7 @@ void make_bodies(Group& g) {
     for (RestingBall& ball : g.group.balls) {
         const Segment s = start_segment(g.now, ball.r, ball.v, ball.w, g.motion);
         ball.v = s.v;
-        ball.w = s.w;  // a rolling ball's spin is exactly the rolling one
+        ball.w = s.w;  // the spin of a rolling ball is exactly that of rolling
         Body body;
         body.mode = mode_of(g, ball);
         g.bodies.push_back(body);
@@ -75,8 +75,8 @@ bool any_deep(const Group& g) {
                        [](const Link& l) { return !l.open && l.depth > kOverlapDepth; });
 }
 
-// A contact ends once its gap opens by more than rounding: never at the same instant as it began, so that no contact
-// can come and go without end. One without force that does not open (balls at rest, or that roll alike) stays.
+// A contact ends once its gap opens by more than rounding, and never at the instant at which it began, so that no
+// contact can begin and end forever. A contact without force that does not open (balls at rest, equal rolling) stays.
 void mark_released(Group& g) {
     for (std::size_t c = 0; c < g.links.size(); ++c) {
         g.group.contacts[c].force = g.links[c].N;
@@ -88,28 +88,28 @@ void solve(Group& g) {
     make_bodies(g);
     for (const RestingContact& c : g.group.contacts) g.links.push_back(link_of(g, c));
     make_directions(g);
-    // Which resting balls start to move. The others act as fixed obstacles in the projection that follows.
+    // First solution: which resting balls start to move. The others are fixed obstacles in the projection below.
     solve_forces(g, 0.0, SlowBalls::kMayStop);
     project_velocities(g);
     make_directions(g);
     Solution solution = solve_forces(g, 0.0);
     if (keep_returning(g)) solution = solve_forces(g, 0.0);
     for (Link& link : g.links) link.pressed = link.N > 0.0;
-    // Normals turn while the balls move across each other; the stabilisation keeps the third order from penetrating.
+    // Normals turn while the balls move across each other; the stabilisation prevents overlaps from third-order terms.
     const double turning = normal_interval(g);
     if (turning < kNever) solution = solve_forces(g, turning);
     double longest = kNever;
     const double interval = write_segments(g, solution, longest, Opening::kIgnored);
-    // Directions that turn are taken at the middle of the interval: second order. The interval may grow by that, but
-    // not beyond what the stabilisation is made for. Overlaps that rounding has made are taken back.
+    // Directions that turn are evaluated at the middle of the interval, for second order. The interval may become
+    // longer by that, but not longer than the stabilisation allows. Overlaps that rounding has caused are removed.
     const bool turned = use_midpoint_directions(g);
     const bool deep = interval < kNever && any_deep(g);
     if (turned || deep || any_stuck(g) || (turning < kNever && interval < 0.5 * turning)) {
         longest = std::min(1.25 * interval, normal_interval(g));
         solution = solve_forces(g, longest < kNever ? longest : 0.0);
     }
-    // The forces that then move its balls decide whether a contact ends: those of the start could open it and those of
-    // the interval close it at once, again and again.
+    // The forces of the interval decide whether a contact ends: forces at its start could open the contact and forces
+    // of the interval close it again at once, repeatedly.
     while (keep_returning(g)) solution = solve_forces(g, longest < kNever ? longest : 0.0);
     write_segments(g, solution, longest, Opening::kEnds);
     mark_released(g);
@@ -133,8 +133,8 @@ Mode mode_of(const Group& g, const RestingBall& ball) {
                                             : Mode::kResting;
 }
 
-// A rolling ball that friction stops at once has stopped: the direction of such a velocity is often no more than the
-// rounding of its group's, and rolling friction along it would drive the ball. @return whether one had a velocity
+// Stops rolling balls that friction would stop at once: the direction of such a velocity is often only the rounding of
+// the group's velocities, and rolling friction along it would drive the ball. @return whether one had a velocity
 bool stop_slow_rolling(Group& g) {
     const double slowest = std::max(g.noise, kRestTime * g.motion.roll);
     bool any = false;
@@ -164,14 +164,14 @@ double time_to_line_end(const CushionLine& line, const Segment& s) {
 
 bool holds(double v_n, double a_c, double restitution) {
     if (!(a_c > 0.0)) return false;
-    const double x = 2.0 * std::max(restitution, kLeastRestitution) * v_n / a_c;  // duration of the bounce
+    const double x = 2.0 * std::max(restitution, kLeastRestitution) * v_n / a_c;  // duration of the rebound
     const double x2 = x * x, f2 = kContactTimeFactor * kContactTimeFactor;
     return x2 * x2 * x * v_n <= f2 * f2 * kContactTimeFactor / (kContactStiffness * kContactStiffness);
 }
 
 double resting_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
     const double speed = length(planar(v)), spin = length(Vec2(length(planar(w)), w.z()));
-    // Without rolling friction nothing stops such a ball: then against that of sliding.
+    // Without rolling friction nothing stops such a ball: the sliding friction then sets the scale.
     return std::max(motion.roll > 0.0 ? kStopNoise * motion.roll : kSlideNoise * motion.slide,
                     8.0 * kClosingUlp * std::numeric_limits<double>::epsilon() * (speed + motion.R * spin));
 }

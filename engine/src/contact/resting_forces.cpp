@@ -10,17 +10,17 @@ namespace carom::resting {
 
 namespace {
 
-// [of what drives a group] Forces beyond the first are no solution: what asks for them is left out. A wedge of slope s
-// multiplies the drive by 1/s, and slopes down to 1e-8 are solved; contacts that contradict each other, by
-// 1/kContactSoftness. Forces beyond the second: a wedge that has no room for the stabilisation.
+// [of the accelerations that drive a group] Forces above the first limit are no solution: the term that needs them is
+// dropped. A wedge of slope s multiplies the drive by 1/s, and slopes down to 1e-8 are solved; contradicting contacts
+// multiply it by 1/kContactSoftness. Forces above the second limit show that a wedge cannot be stabilised.
 constexpr double kLargestForce = 1e9;
 constexpr double kLargestStabilised = 1e4;
-// [-] Mobility of balls at rest while it is decided which of them stay, against 1 of a ball that slips.
+// [-] Mobility of balls at rest while it is decided which of them stay at rest; that of a sliding ball is 1.
 constexpr double kRestCompliance = 1e-4;
-// [of the coefficient] To which the friction that ends a slip is solved.
+// [of the coefficient] Accuracy of the friction that ends a slip.
 constexpr double kStickAccuracy = 1e-3;
-// [of kShortestInterval] A ball that its own rolling friction would stop within this time takes the
-// direction of its friction from where its forces lead it; an explicit step would be unstable.
+// [of kShortestInterval] For a ball that its rolling friction would stop within this time, the direction of friction
+// follows from the forces (implicitly); an explicit step would be unstable.
 constexpr double kSlowIntervals = 4.0;
 
 void accelerate(Group& g, double compliance) {
@@ -57,7 +57,7 @@ void sum_forces(Group& g) {
     }
 }
 
-// Acceleration of a body by a force of 1 in the contact.
+// Acceleration of a body by a unit force in the contact.
 Vec2 response(const Group& g, const Link& link, int index, const SolveOptions& options) {
     const Body& b = g.bodies[index];
     const double f = options.friction ? link.friction_z : 0.0, sign = index == link.i ? -1.0 : 1.0;
@@ -74,8 +74,8 @@ Vec2 response(const Group& g, const Link& link, int index, const SolveOptions& o
     return Vec2::Zero();
 }
 
-// Two opposing fixed normals cannot both be stabilised: the regularised system then returns huge forces, which mean
-// nothing. The stabilisation of those contacts is dropped. @return whether any was
+// Two opposing fixed normals cannot both be stabilised: the regularised system then returns huge, meaningless forces.
+// Drops the stabilisation of those contacts. @return whether there was one to drop
 bool drop_stabilisation(Group& g, const std::vector<std::size_t>& active) {
     bool any = false;
     for (const std::size_t c : active) {
@@ -89,8 +89,8 @@ bool drop_stabilisation(Group& g, const std::vector<std::size_t>& active) {
     return any;
 }
 
-// N >= 0, gap acceleration >= stabilisation, complementary; for the present modes and directions. @return whether
-// there is an answer
+// Solves N >= 0, gap acceleration >= stabilisation, complementary, for the present modes and directions.
+// @return whether there is a solution
 bool solve_contacts_once(Group& g, const SolveOptions& options) {
     for (Link& link : g.links) link.N = 0.0;
     sum_forces(g);
@@ -142,8 +142,8 @@ bool solve_contacts_once(Group& g, const SolveOptions& options) {
     return !options.stabilise || !drop_stabilisation(g, active);
 }
 
-// The stabilisation can ask for what a wedge cannot give, and friction can leave no answer at all (Painleve): then
-// without.
+// The stabilisation can be impossible in a wedge, and with friction there may be no solution at all (Painleve): the
+// system is then solved without them.
 Solution solve_contacts(Group& g, double compliance) {
     const bool stabilise =
         std::any_of(g.links.begin(), g.links.end(), [](const Link& l) { return l.stabilisation != 0.0; });
@@ -154,7 +154,7 @@ Solution solve_contacts(Group& g, double compliance) {
     SolveOptions less = all;
     less.stabilise = false;
     if (stabilise) {
-        // Without the stabilisations that were dropped, then without any.
+        // First without the stabilisations that have been dropped, then without any.
         if (solve_contacts_once(g, all)) return {true, true};
         if (solve_contacts_once(g, less)) return {true, false};
     }
@@ -167,7 +167,7 @@ Solution solve_contacts(Group& g, double compliance) {
     return {solve_contacts_once(g, less), false};
 }
 
-// [m/s^2] The rate of v_t^2 / |r|, 3 v_t a_t / |r|, must not close the gap within the interval; an overlap ends in it.
+// [m/s^2] The rate of v_t^2 / |r|, 3 v_t a_t / |r|, must not close the gap within the interval; overlaps end in it.
 double stabilisation_for(const Link& link, const Across& t, double interval) {
     const double a = std::abs(t.a), h = std::max(interval, kRecoveryTime);
     const double turning =
@@ -175,7 +175,7 @@ double stabilisation_for(const Link& link, const Across& t, double interval) {
     return turning + (link.depth > kOverlapDepth ? 2.0 * link.depth / (h * h) : 0.0);
 }
 
-// Whether the accelerations have come out so that a gap needs more than the stabilisation that they were made for.
+// Whether the resulting accelerations require more stabilisation of a gap than they were computed with.
 bool stabilisation_falls_short(const Group& g, double interval) {
     return std::any_of(g.links.begin(), g.links.end(), [&](const Link& link) {
         return !link.open && !link.walled &&
@@ -183,7 +183,7 @@ bool stabilisation_falls_short(const Group& g, double interval) {
     });
 }
 
-// What the acceleration of a gap has besides those of the bodies: |r|'' has v_t^2 / |r| from the turning normal.
+// Terms of the acceleration of a gap besides those of the bodies: |r|'' contains v_t^2 / |r| from the turning normal.
 void update_gap_terms(Group& g, double interval) {
     for (Link& link : g.links) {
         const Across t = across(g, link);
@@ -192,16 +192,16 @@ void update_gap_terms(Group& g, double interval) {
     }
 }
 
-// Rate of the slip that the vertical friction between two balls acts on.
+// Rate of change of the slip on which the vertical friction between two balls acts [m/s^2].
 double slip_rate(const Group& g, const Link& link) {
     const Vec2 t(link.n.y(), -link.n.x());
     return g.motion.R * dot(spin_rate(g, link.i) + spin_rate(g, link.j), t);
 }
 
-// Friction that would turn the slip over within the interval ends it there instead: taken at the slip of the
-// end, s + h (rate without friction) + h k N f, with k what a force of 1 makes of it. Taken at that of the
-// start it would drive the slip to and fro, and with great forces gain energy.
-// @return whether a friction has changed, so that the forces have to be found anew
+// Stiction: friction that would reverse the slip within the interval ends it instead. It is evaluated at the slip of
+// the end, s + h (rate without friction) + h k N f, where k is the response to a unit force. Evaluated at the slip of
+// the start it would make the slip oscillate, and with large forces gain energy.
+// @return whether a friction has changed, so that the forces must be solved again
 bool solve_stiction(Group& g, double interval) {
     const double h = std::max(interval, kShortestInterval);
     const auto ease = [](const Body& b) {
@@ -229,8 +229,8 @@ Solution solve_forces_once(Group& g, double interval, SlowBalls slow) {
         b.changes = 0;
         b.lifted = false;
     }
-    // First balls at rest move a little, which shows what they need of the forces between them and of cushions to
-    // stay; then not at all.
+    // First, balls at rest have a small mobility: this shows which forces between them and from cushions they need to
+    // stay at rest. Then they are fixed.
     Solution solution{};
     const std::size_t most = static_cast<std::size_t>(kModeChanges + 2) * g.bodies.size() + 2;
     for (std::size_t tries = 0; tries < most; ++tries) {
@@ -251,7 +251,7 @@ void make_directions(Group& g) {
         if (b.mode == Mode::kSliding) b.mode = mode_of(g, ball);  // the projection may have ended its slip
         const Vec2 along = b.mode == Mode::kSliding ? cloth_slip(ball.v, ball.w, g.motion.R) : planar(ball.v);
         const double size = length(along);
-        b.starts = !(size > 0.0);  // then the direction is that of the forces
+        b.starts = !(size > 0.0);  // the forces then determine the direction
         b.due = Vec2::Zero();
         if (b.starts) continue;
         b.direction = along / size;
@@ -284,8 +284,8 @@ double gap_acceleration(const Group& g, const Link& link) {
     return dot(link.n, other - g.bodies[link.i].a) + link.curving + link.returning;
 }
 
-// A contact that opens, but is pressed together so that it would be closed again within the shortest
-// interval, does not end: its rate goes within that interval instead.
+// A contact that opens, but is pressed together so that it would close again within the shortest interval, does not
+// end; its opening rate is removed within that interval instead.
 bool keep_returning(Group& g) {
     bool any = false;
     for (Link& link : g.links) {
@@ -300,7 +300,7 @@ bool keep_returning(Group& g) {
 }
 
 Solution solve_forces(Group& g, double interval, SlowBalls slow) {
-    constexpr int kPasses = 4;
+    constexpr int kPasses = 4;  // [-] most updates of stiction and stabilisation
     Solution solution{};
     for (int pass = 0; pass < kPasses; ++pass) {
         solution = solve_forces_once(g, interval, slow);

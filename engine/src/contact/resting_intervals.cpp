@@ -1,4 +1,4 @@
-// Intervals of a group: how long its forces stay what they are, and the segments of its members.
+// Intervals of a group: the time for which its forces remain valid, and the segments of its members.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,25 +11,24 @@ namespace carom::resting {
 
 namespace {
 
-// [s] Longest interval over which a resting contact keeps the directions of its forces where they turn.
+// [s] Longest interval over which the forces of a resting contact keep their directions if these turn.
 constexpr double kLongestInterval = 5e-2;
-// [m] Error that one such interval may make in a ball's place: 1e-6 m in the hundred or so of a long push.
+// [m] Position error of a ball in one such interval: 1e-6 m after the hundred or so intervals of a long push.
 constexpr double kPlaceError = 2e-8;
-// [rad] and [m] How far a normal may turn within one, and what gap its turning may leave.
+// [rad] and [m] Largest rotation of a normal within an interval, and the largest gap that it may cause.
 constexpr double kNormalTurn = 0.03;
 constexpr double kGapLeft = 1e-8;
-// [m/s] The rounding of great forces (a narrow wedge) may move a gap by so much in the long run: its
-// intervals are as much shorter, but not shorter than kRecoveryTime (beyond 1e5 m/s^2 it may be more). Forces
-// below some 2000 m/s^2 are not affected.
+// [m/s] Largest mean speed of a gap from the rounding of large forces (a narrow wedge). Intervals are shortened for it,
+// but not below kRecoveryTime (above 1e5 m/s^2 the speed may be larger). Forces below some 2000 m/s^2 are not affected.
 constexpr double kGapDrift = 1e-13;
-// [of the sliding acceleration] A gap that opens by less does not open: the rounding of the forces.
+// [of the sliding acceleration] Smaller opening accelerations are the rounding of the forces.
 constexpr double kOpening = 1e-10;
-// [ulp of the time] No interval is shorter: the clock has to go on.
+// [ulp of the time] Shortest interval, so that the clock advances.
 constexpr double kClockTicks = 8.0;
-// [-] A slip or velocity that turns ends where it is nearest to nothing, if it comes as near as this share
-// of itself; else it only turns.
+// [-] A slip or velocity that turns ends at its minimum if this is at most this share of its present value; otherwise
+// it only turns.
 constexpr double kSlipEnds = 0.5;
-// [-] Directions that differ by less than this (sine of the angle) do not turn: the closed form of the straight line.
+// [-] Directions that differ by less (sine of the angle) count as constant: the closed form of a straight line applies.
 constexpr double kStraight = 1e-9;
 
 // Longest time up to kLongestInterval at which `error` is at most `allowed`, in steps of a fifth.
@@ -40,7 +39,7 @@ double longest(double allowed, const Error& error) {
     return h;
 }
 
-// What gives a member's friction its direction, and its rate of change.
+// The vector that gives a member's friction its direction, and its rate of change.
 Vec2 slip_or_velocity(const Group& g, std::size_t k, Vec2& rate) {
     const RestingBall& ball = g.group.balls[k];
     const Segment& s = ball.segment;
@@ -52,8 +51,8 @@ Vec2 slip_or_velocity(const Group& g, std::size_t k, Vec2& rate) {
     return planar(ball.v);
 }
 
-// Time until a member's slip or velocity is gone or turns too far; `gone` says which. Friction of strength S
-// along a direction that turns at the rate w, taken at the middle of h, errs by S w h^3 / 12 in the place.
+// Time until a member's slip or velocity becomes zero (then `gone`) or turns too far. Friction of strength S along a
+// direction that turns at the rate w, evaluated at the middle of h, causes a position error of S w h^3 / 12.
 double direction_interval(const Group& g, std::size_t k, bool& gone) {
     gone = false;
     Vec2 dx;
@@ -84,17 +83,17 @@ double friction_flip(const Group& g, const Link& link) {
     return std::max(kShortestInterval, -s_z / rate);
 }
 
-// A contact that is about to open is released when its rate can be told from rounding.
+// A contact that starts to open is released when its rate can be distinguished from rounding.
 double opening_interval(const Group& g, const Link& link) {
     if (link.open || link.pressed || link.N > 0.0) return kNever;
     const double opening = gap_acceleration(g, link);
     if (!(opening > kOpening * g.motion.slide)) return kNever;
-    // A ball that starts has to get beyond what stop_slow_rolling() takes for rest.
+    // A ball that starts must become faster than the limit of stop_slow_rolling().
     const double clear = 4.0 * std::max(g.noise, kRestTime * g.motion.roll);
     const double told = (clear + std::max(0.0, -gap_rate(g, link))) / opening;
-    // So has every other ball that the group starts: taken for rest again, it is an obstacle that stops this
-    // one in a narrow wedge, and all starts anew (random scene 3800). The gap meanwhile stays below what a turning
-    // normal may leave.
+    // So must every other ball that the group starts: if it were stopped again, it would be an obstacle that stops this
+    // one in a narrow wedge, and everything would start again (random scene 3800). The gap meanwhile stays below
+    // kGapLeft.
     double started = 0.0;
     for (const Body& b : g.bodies) {
         const double size = length(b.a);
@@ -103,8 +102,7 @@ double opening_interval(const Group& g, const Link& link) {
     return std::max(told, std::min(started, std::sqrt(2.0 * kGapLeft / opening)));
 }
 
-// A normal that turns without its stabilisation (there was no room for it) closes the gap with the third power of the
-// time.
+// A normal that turns without stabilisation (where it was impossible) closes the gap with the third power of the time.
 double unstabilised_interval(const Group& g, const Link& link, double interval, bool stabilised) {
     if (link.open || !(link.N > 0.0) || link.distance == 0.0) return kNever;
     if (stabilised && link.stabilisation > 0.0) return kNever;
@@ -115,15 +113,15 @@ double unstabilised_interval(const Group& g, const Link& link, double interval, 
     return longest(kOverlapDepth, closed);
 }
 
-// What the projection could not take out of a narrow wedge (its answer is beyond rounding) is not left to close the
-// gap for long.
+// A closing speed that the projection could not remove in a narrow wedge (its solution is limited by rounding) may
+// close the gap for a short time only.
 double closing_interval(const Group& g, const Link& link) {
     const double rate = gap_rate(g, link);
     return !link.open && rate < -g.noise ? std::max(kShortestInterval, -kOverlapDepth / rate) : kNever;
 }
 
-// Forces N that cancel leave an acceleration of some ulp of them: over h, that moves the gap by a h^2 / 2,
-// before the next projection takes the speed out; a h / 2 in the long run.
+// Forces N that cancel leave an acceleration a of some ulp of N. In the time h it moves the gap by a h^2 / 2 before the
+// next projection removes the speed; the mean speed is a h / 2.
 double rounding_interval(const Link& link) {
     const double a = 8.0 * std::numeric_limits<double>::epsilon() * link.N;
     return a * kLongestInterval > 2.0 * kGapDrift ? std::max(kRecoveryTime, 2.0 * kGapDrift / a) : kNever;
@@ -167,7 +165,7 @@ bool use_midpoint_directions(Group& g) {
         if (std::abs(cross(x, dx)) <= kStraight * length(x) * length(dx)) continue;
         const Vec2 middle = x + 0.5 * duration * dx;
         const double size = length(middle);
-        // Near its end the direction may turn over: then the one at the start stays.
+        // Near its end the direction may reverse: the direction at the start is then kept.
         if (!(size > 0.0) || dot(middle, x) <= 0.0) continue;
         b.direction = middle / size;
         turned = true;

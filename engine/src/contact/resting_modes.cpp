@@ -1,4 +1,4 @@
-// Whether a ball in resting contacts slips, rolls or rests: what its mode claims against the forces that come of it.
+// Whether a ball in resting contacts slides, rolls or rests: checks each mode against the forces that result from it.
 #include <cmath>
 
 #include "contact/resting_group.h"
@@ -7,7 +7,7 @@ namespace carom::resting {
 
 namespace {
 
-// [-] Changes after which a slow ball is no longer tried at rest.
+// [-] Number of mode changes after which rest is no longer tried for a slow ball.
 constexpr int kStopTries = 4;
 
 bool change_mode(Body& b, Mode mode) {
@@ -26,7 +26,7 @@ bool turn_to(Body& b, const Vec2& drive, double size) {
     return false;
 }
 
-// A ball at rest stays while (5/7) |F| <= mu_r g, with the forces of what it leans on.
+// A ball stays at rest while (5/7) |F| <= mu_r g, where F includes the forces of its contacts.
 bool resting_holds(const Group& g, Body& b) {
     const Vec2 drive = b.due + (5.0 / 7.0) * (b.push + b.couple);
     const double size = length(drive), rounding = kForceRounding * (g.motion.slide + length(b.push));
@@ -37,8 +37,8 @@ bool resting_holds(const Group& g, Body& b) {
     return false;
 }
 
-// A ball rolls while the cloth can give what that takes. One that has no velocity yet rolls along the force
-// on it, or stays after all.
+// A ball rolls while the friction of the cloth is large enough for it. A ball without velocity starts to roll along
+// the force on it, or stays at rest.
 bool rolling_holds(const Group& g, Body& b, SlowBalls slow) {
     const double grip = g.motion.slide * load(g, b) + g.motion.roll;
     if (length(b.a - b.push) > grip * (1.0 + kForceRounding)) {
@@ -50,26 +50,26 @@ bool rolling_holds(const Group& g, Body& b, SlowBalls slow) {
         return false;
     }
     if (!b.starts) return true;
-    // Of a slow ball friction takes the direction at the end of the shortest interval, v + h a: at its start
-    // it would turn the ball over within less, now this way, now that.
+    // For a slow ball, friction has the direction at the end of the shortest interval, v + h a: the direction at its
+    // start would reverse the velocity within less time, again and again.
     const Vec2 drive = b.due + (5.0 / 7.0) * (b.push + b.couple);
     const double size = length(drive);
     const bool moves = b.due.x() != 0.0 || b.due.y() != 0.0;
     if (size <= g.motion.roll && moves) {
-        // It stops within that interval, if the forces that come of stopping it so soon leave it there too.
+        // It stops within that interval if it also stays at rest under the forces that result from stopping it.
         if (slow == SlowBalls::kMayStop && b.changes < kStopTries && change_mode(b, Mode::kResting))
             return false;
         return turn_to(b, b.due, length(b.due));
     }
     if (!moves && (size <= g.motion.roll || b.changes >= kModeChanges)) {
         b.mode = Mode::kResting;
-        b.changes = kModeChanges;  // for good
+        b.changes = kModeChanges;  // permanently
         return false;
     }
     return turn_to(b, drive, size);
 }
 
-// A ball that starts to slip slips along what drives the slip.
+// A ball that starts to slip slips in the direction of the acceleration that drives the slip.
 bool sliding_holds(const Group& g, Body& b) {
     bool hold = true;
     if (!b.lifted && b.lift > g.around.gravity) {
@@ -83,8 +83,8 @@ bool sliding_holds(const Group& g, Body& b) {
 
 }  // namespace
 
-// Whether every ball can do what its mode says; where not, the mode or the direction changes, a bounded
-// number of times: a ball that finds no consistent mode rests, or keeps its direction.
+// Whether the modes of all balls are consistent. Where one is not, its mode or direction changes, a bounded number of
+// times: a ball without a consistent mode rests, or keeps its direction.
 bool modes_hold(Group& g, SlowBalls slow) {
     bool hold = true;
     for (Body& b : g.bodies) {

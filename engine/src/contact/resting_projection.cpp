@@ -1,4 +1,4 @@
-// The plastic projection: what takes the closing speeds out of a group of resting contacts.
+// The plastic projection, which removes the closing speeds of a group of resting contacts.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -36,9 +36,9 @@ std::vector<char> sticky_contacts(const Group& g) {
     return sticky;
 }
 
-// Projects; the sticky contacts end with the rate 0, the others do not close.
+// Projects: afterwards the sticky contacts have the rate 0, and the others do not close.
 // @return false if the sticky contacts cannot be closed without a change far greater than their rates (normals that
-// nearly agree, as from a jaw onto the cushion, would stop the ball): then nothing is changed
+// nearly agree, as from a jaw onto the cushion, would stop the ball); nothing is changed then
 bool project(Group& g, const std::vector<char>& sticky) {
     std::vector<std::size_t> active;
     for (std::size_t c = 0; c < g.links.size(); ++c) {
@@ -52,7 +52,7 @@ bool project(Group& g, const std::vector<char>& sticky) {
         problem.free[r] = sticky[active[r]];
         for (std::size_t k = 0; k < active.size(); ++k) {
             const Link& column = g.links[active[k]];
-            // Impulse 1 in `column` gives its ball i the velocity -mobility n, its ball j +mobility n.
+            // A unit impulse in `column` changes the velocity of its ball i by -mobility n, of j by +mobility n.
             double sum = 0.0;
             const double along = dot(row.n, column.n);
             if (row.i == column.i) sum += g.bodies[row.i].mobility() * along;
@@ -62,7 +62,7 @@ bool project(Group& g, const std::vector<char>& sticky) {
             problem.at(r, k) = sum;
         }
     }
-    // What the first solution leaves by rounding, the next ones take.
+    // The second and third solution remove what the first one leaves by rounding.
     for (int pass = 0; pass < 3; ++pass) {
         double worst = 0.0, rates = 0.0;
         for (std::size_t r = 0; r < active.size(); ++r) {
@@ -90,8 +90,8 @@ bool project(Group& g, const std::vector<char>& sticky) {
     return true;
 }
 
-// What friction stops within the shortest interval has stopped. Not where that would stop others: an obstacle that
-// comes to rest in front of a ball that has all but passed it, in a narrow wedge, jams that ball.
+// Stops the balls that friction stops within the shortest interval, unless that would stop others: in a narrow wedge,
+// an obstacle that stops in front of a ball that has almost passed it would jam that ball.
 void stop_within_interval(Group& g) {
     double fastest = 0.0;
     std::vector<std::size_t> stopped;
@@ -118,13 +118,13 @@ void stop_within_interval(Group& g) {
 }  // namespace
 
 // The velocities nearest to the present ones, in the metric of the masses, that close no contact (docs/hard_cases.md,
-// "Clusters"). A pressed contact that opens so slowly that it would be closed again at once is closed now.
+// "Clusters"). A pressed contact that opens so slowly that it would close again at once is closed now.
 void project_velocities(Group& g) {
     stop_within_interval(g);
     const std::vector<char> sticky = sticky_contacts(g);
     const bool any = std::any_of(sticky.begin(), sticky.end(), [](char s) { return s != 0; });
     if (!any || !project(g, sticky)) project(g, std::vector<char>(g.links.size(), 0));
-    // What stops now is a fixed obstacle to the others.
+    // Balls that stop now are fixed obstacles to the others.
     if (stop_slow_rolling(g)) project(g, std::vector<char>(g.links.size(), 0));
     for (Link& link : g.links) {
         link.open = gap_rate(g, link) > g.noise;

@@ -7,7 +7,7 @@ namespace carom {
 
 namespace {
 
-// Polynomials on the unit interval, b[k] in powers of s.
+// A quartic on the unit interval; b[k] is the coefficient of s^k.
 double value(const double (&b)[5], double s) {
     return b[0] + s * (b[1] + s * (b[2] + s * (b[3] + s * b[4])));
 }
@@ -18,8 +18,8 @@ double curvature(const double (&b)[5], double s) {
     return 2.0 * b[2] + s * (6.0 * b[3] + s * (12.0 * b[4]));
 }
 
-// The sign change of g in [lo, hi]: Newton kept in the bracket, bisection where Newton leaves it or does not
-// at least halve its step. The caller refines the result with the distance itself.
+// The sign change of g in [lo, hi]: Newton steps inside the bracket, bisection where a step would leave it or is not
+// at most half of the last one. The caller refines the result with the distance itself.
 template <class G, class D>
 double bracketed_root(G g, D dg, double lo, double hi, bool positive_at_lo) {
     double s = 0.5 * (lo + hi);
@@ -61,12 +61,12 @@ int unit_roots(double c0, double c1, double c2, double (&roots)[2]) {
     return inside;
 }
 
-// Follows f over its monotone pieces, which end at the critical points, and stops at the first descent.
+// Follows f over its monotone pieces, which end at its critical points, up to the first descent.
 class Descent {
   public:
     explicit Descent(const double (&b)[5]) : b_(b), above_(b[0] > 0.0) {}
 
-    // Goes on to the next end of a monotone piece; true if the answer is known.
+    // Advances to the next end of a monotone piece; true if the result is known.
     bool piece(double end, bool is_maximum) {
         const double y = value(b_, end);
         if (above_ && !(y > 0.0)) {
@@ -74,7 +74,7 @@ class Descent {
                                     [this](double s) { return slope(b_, s); }, at_, end, true);
             return true;
         }
-        if (!above_ && is_maximum && !(y > 0.0)) {  // touched all along and turns down: closing now
+        if (!above_ && is_maximum && !(y > 0.0)) {  // in contact since the start and now closing
             found_ = end;
             return true;
         }
@@ -102,7 +102,7 @@ double first_descent(const double (&c)[5], double T) {
         power *= T;
     }
     if (b[0] > 0.0) {
-        // Never falls, or all Bernstein coefficients positive: no root on [0, 1].
+        // If f never decreases, or all Bernstein coefficients are positive, there is no root on [0, 1].
         if (b[1] >= 0.0 && b[2] >= 0.0 && b[3] >= 0.0) return kNever;
         const double b1 = b[0] + b[1] / 4.0, b2 = b[0] + b[1] / 2.0 + b[2] / 6.0;
         const double b3 = b[0] + 0.75 * b[1] + 0.5 * b[2] + 0.25 * b[3],

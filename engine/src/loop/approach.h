@@ -1,4 +1,4 @@
-// How a ball comes to what it touches.
+// How a ball approaches what it touches.
 #pragma once
 
 #include "contact/contact.h"
@@ -6,22 +6,22 @@
 
 namespace carom {
 
-/// A ball at a contact, and how fast and how hard it is driven into it.
+/// A ball at a contact, with its closing speed and closing acceleration.
 struct Approach {
     Contact contact;
     Vec2 n;            ///< unit, from the ball to the other one or into the table's part
     double v_n = 0.0;  ///< [m/s] closing speed
-    double a_c = 0.0;  ///< [m/s^2] at which it grows
+    double a_c = 0.0;  ///< [m/s^2] closing acceleration
 };
 
-/// Of two balls that touch.
+/// The approach of two balls that touch.
 Approach approach_of(const Balls& balls, int one, int two);
 
-/// [m/s^2] At which the gap of two balls would close in these motions: by what ends a bounce, after an impact.
-/// Before it, slow balls that roll are braked, and seem to part.
+/// [m/s^2] Acceleration at which the gap of two balls closes in these motions. Those after an impact tell what ends a
+/// bounce; before it, slow rolling balls are decelerated and seem to separate.
 double closing_acceleration(const Vec2& n, const Segment& one, const Segment& two);
 
-/// Coefficient of friction of two balls that touch, at the slip that they have now.
+/// Coefficient of friction of two balls that touch, at their present slip.
 double pair_friction(const Plan& plan, const Balls& balls, int one, int two);
 
 }  // namespace carom

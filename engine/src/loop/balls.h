@@ -1,4 +1,4 @@
-// Where every ball is now. Everything in the loop reads it; Log::begin alone changes a segment.
+// The present motion of every ball. All parts of the loop read it; a motion is changed only through the Log.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ class Balls {
     explicit Balls(const Plan& plan) : plan_(plan), segments_(plan.sizes.size()) {}
 
     int count() const { return static_cast<int>(segments_.size()); }
-    /// The motion that the ball is in.
+    /// The present motion of the ball.
     const Segment& segment(int ball) const { return segments_[ball]; }
     void set(int ball, const Segment& segment) { segments_[ball] = segment; }
 

@@ -8,11 +8,11 @@ namespace carom {
 
 namespace {
 
-// Box2D fattens its boxes by 0.1 units: of a centimetre, that is little.
+// [1/m] Box2D enlarges its boxes by 0.1 units; with a unit of one centimetre that is 1 mm.
 constexpr double kUnitsPerMetre = 100.0;
-// [units] Beyond every table; sums and products of a few stay far from overflow in single precision.
+// [units] Far beyond every table; sums and products of a few such numbers do not overflow in single precision.
 constexpr double kFarthest = 1e15;
-// Conversion to float errs by at most 2^-24 of the value.
+// [-] Margin of the conversion to float, whose relative error is at most 2^-24.
 constexpr double kOutward = 0x1p-23;
 
 double scaled(double x) {
@@ -29,10 +29,10 @@ float up(double x) {
 
 // [-] Share of its circumference by which a block's box is widened in the tree.
 constexpr float kBlockMargin = 0.05f;
-// [-] Searches per box until blocks are formed anew: sorting costs about 100 ns a box.
+// [-] Searches per box until the blocks are formed again: sorting costs about 100 ns per box.
 constexpr long kSearchesPerBox = 4;
 
-constexpr float kNowhere = std::numeric_limits<float>::infinity();
+constexpr float kNowhere = std::numeric_limits<float>::infinity();  // bound of boxes that are not placed
 
 }  // namespace
 
@@ -75,7 +75,7 @@ void BoxSearch::place(int index, const Box& box) {
     const Rounded rounded = outward(box);
     const std::size_t s = slot(index);
     set(s, rounded);
-    if (!tree_ || proxy_[s / kBlock] < 0) return;  // before the first build there are no blocks
+    if (!tree_ || proxy_[s / kBlock] < 0) return;  // there are no blocks before the first build
     if (!tree_->GetFatAABB(proxy_[s / kBlock]).Contains(aabb_of(rounded))) update_block(s / kBlock);
 }
 
@@ -83,7 +83,7 @@ void BoxSearch::remove(int index) {
     set(slot(index), {kNowhere, kNowhere, -kNowhere, -kNowhere});
 }
 
-// Tells the tree where a block is now, with some room to move.
+// Passes the present box of a block to the tree, with a margin for motion.
 void BoxSearch::update_block(std::size_t block) {
     Rounded around{kNowhere, kNowhere, -kNowhere, -kNowhere};
     for (std::size_t i = block * kBlock; i < (block + 1) * kBlock; ++i) {
@@ -92,7 +92,7 @@ void BoxSearch::update_block(std::size_t block) {
         around.high_x = std::max(around.high_x, high_x_[i]);
         around.high_y = std::max(around.high_y, high_y_[i]);
     }
-    if (around.low_x > around.high_x) return;  // nothing is left in it
+    if (around.low_x > around.high_x) return;  // the block is empty
     b2AABB aabb = aabb_of(around);
     const float margin = kBlockMargin * (around.high_x - around.low_x + around.high_y - around.low_y);
     aabb.lowerBound -= b2Vec2(margin, margin);
@@ -100,7 +100,7 @@ void BoxSearch::update_block(std::size_t block) {
     tree_->MoveProxy(proxy_[block], aabb, b2Vec2(0.0f, 0.0f));
 }
 
-// Blocks of neighbours: strips of equal count by x, and within a strip by y.
+// Forms blocks of neighbours: strips with equal numbers of boxes, sorted by x, and sorted by y within a strip.
 void BoxSearch::rebuild() {
     const std::size_t count = slot_.size(), blocks = proxy_.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -113,7 +113,7 @@ void BoxSearch::rebuild() {
             return p < q || (p == q && i < j);
         };
     };
-    // What is out stands at infinity - infinity; any place will do for it, but a comparison must not be NaN.
+    // The sum of a removed box is infinity - infinity. Any order is correct for it, but NaN must not be compared.
     const auto finite = [](float sum) { return sum == sum ? sum : 0.0f; };
     const auto middle_x = [finite](const Rounded& r) { return finite(r.low_x + r.high_x); };
     const auto middle_y = [finite](const Rounded& r) { return finite(r.low_y + r.high_y); };
@@ -132,7 +132,7 @@ void BoxSearch::rebuild() {
     for (std::size_t b = 0; b < blocks; ++b) {
         if (proxy_[b] < 0) {
             const b2AABB nothing{b2Vec2(0.0f, 0.0f), b2Vec2(0.0f, 0.0f)};
-            // A number in the pointer that the tree keeps for us: nobody follows it.
+            // The user pointer of the tree stores the number of the block; it is never dereferenced.
             void* block = reinterpret_cast<void*>(b);  // NOLINT(performance-no-int-to-ptr): see above
             proxy_[b] = tree_->CreateProxy(nothing, block);
         }

@@ -1,7 +1,7 @@
-// Which boxes overlap a box? Boxes are in single precision, rounded outward: they only leave out, and what
-// they leave in is judged in double. Either all of them in one loop, four at a time, or first in Box2D's
-// dynamic tree, whose leaves are blocks of 64 neighbouring boxes, and then by that loop inside the blocks.
-// Both give the same set.
+// Finds the boxes that overlap a box. Boxes are in single precision and rounded outward: they only exclude pairs, and
+// the remaining pairs are decided in double precision. The search is either one loop over all boxes, four at a time,
+// or Box2D's dynamic tree, whose leaves are blocks of 64 neighbouring boxes, followed by that loop inside the blocks.
+// Both find the same set.
 #pragma once
 
 #include <box2d/b2_dynamic_tree.h>
@@ -18,7 +18,7 @@
 
 namespace carom {
 
-/// [share] Boxes that leave out far parts of the table are widened by this much: rounding stays inside.
+/// [-] Relative margin of the boxes that exclude distant balls and parts of the table: it covers rounding.
 inline constexpr double kBoxShare = 1e-9;
 
 /// A rectangle on the table [m].
@@ -28,23 +28,23 @@ struct Box {
 
 class BoxSearch {
   public:
-    /// All boxes are out until they are placed.
+    /// Boxes are not found until they are placed.
     void set_up(int count, Search kind);
 
     void place(int index, const Box& box);
     void remove(int index);
-    /// Call between placing and searching: now and then, blocks are formed anew of what has become neighbours.
+    /// Call between placing and searching: from time to time it forms the blocks again from the present neighbours.
     void settle() {
         if (tree_ && --until_rebuild_ <= 0) rebuild();
     }
 
-    /// Calls found(index) for every placed box that overlaps or touches `box`; in the order of the indices
-    /// unless the search is a tree.
+    /// Calls found(index) for every placed box that overlaps or touches `box`, in the order of the indices unless
+    /// the search uses the tree.
     template <class Found>
     void overlapping(const Box& box, Found found) const {
         search(outward(box), found);
     }
-    /// The same for a placed box; itself is not found.
+    /// The same for a placed box, which is not found itself.
     template <class Found>
     void neighbours(int index, Found found) const {
         const std::size_t i = slot(index);
@@ -54,7 +54,7 @@ class BoxSearch {
     }
 
   private:
-    static constexpr std::size_t kBlock = 64;
+    static constexpr std::size_t kBlock = 64;  // [-] boxes per block
     struct Rounded {
         float low_x, low_y, high_x, high_y;
     };
@@ -78,12 +78,12 @@ class BoxSearch {
         const BoxSearch& boxes;
         const Rounded& box;
         Found& found;
-        bool QueryCallback(int proxy);  // Box2D's name
+        bool QueryCallback(int proxy);  // the name that Box2D requires
     };
 
-    // Per slot; padded with boxes that overlap nothing.
+    // One entry per slot; padded with boxes that overlap nothing.
     std::vector<float> low_x_, low_y_, high_x_, high_y_;
-    // With the tree: which box stands in which slot, and a proxy for every block of slots.
+    // With the tree: the slot of each box, the box in each slot, and the proxy of each block of slots.
     std::unique_ptr<b2DynamicTree> tree_;
     std::vector<int> slot_, index_, proxy_;
     std::vector<Rounded> sorted_;

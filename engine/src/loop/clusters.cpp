@@ -8,8 +8,8 @@ namespace carom {
 
 namespace {
 
-// An order of places that mirrors in the axes and quarter turns keep, up to the order of mirror images among
-// themselves: so do the sums of a cluster, to the last bit.
+// An order of positions that reflections in the axes and quarter turns preserve, except for the order of mirror images
+// among themselves. The sums of a cluster therefore have the same symmetry to the last bit.
 bool before_place(const Vec2& p, const Vec2& q) {
     const auto key = [](const Vec2& a) {
         const double x = std::abs(a.x()), y = std::abs(a.y());
@@ -28,7 +28,7 @@ Gap gap_of(const ClusterBall& p, const ClusterBall& q, double R) {
     const Vec2 apart = planar(q.r) - planar(p.r);
     const double distance = length(apart);
     Gap near{distance - 2.0 * R, 0.0, apart / distance};
-    // Gaps are decided once, here: rounding of the positions counts as touching.
+    // Whether balls touch is decided only here: a gap within the rounding of the positions counts as touching.
     if (near.gap <= kTouchUlp * R) near.gap = 0.0;
     near.closing = dot(near.n, planar(p.v) - planar(q.v));
     return near;
@@ -43,9 +43,9 @@ ClusterBall Clusters::member(int ball) const {
     return {ball, balls_.position(ball), balls_.velocity(ball), balls_.spin(ball)};
 }
 
-// Breadth first from the pair: every ball that can be reached while the contact lasts (equation 5); then all
-// their contacts. The fastest approach among them sets the scale of the map: a pair may begin to touch very
-// slowly while its neighbours are about to meet at full speed.
+// Breadth-first search from the pair: finds every ball that can be reached during the contact (equation 5), then all
+// contacts between them. The fastest approach among them sets the scale of the map: a pair may touch very slowly
+// while its neighbours are about to collide at full speed.
 double Clusters::collect(int a, int b, double v_n) {
     for (;;) {
         collect_at(a, b, v_n);
@@ -59,8 +59,8 @@ double Clusters::collect(int a, int b, double v_n) {
     }
 }
 
-// Whoever is no more than `gap` from the ball has a box that overlaps this one: boxes hold where a ball is
-// now, and the share keeps rounding inside.
+// Every ball within `gap` of this ball has a box that overlaps the result: the box of a ball contains its present
+// position, and the margin covers rounding.
 Box Clusters::near_box(const ClusterBall& ball, double gap) const {
     const double x = ball.r.x(), y = ball.r.y();
     const double half =
@@ -69,7 +69,7 @@ Box Clusters::near_box(const ClusterBall& ball, double gap) const {
 }
 
 void Clusters::collect_at(int a, int b, double v_n) {
-    const double R = balls_.radius(a);  // alike, but perhaps not those of [balls]
+    const double R = balls_.radius(a);  // equal for all, but perhaps not that in [balls]
     const double time = plan_.clusters == ClusterModel::kCompliant ? contact_time(v_n) : 0.0;
     const auto reach = [&](const Gap& near) { return time * (std::max(0.0, near.closing) + v_n); };
     members_.clear();
@@ -79,7 +79,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
     for (std::size_t k = 0; k < members_.size(); ++k) {
         const ClusterBall here = members_[k];
         const double most = time * (length(planar(here.v)) + detector_.fastest() + v_n);
-        // In no order; who belongs to the cluster does not depend on it, and the sort below is by place.
+        // The order is arbitrary: the members of the cluster do not depend on it, and they are sorted below.
         detector_.balls_near(near_box(here, most), [&](int q) {
             const bool known = std::any_of(members_.begin(), members_.end(),
                                            [q](const ClusterBall& m) { return m.ball == q; });
@@ -101,7 +101,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
                 contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap});
         }
     }
-    // By place; insertion keeps the order of equals and needs no memory.
+    // Sort by position; insertion sort preserves the order of equal elements and needs no memory.
     const auto place = [this](const ClusterContact& c) {
         return Vec2(planar(members_[c.i].r) + planar(members_[c.j].r));
     };
@@ -119,7 +119,7 @@ long Clusters::resolve(double v_n, double mu_b) {
     const double e_b = plan_.ball_ball->reads_friction ? p.e_b : 1.0;
     if (plan_.clusters == ClusterModel::kRigid) return map_.rigid(members_, contacts_, p.e_b);
     const ClusterSettings settings{
-        .R = balls_.radius(members_.front().ball),  // alike
+        .R = balls_.radius(members_.front().ball),  // equal for all members
         .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
         .mu_b = mu_b,
         .e_b = e_b,
@@ -128,7 +128,7 @@ long Clusters::resolve(double v_n, double mu_b) {
         .longest_step = mu_b > 0.0 ? kClusterFrictionStep : kClusterStep,
         .integrate = plan_.contact_phase};
     const long steps = map_.compliant(members_, contacts_, settings, v_n);
-    // Friction and a wedge can keep balls pressed together without end: then as if they were rigid.
+    // Friction and a wedge can press balls together without end: the cluster is then resolved as rigid.
     return steps < 0 ? map_.rigid(members_, contacts_, p.e_b) : steps;
 }
 

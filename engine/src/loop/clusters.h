@@ -1,4 +1,4 @@
-// Ball-ball impacts with a third ball within reach: which balls belong to one, and what it does to them.
+// Ball-ball impacts with a third ball within reach: finds the members of such a cluster and their motion after it.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +16,17 @@ class Clusters {
 
     /// Finds the cluster of two balls that meet at v_n [m/s]. @return the fastest approach in it [m/s]
     double collect(int a, int b, double v_n);
-    /// Of the last collect(); two balls and no contacts where there is no third one.
+    /// Result of the last collect(); without a third ball, two balls and no contacts.
     const std::vector<ClusterBall>& balls() const { return members_; }
     const std::vector<ClusterContact>& contacts() const { return contacts_; }
 
     /// Replaces the velocities and spins of balls() by those after the impact.
     /// @param v_n   [m/s] the fastest approach
-    /// @param mu_b  friction between the balls
-    /// @return steps of the map
+    /// @param mu_b  [-] friction between the balls
+    /// @return number of steps of the map
     long resolve(double v_n, double mu_b);
 
-    /// How many balls collect() has looked at beside the two that met; tests count them.
+    /// Number of balls that collect() has examined besides the two of the impact; used by tests.
     std::int64_t looks() const { return looks_; }
 
   private:

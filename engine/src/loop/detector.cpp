@@ -7,14 +7,14 @@ namespace carom {
 
 namespace {
 
-// Order of what happens at one and the same time. The end of a cushion counts as the cushion.
+// Order of simultaneous events. The end of a cushion counts as the cushion.
 int rank(With with) {
     return static_cast<int>(std::min(with, With::kCushion));
 }
 
 }  // namespace
 
-// All memory of the search is taken here.
+// Allocates all memory of the search.
 Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& resting, Costs* costs)
     : plan_(plan),
       balls_(balls),
@@ -30,7 +30,7 @@ Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& 
     set_up_table();
 }
 
-// Closing speed of a contact at its time: at one instant the deepest closing goes first.
+// Measure of the closing speed of a contact at its time: of simultaneous contacts, the one with the greatest is first.
 double Detector::closing(const Candidate& c) const {
     if (c.contact.with != With::kBall) return 0.0;
     const Segment &s = balls_.segment(c.contact.ball), &q = balls_.segment(c.contact.other);
@@ -62,7 +62,7 @@ Vec2 Detector::place(const Candidate& c) const {
     return here;
 }
 
-// Order of candidates at one instant: kind, then the deeper closing, then the place (x, then y). Never an id.
+// Order of simultaneous candidates: kind, then greater closing(), then position (x, then y); never an id.
 bool Detector::before_at_once(const Candidate& x, const Candidate& y) const {
     const int rank_x = rank(x.contact.with), rank_y = rank(y.contact.with);
     if (rank_x != rank_y) return rank_x < rank_y;
@@ -88,7 +88,7 @@ Candidate Detector::first_of(int ball) const {
     return first;
 }
 
-// Finds the places in the queue of the balls whose candidates have changed.
+// Updates the queue for the balls whose candidates have changed.
 void Detector::requeue() {
     for (const int ball : changed_) {
         Mover& mover = mover_[ball];
@@ -104,7 +104,7 @@ void Detector::requeue() {
     changed_.clear();
 }
 
-// On the way, contacts are searched again for balls whose box has expired or whose partner has changed its motion.
+// Re-detection: contacts are searched again for balls whose box has expired or whose partner has changed its motion.
 Candidate Detector::next() {
     const Stopwatch watch(detect_ns_);
     for (;;) {
@@ -120,13 +120,13 @@ Candidate Detector::next() {
     }
 }
 
-// A ball's own part after an event that touched it: its transition, the table, its box.
+// Updates the data of one ball after an event that changed its motion: its transition, table contact and box.
 void Detector::renew(int ball) {
     const Segment& s = balls_.segment(ball);
     const double R = balls_.radius(ball);
     Mover& mover = mover_[ball];
     mover.surface = R * std::sqrt(s.w.x() * s.w.x() + s.w.y() * s.w.y() + s.w.z() * s.w.z());
-    // A free ball rolls straight ahead; one in a resting contact is pushed aside.
+    // A free ball rolls along a straight line; a ball in a resting contact may be pushed sideways.
     mover.straight =
         (s.state == MotionState::kRolling && !s.held) || s.v.x() * s.a.y() - s.v.y() * s.a.x() == 0.0;
     mover.travel = plan_.box_travel * R;
@@ -150,7 +150,7 @@ void Detector::update(std::vector<int>& touched) {
     const Stopwatch watch(detect_ns_);
     {
         const Stopwatch search(search_ns_);
-        if (touched.size() > 1) {  // most events touch one ball
+        if (touched.size() > 1) {  // most events change one ball
             std::sort(touched.begin(), touched.end());
             touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
         }

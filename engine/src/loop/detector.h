@@ -1,7 +1,7 @@
-// Which contact or transition comes next. Every ball has three candidates: its own transition, its first contact
-// with the table and its first contact with another ball. Boxes leave out what a ball cannot meet before its own
-// next event (the broad phase), closed forms find the times of the rest (contact/detect.h), and a tournament keeps
-// the order of all balls. Split over detector.cpp (the order), pair_search.cpp and table_search.cpp.
+// Finds the next contact or state transition. Every ball has three candidates: its state transition, its first contact
+// with the table and its first contact with another ball. Boxes exclude what a ball cannot reach before its own next
+// event (broad phase), closed forms give the times of the other contacts (contact/detect.h), and a tournament orders
+// all balls. Implemented in detector.cpp (the order), pair_search.cpp and table_search.cpp.
 #pragma once
 
 #include <algorithm>
@@ -19,47 +19,47 @@
 
 namespace carom {
 
-/// Something that will happen unless an earlier event changes it.
+/// An event that will happen unless an earlier event prevents it.
 struct Candidate {
     double time = kNever;
-    Contact contact;          ///< With::kNothing: the ball's own transition
-    std::uint32_t stamp = 0;  ///< of a pair: the partner's motion when this was found
+    Contact contact;          ///< With::kNothing: the state transition of the ball
+    std::uint32_t stamp = 0;  ///< for a pair: Mover::stamp of the partner when this was found
 };
 
 class Detector {
   public:
-    /// @param costs  of a profiled run, else nullptr
+    /// @param costs  receives the costs of a profiled run; otherwise nullptr
     Detector(const Plan& plan, const Balls& balls, const RestingContacts& resting, Costs* costs);
 
-    /// Looks for the contacts of balls whose motion has changed, and empties the list. All balls come first.
+    /// Searches the contacts of the balls whose motion has changed, and clears the list. At first it needs all balls.
     void update(std::vector<int>& touched);
-    /// The next candidate; its time is kNever if nothing is to come.
+    /// The next candidate; its time is kNever if there is none.
     Candidate next();
 
-    /// Calls found(ball) for every ball whose box overlaps this one; a ball is always inside its box.
+    /// Calls found(ball) for every ball whose box overlaps this box; a ball is always inside its box.
     template <class Found>
     void balls_near(const Box& box, Found found) const {
         ball_boxes_.overlapping(box, found);
     }
-    /// [m/s] No ball has been faster (where clusters = "compliant" asks for it, else 0).
+    /// [m/s] Upper bound of the speeds of all balls so far (0 unless clusters = "compliant", which needs it).
     double fastest() const { return fastest_; }
 
   private:
-    /// What is kept for a ball beside its segment: two cache lines.
+    /// The data of a ball besides its segment: two cache lines.
     struct alignas(64) Mover {
         double until =
             kNever;            ///< the box is valid until this time; contacts after it have not been searched
         double own = kNever;   ///< time of the ball's transition
         double surface = 0.0;  ///< R |w| at the start of the segment [m/s]
-        std::uint32_t stamp = 0;  ///< changes with the segment
+        std::uint32_t stamp = 0;  ///< incremented with every new segment
         std::uint32_t round = 0;  ///< last search in which the ball was new
-        /// First contact with another ball. It is kept until it comes up, even if the partner's motion has
-        /// changed meanwhile: it is then not later than the true one.
+        /// First contact with another ball. It stays until it is the next candidate, even if the motion of the partner
+        /// has changed: it is then not later than the true first contact.
         Candidate pair;
         Candidate table;  ///< first contact with the table
-        /// Expiry of the box; kNever where an event of the ball's own comes first
+        /// Time at which the box expires; kNever if an event of the ball itself is earlier
         double refresh = kNever;
-        double travel = 0.0;  ///< [m] the way that the next box is to cover
+        double travel = 0.0;  ///< [m] distance that the next box covers
         bool straight = false, queued = false;
     };
 
@@ -94,27 +94,27 @@ class Detector {
     void search_table(int ball);
     double time_to(const Contact& contact, const Path& path, double window) const;
 
-    /// From one time to another, on the long side of its rounding.
+    /// The duration from one time to another, rounded up.
     static double span(double from, double to) { return (to - from) + 0x1p-50 * to; }
 
     const Plan& plan_;
     const Balls& balls_;
     const RestingContacts& resting_;
-    double *detect_ns_, *search_ns_;  // sums of a profiled run, else nullptr
+    double *detect_ns_, *search_ns_;  // sums of a profiled run; otherwise nullptr
     std::vector<Mover> mover_;
-    std::vector<double> key_;   // per ball: when the loop has to look at it
-    std::vector<int> changed_;  // balls whose place in the queue is to be found anew
+    std::vector<double> key_;   // per ball: time of its first candidate or of the expiry of its box
+    std::vector<int> changed_;  // balls whose position in the queue must be updated
     EventQueue queue_;
     BoxSearch ball_boxes_,
         table_boxes_;             // of balls until their own next event, and of the parts of the table
     std::vector<Contact> parts_;  // cushions, then noses, then pockets; without a ball
-    std::vector<int> near_;       // parts that a ball can come to
+    std::vector<int> near_;       // parts that a ball can reach
     std::uint32_t round_ = 0;
     double fastest_ = 0.0;
 };
 
-// Motion of a ball from the time `from` on. Contacts are sought from the start of the segments concerned, not
-// from now: the answer is then a function of the segments alone, whenever it is computed.
+// Motion of a ball from the time `from` on. Contacts are searched from the start of the segments concerned, not from
+// the present time: the result then depends only on the segments, not on when it is computed.
 inline Path Detector::path(int ball, double from) const {
     const Segment& s = balls_.segment(ball);
     const Mover& mover = mover_[ball];

@@ -1,5 +1,5 @@
-// Which ball's next event comes first: a tournament over all balls. The winner is at the root; a ball whose
-// event changed replays its own matches only, log2 n of them. Memory is fixed by set_up.
+// Finds the ball whose next event is first: a tournament over all balls with the winner at the root. A ball whose
+// event changed replays only its own log2 n matches. All memory is allocated by set_up().
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@ namespace carom {
 
 class EventQueue {
   public:
-    /// `count` players; each must be given to update() once before first() means anything.
+    /// Starts with `count` players; update() must be called once for each of them before first() is valid.
     void set_up(int count) {
         leaves_ = 1;
         while (leaves_ < count) leaves_ *= 2;
@@ -17,24 +17,24 @@ class EventQueue {
             winner_[static_cast<std::size_t>(leaves_) + static_cast<std::size_t>(i)] = i;
     }
 
-    /// Replays the matches of player i. earlier(x, y): x comes before y, a strict weak order.
+    /// Replays the matches of player i. earlier(x, y): whether x is before y; a strict weak order.
     template <class Earlier>
     void update(int i, Earlier earlier) {
         for (std::size_t node = static_cast<std::size_t>(leaves_ + i) / 2; node > 0; node /= 2) {
             const int left = winner_[2 * node], right = winner_[2 * node + 1];
             const int winner = left < 0 || (right >= 0 && earlier(right, left)) ? right : left;
-            // Above this match nobody sees a difference.
+            // The result of this match, and hence of all matches above, is unchanged.
             if (winner == winner_[node] && winner != i) return;
             winner_[node] = winner;
         }
     }
 
-    /// The winner; -1 of no players.
+    /// The winner; -1 if there are no players.
     int first() const { return winner_[1]; }
 
   private:
     int leaves_ = 1;
-    std::vector<int> winner_;  // of the match at each node; the leaves stand behind
+    std::vector<int> winner_;  // of the match at each node; the leaves follow the inner nodes
 };
 
 }  // namespace carom

@@ -12,7 +12,7 @@ namespace carom {
 
 namespace {
 
-// [-] Segments and events that a log has room for at first: what a break takes. Then it doubles.
+// [-] Initial capacity for segments and events: enough for a break. It doubles when it is exceeded.
 constexpr std::size_t kRoom = 256;
 
 }  // namespace
@@ -79,7 +79,7 @@ void Log::end_set_up(double set_up_ns) {
     *costs_ = {};
 }
 
-// A round can bring several events: the first one carries the cost. Or none: then the next event does.
+// An iteration can cause several events: the first one gets the cost. If it causes none, the next event gets it.
 void Log::book_costs() {
     record_.costs.resize(record_.events.size());
     EventCost& cost = costs_->event;
@@ -88,7 +88,7 @@ void Log::book_costs() {
         record_.costs[events_before_] = cost;
         *costs_ = {};
     } else {
-        cost.steps = 0;  // of an impact that came to nothing
+        cost.steps = 0;  // of an impact that caused no event
         cost.method = {};
     }
 }
@@ -124,7 +124,7 @@ void Log::fail(const std::string& why) const {
         text += fmt::format("  {} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", id(i),
                             name(s.state), r.x(), r.y(), v.x(), v.y(), w.x(), w.y(), w.z());
     }
-    text.pop_back();  // a message ends without a line end
+    text.pop_back();  // a message has no final line break
     throw SimulationError(text);
 }
 

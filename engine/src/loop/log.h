@@ -1,4 +1,4 @@
-// What has happened so far, and who is told of it.
+// The record of the simulation so far, and the reports of progress and errors.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +16,16 @@
 namespace carom {
 
 class Log {
-    /// [-] Most rounds of the loop in a row without an event: more is reported as a run that has stalled.
+    /// [-] Most consecutive iterations without an event; more are reported as a stalled simulation.
     static constexpr int kQuietCap = 1000000;
 
   public:
     Log(const Plan& plan, const SimulateOptions& options, Balls& balls);
 
-    /// Goes on after this record; the balls take the last motions in it.
+    /// Continues after this record; the balls get the last motions in it.
     void resume(const Record& so_far);
 
-    /// The ball moves like this from now on.
+    /// Starts a new motion of the ball at the present time.
     void begin(int ball, const Segment& segment) {
         balls_.set(ball, segment);
         segments_.push_back({segment, ball});
@@ -35,35 +35,35 @@ class Log {
         record_.events.push_back({balls_.now(), type, ball, partner, detail});
         quiet_rounds_ = 0;
     }
-    /// Of a ball and a part of the table, or of two balls.
+    /// An event of a ball and a part of the table, or of two balls.
     void event(EventType type, const Contact& contact) {
         event(type, contact.ball, event_partner(contact, geometry_), event_detail(contact));
     }
-    /// An impact of many balls at once, where a and b met; `balls` in the order of their places.
+    /// A simultaneous impact of several balls, begun by a and b; `balls` are ordered by position.
     void cluster(int a, int b, const std::vector<ClusterBall>& balls);
     void pocketed(int ball, int pocket);
 
     const std::vector<Event>& events() const { return record_.events; }
-    /// Balls whose motion has changed; whoever looks for contacts empties it.
+    /// Balls whose motion has changed; Detector::update() clears the list.
     std::vector<int>& touched() { return touched_; }
     const std::string& id(int ball) const { return record_.tracks[ball].id; }
 
-    /// Stopwatches of a profiled run, else nullptr.
+    /// Costs of a profiled run; otherwise nullptr.
     Costs* costs() { return costs_ ? &*costs_ : nullptr; }
-    /// Around everything before the first round.
+    /// Ends the preparation before the first iteration, which took set_up_ns [ns].
     void end_set_up(double set_up_ns);
     void begin_round() {
         events_before_ = record_.events.size();
         ++quiet_rounds_;
     }
-    /// Books the costs, tells SimulateOptions::progress. @throws SimulationError where events or rounds without
-    /// one pile up
+    /// Books the costs and calls SimulateOptions::progress. @throws SimulationError if there are too many events in
+    /// a short time, or too many iterations without an event
     void end_round() {
         if (is_crowded() || quiet_rounds_ > kQuietCap) fail_crowded();
         if (costs_) book_costs();
         if (options_.progress) tell_progress();
     }
-    /// The present round took long by itself, so that progress is told at once.
+    /// Marks the present iteration as long, so that progress is reported at its end.
     void note_long_round() { long_round_ = true; }
 
     /// @throws SimulationError with the state of all balls that move
@@ -91,16 +91,16 @@ class Log {
     const Geometry& geometry_;
     bool has_clusters_;
     Record record_;
-    // Segments and clusters of this run, in the order in which they came; finish() deals them out.
+    // Segments and clusters of this run in chronological order; finish() distributes them to the balls.
     std::vector<BallSegment> segments_;
     std::vector<int> cluster_ball_;
     std::vector<std::size_t> cluster_end_;
     std::vector<int> touched_;
     std::optional<Costs> costs_;
-    std::size_t events_before_ = 0;  // this round
-    int quiet_rounds_ = 0;           // in a row, without an event
-    int rounds_untold_ = 0;          // since the last call of options_.progress
-    bool long_round_ = false;        // one of them took long by itself
+    std::size_t events_before_ = 0;  // number of events before this iteration
+    int quiet_rounds_ = 0;           // consecutive iterations without an event
+    int rounds_untold_ = 0;          // iterations since the last call of options_.progress
+    bool long_round_ = false;        // whether one of these was long (note_long_round())
 };
 
 }  // namespace carom

@@ -1,4 +1,4 @@
-// Contacts of balls with each other.
+// Search for contacts between balls.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@ namespace {
 void extend(double r, double v, double a, double T, double margin, double& low, double& high) {
     low = high = r;
     if (v != 0.0 || a != 0.0) {
-        if (!(T < kNever)) {  // for ever, and then there is no telling
+        if (!(T < kNever)) {  // unlimited time: no bound
             low = -kNever;
             high = kNever;
             return;
@@ -32,7 +32,7 @@ void extend(double r, double v, double a, double T, double margin, double& low, 
 
 }  // namespace
 
-// Where the ball's surface can be from the time `from` until `duration` later; the share keeps rounding inside.
+// Box that contains the ball from the time `from` until `duration` later; the relative margin covers rounding.
 Box Detector::swept(int ball, double from, double duration) const {
     const Segment& s = balls_.segment(ball);
     const Vec3 r = position_at(s, from - s.start), v = velocity_at(s, from - s.start);
@@ -44,8 +44,8 @@ Box Detector::swept(int ball, double from, double duration) const {
     return box;
 }
 
-// The box of a ball from the time `from` until its own transition or contact with the table, or until it has gone
-// as far as its box is to cover.
+// Places the box of a ball, valid from the time `from` until its state transition, its contact with the table, or until
+// the ball may have moved by Mover::travel.
 void Detector::bound(int ball, double from) {
     Mover& mover = mover_[ball];
     const Segment& s = balls_.segment(ball);
@@ -62,8 +62,8 @@ void Detector::bound(int ball, double from) {
     ball_boxes_.place(ball, swept(ball, from, mover.until - from));
 }
 
-// First contact of two balls, unless it comes later than `latest` or than what either does next: their contacts are
-// searched again then. `mine` is the path of ball a from the start of its segment.
+// First contact of two balls. It may be omitted if it is later than `latest` or than the next own event of one of them,
+// after which its contacts are searched again. `mine` is the path of ball a from the start of its segment.
 Candidate Detector::pair(int a, const Path& mine, int b, double latest) const {
     const Segment &s = balls_.segment(a), &q = balls_.segment(b);
     if (!mine.moves && !translates(q.state)) return {};
@@ -84,12 +84,12 @@ void Detector::offer(int ball, int partner, Candidate c) {
     mark_changed(ball);
 }
 
-// All contacts of one ball, each offered to both.
+// Finds the contacts of one ball with others and offers each to both balls.
 void Detector::search_pairs(int ball) {
     ball_boxes_.settle();
     const Path mine = path(ball, balls_.segment(ball).start);
     ball_boxes_.neighbours(ball, [this, ball, &mine](int other) {
-        // Of two new balls the first one has done it.
+        // The pair of two changed balls has already been searched for the one with the smaller index.
         if (mover_[other].round == round_ && other < ball) return;
         if (resting_.has({ball, With::kBall, other})) return;
         const double latest = std::max(mover_[ball].pair.time, mover_[other].pair.time);
@@ -100,15 +100,15 @@ void Detector::search_pairs(int ball) {
     });
 }
 
-// A bound on the speed of every ball that the search for clusters asks for: speeds are largest at an end of a
-// segment. It only grows, for it is no more than a bound; nothing that is computed depends on it.
+// Updates the upper bound of all speeds, which the search for clusters needs. Within a segment the speed is largest at
+// one of its ends. The bound only increases; no result depends on its value.
 void Detector::bound_speed(const Segment& s) {
     fastest_ = std::max(fastest_, length(planar(s.v)));
     if (s.a == Vec2::Zero()) return;
     fastest_ = std::max(fastest_, s.duration < kNever ? length(planar(velocity_at(s, s.duration))) : kNever);
 }
 
-// Without an event: the ball's box has expired, or the contact that it was waiting for does not come.
+// Re-detection without an event: the box of the ball has expired, or its expected contact does not happen.
 void Detector::search_again(int ball) {
     const Stopwatch watch(search_ns_);
     Mover& mover = mover_[ball];
@@ -117,7 +117,7 @@ void Detector::search_again(int ball) {
     const bool expired = refresh <= key_[ball];
     mover.pair = {};
     if (expired) {
-        // Twice the way each time: a ball that meets nobody for ever is asked a finite number of times.
+        // The distance doubles each time, so that the number of searches for a ball without contacts is finite.
         mover.travel *= 2.0;
         bound(ball, refresh);
     }

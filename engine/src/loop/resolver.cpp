@@ -11,7 +11,7 @@ namespace carom {
 
 namespace {
 
-// [-] An impact of more steps is long work by itself, about 20 us: the caller is told of progress.
+// [-] An impact with at least this many steps takes long (about 20 us): progress is reported after it.
 constexpr int kLongImpact = 1000;
 
 kernel::Ball kernel_ball(const Vec3& r, const Vec3& v, const Vec3& w) {
@@ -54,13 +54,13 @@ void Resolver::resolve(const Contact& contact) {
     }
 }
 
-// What a ball does after an impact.
+// Starts the motion of a ball after an impact.
 void Resolver::begin(int ball, const Vec3& r, const Vec3& v, const Vec3& w) {
     log_.begin(ball, start_segment(balls_.now(), r, v, w, balls_.motion(ball)));
 }
 
 void Resolver::ball_ball(int a, int b) {
-    // Ball 1 is the one further left, then nearer: relabelling the balls changes no bit.
+    // Ball 1 is the one with the smaller x, then y: the result does not depend on the ids, to the last bit.
     const Vec3 ra = balls_.position(a), rb = balls_.position(b);
     const bool swap = rb.x() < ra.x() || (rb.x() == ra.x() && rb.y() < ra.y());
     const int one = swap ? b : a, two = swap ? a : b;
@@ -118,8 +118,8 @@ kernel::ImpactResult Resolver::collide(int one, int two, const kernel::Ball& b1,
     return result;
 }
 
-// A slow cluster may hold a contact that is pressed together, behind the one that met first: resting, it drives
-// that one too. Bounced off together they would meet again and again.
+// A slow cluster may contain another contact that is pressed together, besides the one that met first. As a resting
+// contact it drives that one too; after a common bounce they would meet again and again.
 bool Resolver::hold_in_cluster(Pressed when) {
     const auto segment = [this](const ClusterBall& b) {
         return start_segment(balls_.now(), b.r, b.v, b.w, balls_.motion(b.ball));
@@ -134,11 +134,11 @@ bool Resolver::hold_in_cluster(Pressed when) {
     return false;
 }
 
-// True if the impact was a cluster's, or one of its contacts is a resting one now; false leaves it to the pair kernel.
+// @return true if a cluster was resolved, or one of its contacts became a resting contact; false: use the pair kernel
 bool Resolver::cluster(int a, int b, double v_n) {
     v_n = clusters_.collect(a, b, v_n);
     if (clusters_.balls().size() < 3) return false;
-    // Balls that close so slowly that friction alone might end their bounce before the contact has ended.
+    // Whether the balls close so slowly that friction alone could end the rebound within the Hertz contact time.
     const bool slow = holds(v_n, 2.0 * plan_.motion.front().slide, plan_.balls.e_b);
     if (slow && hold_in_cluster(Pressed::kBefore)) return true;
     log_.note_long_round();
@@ -202,7 +202,8 @@ void Resolver::cushion(const Contact& contact) {
                         model.name, log_.id(ball)));
     const MotionParams& motion = balls_.motion(ball);
     const Segment after = start_segment(balls_.now(), r, v, w, motion);
-    // A ball that rolls in slowly is braked; what brings it back, and ends the bounce, is the spin that it keeps.
+    // A ball that rolls in slowly is decelerated before the impact, but the spin that it keeps drives it back to the
+    // cushion and ends the bounce: the acceleration after the impact decides.
     approach.a_c = pressing(after.a);
     if (holds(approach.v_n, motion.slide, p.e_c) && resting_.try_hold(approach, p.e_c)) return;
     if (cost_ != nullptr) cost_->method = model.name;

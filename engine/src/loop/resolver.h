@@ -1,4 +1,4 @@
-// What happens to the balls when a candidate comes: impacts and transitions.
+// Computes the effect of a candidate on the balls: impacts and state transitions.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ class Resolver {
     Resolver(const Plan& plan, const Balls& balls, Log& log, RestingContacts& resting,
              const Detector& detector);
 
-    /// At Balls::now(). @throws SimulationError where a model finds no solution
+    /// Resolves the event at Balls::now(). @throws SimulationError if a model finds no solution
     void resolve(const Contact& contact);
 
     const Clusters& clusters() const { return clusters_; }
@@ -23,7 +23,7 @@ class Resolver {
   private:
     void ball_ball(int a, int b);
     bool cluster(int a, int b, double v_n);
-    /// By what the balls do before the impact, or after it.
+    /// Whether the accelerations before or after the impact decide if balls are pressed together.
     enum class Pressed : std::uint8_t { kBefore, kAfter };
     bool hold_in_cluster(Pressed when);
     kernel::ImpactResult collide(int one, int two, const kernel::Ball& b1, const kernel::Ball& b2);
@@ -37,7 +37,7 @@ class Resolver {
     Log& log_;
     RestingContacts& resting_;
     Clusters clusters_;
-    EventCost* cost_;  // of a profiled run, else nullptr
+    EventCost* cost_;  // of a profiled run; otherwise nullptr
     double *resolve_ns_, *kernel_ns_;
 };
 

@@ -10,8 +10,8 @@ namespace carom {
 
 namespace {
 
-// [-] A contact that has bounced this often within kEventCapSpan becomes a resting one. A row of 15 elastic balls
-// taken pair by pair needs 30, the last bounces before a contact rests about 100.
+// [-] A contact that has bounced this often within kEventCapSpan becomes a resting contact. A row of 15 elastic balls,
+// resolved pair by pair, needs 30 bounces; the last bounces before a contact rests are about 100.
 constexpr int kMostBounces = 200;
 
 EventType with_phase(EventPhase phase, const Contact& contact, const Geometry& geometry) {
@@ -23,7 +23,7 @@ EventType with_phase(EventPhase phase, const Contact& contact, const Geometry& g
         ->type;
 }
 
-/// The contact that an event is about: the inverse of Log::event.
+/// The contact of an event: the inverse of Log::event.
 Contact contact_of(const Event& event) {
     switch (kind(event.type).partner) {
         case Partner::kBall:
@@ -54,11 +54,11 @@ bool RestingContacts::find(const Contact& contact) const {
                        [&](const RestingContact& c) { return c.contact.same(contact); });
 }
 
-// A contact becomes a resting one if
-//  - a ball that rests on something closes by no more than the rounding of the velocities in its group, or
-//  - the bounce would be over before the Hertz contact itself is (holds()), or
-//  - it has bounced again and again in no time (Zeno behaviour, as in a wedge whose sides take the speed out of
-//    each other): the limit of such a sequence is the resting contact.
+// A contact becomes a resting contact if
+//  - a ball is already in a resting contact and the closing speed is within the rounding of the group's velocities, or
+//  - the rebound would be shorter than the Hertz contact time (holds()), or
+//  - it has bounced kMostBounces times within kEventCapSpan (Zeno behaviour, as in a wedge with a plastic side): the
+//    limit of such a sequence is the resting contact.
 bool RestingContacts::try_hold(const Approach& a, double restitution) {
     const Contact& c = a.contact;
     const int partner = c.partner();
@@ -75,7 +75,7 @@ bool RestingContacts::try_hold(const Approach& a, double restitution) {
     return true;
 }
 
-// Read from the log, so that a run that is resumed decides alike.
+// Determined from the log, so that a resumed run decides in the same way.
 bool RestingContacts::chatters(const Contact& contact) const {
     int bounces = 0;
     const std::vector<Event>& events = log_.events();
@@ -89,7 +89,7 @@ bool RestingContacts::chatters(const Contact& contact) const {
     return false;
 }
 
-// [m/s] What rounding makes of closing speeds beside the resting contacts that there are.
+// [m/s] Rounding error of closing speeds, given the present resting contacts.
 double RestingContacts::rounding_with(const Contact& contact) const {
     double noise = 0.0;
     const auto add = [&](const Contact& c) {
@@ -120,7 +120,7 @@ void RestingContacts::release(int ball) {
     contacts_.erase(kept, contacts_.end());
     sort_by_place(ended);
     for (const RestingContact& c : ended) end(c);
-    // From here the ball's own segment counts as free; the caller replaces it.
+    // From here on the ball has a free segment; the caller replaces it.
     log_.begin(ball, free_segment(ball));
     for (const RestingContact& c : ended) {
         const int partner = c.contact.ball == ball ? c.contact.partner() : c.contact.ball;
@@ -136,7 +136,8 @@ bool RestingContacts::has_come_to_transition(const Segment& s) const {
     return s.held && s.ends && s.start + s.duration <= balls_.now();
 }
 
-// All that is connected to the ball by resting contacts, in its state now; its contacts leave the list.
+// The balls that are connected to the ball by resting contacts, in their present states. Removes their contacts from
+// the list.
 RestingGroup RestingContacts::group_of(int ball, Transitions transitions) {
     std::vector<int> members{ball};
     const auto is_member = [&](int b) {
@@ -170,7 +171,7 @@ RestingGroup RestingContacts::group_of(int ball, Transitions transitions) {
     return group;
 }
 
-// The group of the ball, solved anew from now on.
+// Solves the group of the ball again from the present time on.
 void RestingContacts::solve(int ball, Transitions transitions) {
     log_.note_long_round();
     RestingGroup group = group_of(ball, transitions);
@@ -187,7 +188,7 @@ void RestingContacts::solve(int ball, Transitions transitions) {
     }
     for (const RestingBall& member : group.balls) log_.begin(member.ball, member.segment);
     if (!any_released) return;
-    // What a release leaves alone is free, or a smaller group of its own.
+    // After a release, a ball without resting contacts is free; the others form smaller groups.
     for (const RestingBall& m : group.balls) {
         const bool still = std::any_of(contacts_.begin(), contacts_.end(),
                                        [&](const RestingContact& c) { return touches(c, m.ball); });
@@ -195,7 +196,8 @@ void RestingContacts::solve(int ball, Transitions transitions) {
     }
 }
 
-// What ended, if it did: a ball that the group drives on at once has not stopped, and slips on without an event.
+// Logs the transitions that really happened: a ball that the group drives on at once has not stopped, and a ball that
+// continues to slide has no event.
 void RestingContacts::log_transitions(const RestingGroup& group) {
     for (const RestingBall& member : group.balls) {
         const Segment& s = balls_.segment(member.ball);
@@ -206,8 +208,7 @@ void RestingContacts::log_transitions(const RestingGroup& group) {
     }
 }
 
-// A ball that runs off the end of its cushion leaves it when the clock can no longer tell the time to the end
-// from 0.
+// A ball that moves over the end of its cushion leaves it when the remaining time is below the resolution of the clock.
 bool RestingContacts::release_past_ends(RestingGroup& group) {
     return std::erase_if(group.contacts, [this](const RestingContact& c) {
                if (c.contact.with != With::kCushion) return false;
@@ -222,7 +223,7 @@ bool RestingContacts::release_past_ends(RestingGroup& group) {
            }) > 0;
 }
 
-// Contacts in the order of their places on the table: never by id, never by when they began.
+// Sorts contacts by their positions on the table, which depends neither on ids nor on the order in which they began.
 void RestingContacts::sort_by_place(std::vector<RestingContact>& contacts) const {
     const auto place_of = [this](const RestingContact& c) {
         return Vec2(planar(balls_.position(c.contact.ball)) + balls_.radius(c.contact.ball) * c.n);

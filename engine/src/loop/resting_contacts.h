@@ -1,4 +1,4 @@
-// The contacts that last: when a contact becomes a resting one, what moves its balls meanwhile, when it ends.
+// Resting contacts: when a contact becomes one, how its balls move, and when it ends.
 #pragma once
 
 #include <cstdint>
@@ -16,23 +16,24 @@ class RestingContacts {
   public:
     RestingContacts(const Plan& plan, const Balls& balls, Log& log);
 
-    /// The contacts that these events have begun and not ended.
+    /// Restores the contacts that these events have begun and not ended.
     void restore(std::span<const Event> events);
 
     bool has(const Contact& contact) const {
         return !contacts_.empty() && balls_.segment(contact.ball).held && find(contact);
     }
-    /// Makes it a resting contact instead of a bounce, if it is one (docs/hard_cases.md, H5 and H7).
+    /// Begins a resting contact instead of a bounce if the conditions hold (docs/hard_cases.md, H5 and H7).
     /// @param restitution  of the bounce
-    /// @throws SimulationError where two balls of different size would have to rest on each other
+    /// @return whether it is a resting contact now
+    /// @throws SimulationError if two balls of different size would form a resting contact
     bool try_hold(const Approach& approach, double restitution);
-    /// Ends all resting contacts of a ball that something else happens to; its partners go on without it.
+    /// Ends all resting contacts of a ball before another event changes its motion; its partners continue without it.
     void release(int ball);
-    /// At the end of an interval of the ball's group: its transitions, then the next interval.
+    /// Ends an interval of the ball's group: applies the state transitions, then starts the next interval.
     void advance(int ball);
 
   private:
-    /// Whether members whose interval ended with their own transition make it first.
+    /// Whether state transitions that are due at the end of an interval are applied first.
     enum class Transitions : std::uint8_t { kNotYet, kDue };
 
     bool find(const Contact& contact) const;

@@ -1,4 +1,4 @@
-// One run: its parts, each with its own task, and the loop over them (simulate.cpp).
+// One run of the simulation: its parts and the loop that uses them (simulate.cpp).
 #pragma once
 
 #include "loop/balls.h"
@@ -13,7 +13,7 @@ class Run {
   public:
     Run(const Plan& plan, const SimulateOptions& options);
 
-    /// @param so_far  the record to go on from, or nullptr
+    /// @param so_far  the record to continue from, or nullptr
     Record simulate(const Record* so_far);
 
     const Clusters& clusters() const { return resolver_.clusters(); }
@@ -24,7 +24,7 @@ class Run {
     Record finish(double next);
 
     const Plan& plan_;
-    double stop_;  // [s]
+    double stop_;  // [s] end of the simulated time
     Balls balls_;
     Log log_;
     RestingContacts resting_;

@@ -1,4 +1,4 @@
-// The event loop: the next event -> advance -> resolve -> look for contacts of the balls that it touched.
+// The event loop: find the next event -> advance -> resolve -> search the contacts of the balls whose motion changed.
 #include "carom/engine/simulate.h"
 
 #include <algorithm>
@@ -65,7 +65,7 @@ bool Run::is_full() const {
     return most && static_cast<std::int64_t>(log_.events().size()) >= *most;
 }
 
-// The next event comes after the stop, or never.
+// Called if the next event is later than the end of the simulated time, or if there is none.
 Record Run::finish(double next) {
     bool moves = false;
     for (int i = 0; i < balls_.count(); ++i) {

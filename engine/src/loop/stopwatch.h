@@ -1,4 +1,4 @@
-// What a profiled run measures.
+// The measurements of a profiled run.
 #pragma once
 
 #include <chrono>
@@ -7,14 +7,13 @@
 
 namespace carom {
 
-/// Times since the last event; rounds of the loop without an event count towards the next one.
+/// Times since the last event; iterations without an event are added to the next one.
 struct Costs {
-    EventCost event;         ///< queue_ns is worked out at the end
-    double search_ns = 0.0;  ///< part of event.detect_ns: looking for contacts
+    EventCost event;         ///< queue_ns is computed at the end
+    double search_ns = 0.0;  ///< part of event.detect_ns: the search for contacts
 };
 
-/// Adds the time between its construction and its end to `sum`. Without a sum (a run that is not profiled) it
-/// reads no clock.
+/// Adds its lifetime [ns] to `sum`. If `sum` is nullptr (a run that is not profiled), it does not read the clock.
 class Stopwatch {
   public:
     explicit Stopwatch(double* sum) : sum_(sum) {

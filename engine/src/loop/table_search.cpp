@@ -1,4 +1,4 @@
-// Contacts of balls with the table: straight cushions, round noses, pockets.
+// Search for contacts of balls with the table: straight cushions, round noses, pockets.
 #include <algorithm>
 
 #include "loop/detector.h"
@@ -41,7 +41,7 @@ void Detector::set_up_table() {
     table_boxes_.settle();
 }
 
-// The parts of the table that the ball's surface can come to during its segment, in their order.
+// Finds the parts of the table that the ball can reach during its segment, in the order of parts_.
 void Detector::find_parts(int ball) {
     const Segment& s = balls_.segment(ball);
     near_.clear();
@@ -55,7 +55,7 @@ void Detector::search_table(int ball) {
     const Segment& s = balls_.segment(ball);
     if (s.state == MotionState::kPocketed || parts_.empty()) return;
     find_parts(ball);
-    if (!translates(s.state)) {  // a ball that rests inside a pocket's circle falls
+    if (!translates(s.state)) {  // a ball that rests inside the circle of a pocket falls
         for (const int part : near_) {
             const Contact contact = parts_[part].of(ball);
             if (contact.with == With::kPocket && is_inside(s, plan_.geometry.pockets[contact.other]))
@@ -65,14 +65,14 @@ void Detector::search_table(int ball) {
     }
     const Path p = path(ball, s.start);
     for (const int part : near_) {
-        // What lies beyond the first contact found so far cannot come before it: the window of the rejects.
+        // Contacts after the first one found so far are not needed: it limits the window of the quick rejection.
         const Contact contact = parts_[part].of(ball);
         const double t = time_to(contact, p, std::min(p.horizon, span(s.start, first.time)));
         if (t < kNever) take_first({s.start + t, contact}, first);
     }
 }
 
-// [s] kNever if the ball stays away from it for the whole window, or touches it already.
+// [s] Time until the contact; kNever if the ball stays away for the whole window, or is already in this contact.
 double Detector::time_to(const Contact& contact, const Path& p, double window) const {
     const double R = balls_.radius(contact.ball);
     switch (contact.with) {

@@ -11,7 +11,7 @@ namespace carom::render {
 namespace {
 
 float linear(float srgb) {
-    return srgb * srgb;  // as from_screen() of shaders/common.glsl
+    return srgb * srgb;  // the same conversion as from_screen() in shaders/common.glsl
 }
 
 BallInstance make_instance(const DrawBall& ball, const Vec3& origin, double distance) {
@@ -30,7 +30,7 @@ PixelBox whole(FrameSize size) {
     return {0, 0, size.width, size.height};
 }
 
-// The whole image if part of the ball is behind the eye.
+// Pixels that the ball and its shadow may cover; the whole image if part of the ball is behind the eye.
 PixelBox box_of(const DrawBall& ball, const Camera& camera) {
     const double reach = (ball.in_pocket ? 1.0 : shaders::kShadowReach) * ball.radius;
     const PixelBox all = whole(camera.size);
@@ -50,7 +50,8 @@ PixelBox box_of(const DrawBall& ball, const Camera& camera) {
             inside(high.y() + 3.0, all.y1)};
 }
 
-// A plain ball and one that is not must not meet: they are drawn by different programs, one after the other.
+// Plain balls and others are drawn by different programs, one after the other, so their boxes must not overlap. A
+// plain ball that overlaps another one is therefore drawn by the other program.
 void spread_not_plain(std::vector<DrawnBall>& balls) {
     for (bool changed = true; changed;) {
         changed = false;
@@ -93,14 +94,14 @@ std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth
     std::vector<DrawnBall> balls;
     for (const DrawBall& ball : list.balls) {
         const double distance = (ball.center - list.camera.eye).norm();
-        // An eye inside a ball, or past it, sees nothing of it.
+        // A ball that contains the eye or lies behind it is not visible.
         if (distance <= 1.05 * ball.radius || list.camera.depth(ball.center) <= -ball.radius) continue;
         const PixelBox box = box_of(ball, list.camera);
         if (box.x1 <= box.x0 || box.y1 <= box.y0) continue;
         balls.push_back(
             {make_instance(ball, origin, distance), box, !ball.in_pocket && cloth.all_cloth(box)});
     }
-    // Far balls first, so that near ones blend their soft edges over them.
+    // Balls are drawn from far to near, so that the soft edges of near balls blend over the far ones.
     std::stable_sort(balls.begin(), balls.end(), [](const DrawnBall& a, const DrawnBall& b) {
         return a.instance.pattern[2] > b.instance.pattern[2];
     });

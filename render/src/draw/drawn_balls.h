@@ -1,5 +1,5 @@
-// What a picture shows over the table: enough to tell which pixels of two pictures can differ, so that a
-// frame costs what moved in it.
+// What a picture shows over the table. Comparing two pictures tells which pixels can differ, so that the time of a
+// frame depends only on what moved.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace carom::render {
 
-/// What the ball shaders read, one per ball.
+/// The vertex attributes of the ball shaders, one set per ball.
 struct BallInstance {
     float center_radius[4];
     float orientation[4];
@@ -33,27 +33,27 @@ struct PixelBox {
 
 struct DrawnBall {
     BallInstance instance;
-    PixelBox box;        ///< pixels that it and its shadow may touch
-    bool plain = false;  ///< nothing but cloth in its box, nor in that of a ball it meets
+    PixelBox box;        ///< pixels that the ball and its shadow may cover
+    bool plain = false;  ///< its box, and every box that overlaps it, show only cloth under the balls
 
     bool operator==(const DrawnBall&) const = default;
 };
 
-/// Stands for one drawing of the table: pictures that share it show the same table.
+/// Identifies one drawing of the table: pictures that share the pointer show the same table.
 struct TableDrawing {};
 
-/// One picture: which table lies under it, and what is over it.
+/// One picture: the drawing of the table, and what was drawn over it.
 struct DrawnPicture {
-    std::shared_ptr<const TableDrawing> table;  ///< which drawing of it; nothing: none
-    bool overlay = false;                       ///< lines and boxes reach anywhere
-    std::vector<DrawnBall> balls;               ///< far ones first, as they are drawn
+    std::shared_ptr<const TableDrawing> table;  ///< null: nothing has been drawn
+    bool overlay = false;                       ///< has lines or boxes, which may be anywhere in the image
+    std::vector<DrawnBall> balls;               ///< in the order of drawing, the farthest first
 };
 
-/// Where nothing but cloth is seen, by squares of pixels.
+/// For each square of pixels, whether it shows nothing but cloth.
 class ClothMap {
   public:
     ClothMap() = default;
-    /// @param rgba  rows of the table's picture; alpha 255 is a pixel that is all cloth
+    /// @param rgba  rows of the picture of the table; alpha 255 marks a pixel that shows only cloth
     ClothMap(const std::vector<std::uint8_t>& rgba, FrameSize size);
     bool all_cloth(const PixelBox& box) const;
 
@@ -68,14 +68,14 @@ class ClothMap {
     std::vector<bool> cloth_;
 };
 
-/// The balls of a list that can be seen, and their boxes.
+/// The visible balls of a list, with their boxes.
 std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth);
 
-/// Boxes outside of which the two pictures are the same; the whole image where no more is known.
+/// Boxes outside of which the two pictures are equal; the whole image if nothing better is known.
 std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPicture& after, FrameSize size);
 
-/// Adds to the boxes those of all balls that they meet, until none is left that is in part inside: what must
-/// be drawn to fill the boxes anew. Returns which balls that are.
+/// Finds the balls that must be redrawn to refill the boxes. The box of each ball that overlaps one of the boxes is
+/// added to them, and so on until no ball is partly inside. Returns a flag for each ball.
 std::vector<bool> balls_inside(const std::vector<DrawnBall>& balls, std::vector<PixelBox>& boxes);
 
 }  // namespace carom::render

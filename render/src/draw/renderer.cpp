@@ -23,14 +23,14 @@ struct Renderer::Impl {
     gl::Api api;
     std::unique_ptr<StaticLayer> table_layer;
     std::unique_ptr<OverlayLayer> overlay_layer;
-    /// One way of drawing balls: those that meet nothing but cloth need no look at the table.
+    /// The balls of one shader variant. Balls over cloth alone (`plain`) need no lookups in the table's textures.
     struct BallBatch {
         GLuint shadow_program = 0, ball_program = 0, array = 0, buffer = 0;
         std::vector<BallInstance> instances;
     };
     BallBatch plain, other;
     GLuint glyphs = 0, view_buffer = 0;
-    // Two images in turn: one can be read while the next is drawn.
+    // Two images are used alternately: one can be read while the next one is drawn.
     struct Target {
         GLuint color = 0, framebuffer = 0;
         std::shared_ptr<const DrawnPicture> shows = std::make_shared<DrawnPicture>();
@@ -38,11 +38,11 @@ struct Renderer::Impl {
     std::array<Target, 2> targets;
     std::size_t current = 0;  // the target of the last draw()
     FrameSize size{0, 0};
-    std::shared_ptr<const TableMesh> table;  // of the static layer
+    std::shared_ptr<const TableMesh> table;  // the mesh that the static layer shows
     Camera camera;
     int table_samples = 0;
     std::function<void(int, int)> on_table;
-    std::shared_ptr<const TableDrawing> drawn_table;  // of the static layer
+    std::shared_ptr<const TableDrawing> drawn_table;  // identifies the drawing in the static layer
     ClothMap cloth;
     std::vector<std::uint8_t> table_pixels;
 
@@ -112,7 +112,7 @@ struct Renderer::Impl {
         }
     }
 
-    // With the program that is in use.
+    // Draws the octagons of a batch with the program that is in use.
     void draw_round(const BallBatch& batch) {
         api.BindVertexArray(batch.array);
         api.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, shaders::kRoundCorners,
@@ -136,9 +136,9 @@ struct Renderer::Impl {
 
     void draw_table(const DrawList& list) {
         if (table == list.table && camera == list.camera && table_samples == list.table_samples) return;
-        // A camera that moves needs its map for one frame only: not worth making.
+        // With a camera that moves, the cloth map would be valid for one frame only: it is not made.
         const bool stays = list.table_samples > kMovingSamples;
-        table = nullptr;  // until it is whole: on_table may throw
+        table = nullptr;  // until the drawing is complete: on_table may throw
         table_layer->draw(*list.table, size, list.table_samples, !stays, on_table);
         table = list.table;
         camera = list.camera;
@@ -153,7 +153,7 @@ struct Renderer::Impl {
         table_pixels = {};
     }
 
-    // Puts the table back into the boxes.
+    // Copies the picture of the table into the boxes.
     void restore_table(const std::vector<PixelBox>& boxes, const Target& target) {
         api.BindFramebuffer(GL_READ_FRAMEBUFFER, table_layer->framebuffer());
         api.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
@@ -185,7 +185,7 @@ struct Renderer::Impl {
         api.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
         api.Disable(GL_DEPTH_TEST);
         api.Enable(GL_BLEND);
-        // Shadows only darken: one factor for all channels is the driver's fast way.
+        // Shadows only darken. The same blend factor for all channels is a fast path of the driver.
         api.BlendFuncSeparate(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
         draw_shadows(plain);
         draw_shadows(other);

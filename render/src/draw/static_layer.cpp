@@ -11,7 +11,7 @@ namespace carom::render {
 
 namespace {
 
-// Where pass i samples the pixel, in (-1/2, 1/2)^2: the R2 sequence, evenly spread for every count.
+// Sample position of pass i in the pixel, in (-1/2, 1/2)^2: the R2 sequence, evenly spread for every count.
 double r2(int i, double step) {
     const double x = 0.5 + step * i;
     return x - static_cast<double>(static_cast<long>(x)) - 0.5;
@@ -19,10 +19,10 @@ double r2(int i, double step) {
 
 }  // namespace
 
-// Only there while the table is drawn, or between two drawings for a camera that moves: two images of 16-bit
-// floats, and the depths of the first four passes.
+// Memory that only drawing the table needs: two images of 16-bit floats, and the depths of the first four passes.
+// It is kept between drawings only for a camera that moves.
 struct StaticLayer::Scratch {
-    static constexpr std::size_t kDepths = 4;
+    static constexpr std::size_t kDepths = 4;  // [-] one for each channel of the occluder texture
     const gl::Api& api;
     GLuint pass, sum, sum_framebuffer;
     std::array<GLuint, kDepths> depth{}, pass_framebuffer{};
@@ -48,7 +48,7 @@ struct StaticLayer::Scratch {
     Scratch(const Scratch&) = delete;
     Scratch& operator=(const Scratch&) = delete;
 
-    // Passes after the fourth leave no depths: they share the fourth's buffer once it has been kept.
+    // Passes after the fourth share the depth buffer of the fourth, whose depths have been copied by then.
     std::size_t slot(int number) const { return std::min(static_cast<std::size_t>(number), kDepths - 1); }
 };
 
@@ -151,7 +151,7 @@ void StaticLayer::set_table_uniforms(const TableMesh& table, GLuint program) con
 }
 
 void StaticLayer::draw_pass(const Scratch& scratch, int pass, int samples) {
-    // 1 / plastic number and its square.
+    // The steps of the R2 sequence are 1 / p and 1 / p^2, with the plastic number p.
     const double jx = samples == 1 ? 0.0 : r2(pass, 0.75487766624669276),
                  jy = samples == 1 ? 0.0 : r2(pass, 0.56984029099805327);
     api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.pass_framebuffer[scratch.slot(pass)]);
@@ -164,7 +164,7 @@ void StaticLayer::draw_pass(const Scratch& scratch, int pass, int samples) {
     api_.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
     api_.BindVertexArray(vertex_array_);
     for (const Group& group : groups_) {
-        // Blended over the cloth, whose alpha, which says "cloth", stays.
+        // These are blended over the cloth and keep its alpha, which marks cloth.
         if (&group == &groups_[kBlended]) {
             api_.Enable(GL_BLEND);
             api_.DepthMask(GL_FALSE);
@@ -180,7 +180,7 @@ void StaticLayer::add_pass(const Scratch& scratch, int pass) {
     api_.Disable(GL_DEPTH_TEST);
     api_.BindVertexArray(empty_array_);
     api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.sum_framebuffer);
-    // The first one replaces what the drawing before left there.
+    // The first pass replaces the sum of the previous drawing.
     pass == 0 ? api_.Disable(GL_BLEND) : api_.Enable(GL_BLEND);
     api_.BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ONE);
     api_.UseProgram(add_program_);
@@ -189,7 +189,7 @@ void StaticLayer::add_pass(const Scratch& scratch, int pass) {
     api_.Disable(GL_BLEND);
 }
 
-// One channel for each of the first four passes; with fewer the last fills the rest.
+// Writes one channel for each of the first four passes; with fewer passes the last one fills the rest.
 void StaticLayer::keep_depths(const Scratch& scratch, int samples) {
     api_.BindFramebuffer(GL_FRAMEBUFFER, occluders_framebuffer_);
     api_.UseProgram(depth_program_);

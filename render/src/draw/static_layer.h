@@ -1,4 +1,4 @@
-// The table seen by one camera, drawn once with many samples a pixel and kept as textures.
+// The table seen by one camera, drawn once with many samples per pixel and kept as textures.
 #pragma once
 
 #include <array>
@@ -18,13 +18,13 @@ class StaticLayer {
     StaticLayer(const StaticLayer&) = delete;
     StaticLayer& operator=(const StaticLayer&) = delete;
 
-    /// Draws the table: `samples` jittered passes, averaged in linear light. again_soon: keep the memory that
-    /// only drawing needs. `on_pass`, if there is one, is called when each of them is done, and may throw.
+    /// Draws the table in `samples` jittered passes, averaged in linear light. again_soon: keep the memory that
+    /// only drawing needs. `on_pass`, if set, is called after every finished pass; it may throw.
     void draw(const TableMesh& table, FrameSize size, int samples, bool again_soon,
               const std::function<void(int done, int total)>& on_pass);
 
-    GLuint color() const { return color_; }  ///< RGBA8; alpha: how much of the pixel is cloth
-    /// RGBA32F: four distances along the view, over the pixel
+    GLuint color() const { return color_; }  ///< RGBA8; alpha: share of the pixel that is cloth
+    /// RGBA32F: distances along the view direction at four positions in the pixel
     GLuint occluders() const { return occluders_; }
     GLuint framebuffer() const { return color_framebuffer_; }
 
@@ -38,12 +38,12 @@ class StaticLayer {
     void keep_depths(const Scratch& scratch, int samples);
 
     const gl::Api& api_;
-    /// What is drawn one after the other; kBlended: paint and seams that lie on the cloth.
+    /// Parts in the order of drawing; kBlended: paint and shading on the cloth.
     enum Part : std::uint8_t { kCloth, kWood, kSmall, kFloor, kBlended, kParts };
-    /// Vertices that one program draws.
+    /// The vertices that one program draws.
     struct Group {
         GLuint program = 0;
-        GLint jitter = -1;  ///< where the program has it
+        GLint jitter = -1;  ///< location of u_jitter in the program
         GLint first = 0;
         GLsizei count = 0;
     };

@@ -13,7 +13,7 @@ void put(const Vector& v, float (&out)[kSize]) {
     for (std::size_t i = 0; i < kSize; ++i) out[i] = static_cast<float>(v[i]);
 }
 
-// Near and far planes around everything that can be seen, as tight as the eye's distance from the table allows.
+// Near and far clip planes around everything visible, as tight as the distance of the eye from the table allows.
 std::array<double, 2> clip_planes(const Camera& camera, const TableMesh& table) {
     const Vec3 low(table.bounds.low.x(), table.bounds.low.y(), -0.3);
     const Vec3 high(table.bounds.high.x(), table.bounds.high.y(), table.bounds.top + 0.1);
@@ -43,7 +43,7 @@ View make_view(const Camera& camera, const TableMesh& table) {
         m(i, 3) = shift;
     };
     row(0, right / tan_x, -right.dot(eye) / tan_x);
-    row(1, -up / tan_y, up.dot(eye) / tan_y);  // negated: OpenGL's lowest row is the image's first
+    row(1, -up / tan_y, up.dot(eye) / tan_y);  // negated: OpenGL's lowest row is the first of the image
     const double a = (far + near) / (far - near), b = -2.0 * far * near / (far - near);
     row(2, a * forward, -a * forward.dot(eye) + b);
     row(3, forward, -forward.dot(eye));

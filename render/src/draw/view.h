@@ -1,14 +1,14 @@
-// What every shader reads: camera and lamp, relative to the origin of the table mesh.
+// The data that every shader reads: camera and lamp, relative to the origin of the table mesh.
 #pragma once
 
 #include "carom/render/draw_list.h"
 
 namespace carom::render {
 
-/// The uniform block View of shaders/common.glsl: the same members in the layout std140, which begins vectors of three at
-/// multiples of 16 bytes. It is written to a buffer once a frame; programs read it at binding point 0.
+/// The uniform block View of shaders/common.glsl: the same members in the layout std140, which aligns vectors of three
+/// to 16 bytes. It is written to a buffer once per frame; programs read it at binding point 0.
 struct View {
-    alignas(16) float view_projection[16] = {};  ///< column by column; image row 0 is the top
+    alignas(16) float view_projection[16] = {};  ///< column-major; row 0 of the image is the top
     alignas(16) float eye[3] = {};
     float lamp_endless = 0.0F;
     alignas(16) float forward[3] = {};

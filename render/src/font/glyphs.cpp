@@ -9,8 +9,8 @@ namespace carom::render {
 
 namespace {
 
-// In the order of kGlyphs: polylines on a grid 4 wide and 6 high with the origin at the lower left, as pairs
-// of digits x y; a blank lifts the pen.
+// In the order of kGlyphs: polylines on a grid 4 wide and 6 high with the origin at the lower left, as pairs of
+// digits x y. A blank starts a new polyline.
 constexpr std::array<std::string_view, kGlyphs.size()> kStrokes{"103041453616050110",
                                                                 "152620 1030",
                                                                 "05163645440040",
@@ -57,7 +57,7 @@ constexpr std::array<std::string_view, kGlyphs.size()> kStrokes{"103041453616050
                                                                 "062346 2320",
                                                                 "06460040"};
 
-// The letter stands in the middle of its cell.
+// [units] Distance of the 4 x 6 glyph from the edges of its cell; it is centred in the cell.
 constexpr float kMarginX = (kGlyphUnitsX - 4.0F) / 2.0F, kMarginY = (kGlyphUnitsY - 6.0F) / 2.0F;
 
 float distance_to_piece(float x, float y, float ax, float ay, float bx, float by) {
@@ -73,7 +73,7 @@ float distance_to_strokes(std::string_view strokes, float x, float y) {
     const auto digit = [&](std::size_t i) { return static_cast<float>(strokes[i] - '0'); };
     for (std::size_t i = 0; i + 3 < strokes.size(); i += 2) {
         if (strokes[i] == ' ') {
-            --i;  // step over the blank alone
+            --i;  // skip only the blank
             continue;
         }
         if (strokes[i + 2] == ' ') continue;

@@ -1,4 +1,4 @@
-// A small alphabet of strokes, as an atlas of distances to the nearest stroke: sharp at every size.
+// A small stroke font as an atlas of distances to the nearest stroke, which is sharp at every size.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@ inline constexpr int kGlyphColumns = 8, kGlyphRows = 8;    ///< cells of the atl
 inline constexpr int kGlyphWidth = 24, kGlyphHeight = 36;  ///< texels of a cell
 inline constexpr float kGlyphReach = 1.5F;                 ///< distance [units] at which the atlas saturates
 inline constexpr float kGlyphUnitsX = 6.0F,
-                       kGlyphUnitsY = 9.0F;  ///< units of a cell; letters are 4 x 6, margin 1 to 2
+                       kGlyphUnitsY = 9.0F;  ///< size of a cell [units]; letters are 4 x 6, margins 1 and 1.5
 
 /// Characters in the order of the cells.
 inline constexpr std::string_view kGlyphs = "0123456789.:-%/+=()ABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
-/// Cell of a character (lower case reads as upper case), or -1 for a blank.
+/// Cell of a character (lower case is mapped to upper case), or -1 for a blank.
 int glyph_index(char c);
 
-/// One byte per texel, row 0 at the top: 255 on a stroke's centre line, 0 from kGlyphReach on.
+/// One byte per texel, row 0 at the top: 255 on the centre line of a stroke, 0 at the distance kGlyphReach and beyond.
 std::vector<std::uint8_t> glyph_atlas();
 
 }  // namespace carom::render

@@ -19,7 +19,7 @@ long frame_count(double from, double to, double fps) {
     if (to < from) return 0;
     const double frames = (to - from) * fps;
     if (frames > 1e9) throw RenderError("more than 1e9 frames; lower --fps or give --to");
-    // The product above is rounded: what counts is the time that each frame really shows.
+    // The product above is rounded; the time that frame_time() gives for each frame decides.
     long last = static_cast<long>(frames);
     while (frame_time(from, last + 1, fps) <= to) ++last;
     while (last > 0 && frame_time(from, last, fps) > to) --last;
@@ -30,10 +30,10 @@ namespace {
 
 struct Conversion {
     std::size_t begin = 0, end = 0;
-    int width = 0;  // padded with zeros
+    int width = 0;  // number of digits, padded with zeros
 };
 
-// "%d" or "%0Nd" at `at`; nothing if it is something else.
+// Parses "%d" or "%0Nd" at position `at`; empty for anything else.
 std::optional<Conversion> read_conversion(const std::string& pattern, std::size_t at) {
     std::size_t i = at + 1;
     Conversion found{at, 0, 0};

@@ -13,7 +13,7 @@ namespace carom::render {
 
 namespace {
 
-// libpng reports errors by longjmp; the text is kept here until it is safe to throw.
+// libpng reports errors by longjmp; the message is stored here until it is safe to throw.
 struct Failure {
     std::array<char, 200> text{};
 };
@@ -33,7 +33,7 @@ void append_bytes(png_structp png, png_bytep data, png_size_t length) {
 
 void flush_nothing(png_structp) {}
 
-// Plain data only between setjmp and longjmp: no destructor may be skipped.
+// Only plain data may exist between setjmp and longjmp, because longjmp skips destructors.
 bool encode_rows(png_structp png, png_infop info, const Image& image, int level) {
     if (setjmp(png_jmpbuf(png))) return false;
     const auto width = static_cast<png_uint_32>(image.size.width),
@@ -44,7 +44,7 @@ bool encode_rows(png_structp png, png_infop info, const Image& image, int level)
     png_set_compression_level(png, level);
     png_set_compression_buffer_size(png, 256 * 1024);
     png_write_info(png, info);
-    png_set_filler(png, 0, PNG_FILLER_AFTER);  // drops the fourth channel; libpng wants it after the info
+    png_set_filler(png, 0, PNG_FILLER_AFTER);  // drops the fourth channel; must follow png_write_info()
     for (png_uint_32 y = 0; y < height; ++y)
         png_write_row(png, image.rgbx.data() + std::size_t{4} * y * width);
     png_write_end(png, info);

@@ -31,7 +31,7 @@ void make_folder(const std::string& pattern) {
     }
 }
 
-// Finished frames get their name only when they are whole; what is checked is that they are of this sequence.
+// Whether the file is a PNG of this size. A frame gets its final name only when it is complete, so this is enough.
 bool is_frame_of_size(const std::string& path, FrameSize size) {
     std::FILE* file = std::fopen(path.c_str(), "rb");
     if (file == nullptr) return false;
@@ -42,7 +42,7 @@ bool is_frame_of_size(const std::string& path, FrameSize size) {
         return (unsigned{head[i]} << 24U) | (unsigned{head[i + 1]} << 16U) | (unsigned{head[i + 2]} << 8U) |
                head[i + 3];
     };
-    // Signature, then the header chunk with width and height.
+    // The signature is followed by the header chunk, which contains width and height.
     constexpr std::array<unsigned char, 8> kSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
     return whole && std::equal(kSignature.begin(), kSignature.end(), head.begin()) &&
            number(16) == static_cast<unsigned>(size.width) &&
@@ -89,7 +89,7 @@ void check_options(const SequenceOptions& options) {
     }
 }
 
-// Draws frame after frame. With threads, reading frame k - 1 back overlaps with drawing frame k.
+// Draws the frames in order. With threads, frame k - 1 is read back while frame k is being drawn.
 class FrameLoop {
   public:
     FrameLoop(const Record& record, const SequenceOptions& options, std::vector<FrameTiming>& frames)
@@ -103,11 +103,11 @@ class FrameLoop {
     void run(long skipped) {
         const long total = skipped + static_cast<long>(frames_.size());
         if (frames_.empty()) return;
-        // Compiles the shaders and draws the table, which belongs to no frame.
+        // Compiles the shaders and draws the table; this time belongs to no frame.
         renderer_.on_table(options_.table_progress);
         renderer_.draw(list_of(0));
         renderer_.finish();
-        renderer_.on_table(nullptr);  // later ones, of a camera that moves, do not wait for each pass
+        renderer_.on_table(nullptr);  // later drawings (a camera that moves) do not wait for each pass
         if (options_.overlay.margin && !options_.frame_cost_ms) measure_first();
         for (std::size_t i = 0; i < frames_.size(); ++i) {
             draw(i);
@@ -125,17 +125,17 @@ class FrameLoop {
     DrawList list_of(std::size_t i) {
         std::optional<FrameBudget> cost;
         if (options_.overlay.margin) {
-            cost =
-                FrameBudget{options_.frame_cost_ms ? options_.frame_cost_ms(frames_[i].frame) : last_cost_ms(i),
-                          1e3 / options_.fps};
+            cost = FrameBudget{
+                options_.frame_cost_ms ? options_.frame_cost_ms(frames_[i].frame) : last_cost_ms(i),
+                1e3 / options_.fps};
         }
         return stage_.at(frames_[i].time, cost);
     }
 
-    // The time that the frame itself takes is not known while it is drawn: that of frames just before stands for it.
+    // The time of the frame itself is not known while it is drawn; the times of the latest frames are used instead.
     double last_cost_ms(std::size_t i) {
         const double encode_ms = writer_.last_encode_ms();
-        // With threads, frame i - 1 is not read back yet.
+        // With threads, frame i - 1 has not been read back yet.
         const std::size_t back = threads_ > 0 ? 2 : 1;
         return (options_.simulate_ms ? options_.simulate_ms(frames_[i].frame) : 0.0) +
                (i > 0 ? frames_[i - 1].draw_ms : first_.draw_ms) +
@@ -143,7 +143,7 @@ class FrameLoop {
                (encode_ms > 0.0 ? encode_ms : first_.encode_ms);
     }
 
-    // The first frames have none before them: the first is drawn once more for its times.
+    // The first frames have no earlier ones: the first frame is drawn once more to measure its times.
     void measure_first() {
         KeptImage image;
         std::vector<std::uint8_t> bytes;
@@ -165,7 +165,7 @@ class FrameLoop {
         frames_[i].draw_ms = ms_since(mark);
     }
 
-    // Which of the two pictures that the renderer keeps.
+    // Selects one of the two pictures that the renderer keeps.
     enum class Picture : std::uint8_t { kLast, kOneBefore };
     void read(std::size_t i, Picture picture) {
         std::unique_ptr<KeptImage> image = writer_.acquire();

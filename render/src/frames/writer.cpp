@@ -28,10 +28,10 @@ void pack_rgb(const Image& image, std::vector<std::uint8_t>& bytes) {
 
 namespace {
 
-// Bytes of all images in flight together: what keeps a run with many threads small.
+// [bytes] Limit for all images in flight together; it bounds the memory of a run with many threads.
 constexpr double kMemory = 64e6;
 
-// One image a thread, one waiting for each, and one being filled; fewer where they are large.
+// For each thread one image in work and one waiting, and one image being filled; fewer if the images are large.
 std::size_t image_limit(FrameSize size, int threads) {
     const double fit = kMemory / (4.0 * size.width * size.height);
     return static_cast<std::size_t>(std::max(2.0, std::min(2.0 * threads + 1.0, fit)));
@@ -41,11 +41,11 @@ std::size_t image_limit(FrameSize size, int threads) {
 
 FrameWriter::FrameWriter(const SequenceOptions& options, int threads)
     : options_(options), limit_(image_limit(options.size, threads)) {
-    // A thread without an image to work on would only wait.
+    // More threads than images would only wait.
     threads = std::min(threads, static_cast<int>(limit_));
     try {
         for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
-    } catch (const std::exception& error) {  // the system gives no more threads
+    } catch (const std::exception& error) {  // the system refuses to start more threads
         const std::size_t started = threads_.size();
         stop();
         throw RenderError("only " + std::to_string(started) + " of " + std::to_string(threads) +

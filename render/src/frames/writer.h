@@ -1,4 +1,4 @@
-// Encodes and writes frames, in threads of its own, with a bounded number of images in flight.
+// Encodes and writes frames in its own threads, with a bounded number of images in flight.
 #pragma once
 
 #include <chrono>
@@ -18,25 +18,25 @@ namespace carom::render {
 
 class FrameWriter {
   public:
-    /// threads = 0: submit() does the work itself. Raw frames take one thread, which keeps their order.
-    /// @throws RenderError where the system does not give as many
+    /// threads = 0: submit() does the work itself. Raw frames need exactly one thread, which preserves their order.
+    /// @throws RenderError if the system cannot start that many threads
     FrameWriter(const SequenceOptions& options, int threads);
 
-    /// Drops what has not been started and waits for the rest.
+    /// Drops the frames that have not been started and waits for the others.
     ~FrameWriter();
     FrameWriter(const FrameWriter&) = delete;
     FrameWriter& operator=(const FrameWriter&) = delete;
 
-    /// An image to fill; waits while all are in flight. @throws what a thread failed with
+    /// Returns an image to fill; waits while all images are in flight. Rethrows the exception of a failed thread.
     std::unique_ptr<KeptImage> acquire();
 
-    /// Encodes and writes it as frame timing.frame; fills in the times, which must outlive the writer.
+    /// Encodes and writes the image as frame timing.frame and sets the times. `timing` must outlive the writer.
     void submit(std::unique_ptr<KeptImage> image, FrameTiming& timing);
 
-    /// What encoding took for the last frame that is done; 0 before [ms].
+    /// Encoding time of the last finished frame [ms]; 0 before the first one.
     double last_encode_ms();
 
-    /// Waits until everything is written. @throws what a thread failed with
+    /// Waits until everything is written. Rethrows the exception of a failed thread.
     void finish();
 
   private:
@@ -45,24 +45,24 @@ class FrameWriter {
         FrameTiming* timing = nullptr;
     };
     void work();
-    void stop();  // drops what has not been started, and ends the threads
+    void stop();  // drops the frames that have not been started, and ends the threads
     void write(const Image& image, FrameTiming& timing, std::vector<std::uint8_t>& bytes) const;
 
     const SequenceOptions& options_;
-    const std::size_t limit_;          // images that exist at once
-    std::vector<std::uint8_t> bytes_;  // of a writer without threads
+    const std::size_t limit_;          // largest number of images
+    std::vector<std::uint8_t> bytes_;  // buffer of a writer without threads
     std::mutex mutex_;
     std::condition_variable task_ready_, image_ready_;
     std::deque<Task> tasks_;
     std::vector<std::unique_ptr<KeptImage>> idle_;
-    std::size_t images_ = 0, in_flight_ = 0;  // made so far; submitted and not yet done
+    std::size_t images_ = 0, in_flight_ = 0;  // images created; images submitted and not yet finished
     bool stopping_ = false;
     double last_encode_ms_ = 0.0;
     std::exception_ptr failure_;
     std::vector<std::thread> threads_;
 };
 
-/// Milliseconds since the mark, which moves to now.
+/// Milliseconds since the mark, which is then set to the current time.
 double ms_since(std::chrono::steady_clock::time_point& mark);
 
 /// Packed RGB rows of an image.

@@ -1,4 +1,4 @@
-// The OpenGL entry points that the renderer uses, found at run time: the same list serves OSMesa and EGL.
+// The OpenGL functions that the renderer uses, looked up at run time; the list is the same for OSMesa and EGL.
 #pragma once
 
 #include <GL/glcorearb.h>
@@ -71,7 +71,7 @@ struct Api {
 #undef CAROM_GL_MEMBER
 };
 
-/// Finds every function; @throws RenderError naming the first that the driver lacks.
+/// Looks up every function. @throws RenderError that names the first missing function
 Api load_api(Lookup lookup);
 
 }  // namespace carom::render::gl

@@ -1,5 +1,5 @@
-// An OpenGL 3.3 core context without a window. Three functions, so that any way of getting one fits behind
-// it. Includes no OpenGL header: those of OSMesa and of the loader do not go together.
+// An OpenGL 3.3 core context without a window. The interface is small, so that any library can implement it. Includes
+// no OpenGL header, because the headers of OSMesa and of the loader are incompatible.
 #pragma once
 
 #include <memory>
@@ -21,8 +21,7 @@ class Context {
     /// Makes the context current on the calling thread. @throws RenderError
     virtual void make_current() = 0;
 
-
-    /// How to find the functions of this context.
+    /// The function that looks up the OpenGL functions of this context.
     virtual Lookup lookup() const = 0;
 };
 

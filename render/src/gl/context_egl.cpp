@@ -1,6 +1,6 @@
-// EGL without any surface or display server: what replaces OSMesa since Mesa 25.1.
+// EGL without a surface or display server. It replaces OSMesa, which Mesa 25.1 removed.
 //
-// The few types and numbers of EGL 1.5 that are needed stand here, so that building needs no EGL header.
+// The few types and constants of EGL 1.5 that are needed are declared here, so that the build needs no EGL header.
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -59,7 +59,7 @@ void* lookup_egl(const char* function) {
     return egl().get_proc_address(function);
 }
 
-// One display for the process: it is shared by every context and never terminated.
+// The process has one display, which all contexts share and which is never terminated.
 Handle display() {
     static const Handle shared = [] {
         Handle opened = egl().get_platform_display(kPlatformSurfaceless, nullptr, nullptr);

@@ -1,4 +1,4 @@
-// Thin helpers over the loaded OpenGL functions. Objects die with their context unless deleted here.
+// Functions that create OpenGL objects. An object exists until it is deleted or its context is destroyed.
 #pragma once
 
 #include <cstddef>
@@ -8,25 +8,25 @@
 
 namespace carom::render::gl {
 
-/// Compiles and links; the sources of `prologue` stand before each of the two. The first of `samplers` reads the texture of
-/// unit 0, and so on. @throws RenderError with the compiler's log
+/// Compiles and links a program; the sources of `prologue` precede both shaders. The first of `samplers` reads the
+/// texture of unit 0, and so on. @throws RenderError with the compiler's log
 GLuint make_program(const Api& api, std::span<const char* const> prologue, const char* vertex,
                     const char* fragment, std::span<const char* const> samplers);
 
-/// A texture without mipmaps, read texel by texel (or linearly), clamped at the edges.
+/// A texture without mipmaps, with nearest (or linear) filtering, clamped at the edges.
 GLuint make_texture(const Api& api, int width, int height, GLenum internal_format, GLenum format, GLenum type,
                     const void* texels, bool linear = false);
 
-/// A framebuffer object of a colour texture and, if not 0, a depth texture. @throws RenderError
+/// A framebuffer object with a colour texture and, if `depth` is not 0, a depth texture. @throws RenderError
 GLuint make_framebuffer(const Api& api, GLuint color, GLuint depth);
 
-/// An offset into a buffer, as VertexAttribPointer takes it: OpenGL passes the number as a pointer.
+/// An offset into a buffer for VertexAttribPointer: OpenGL passes the number as a pointer.
 inline const void* buffer_offset(std::size_t bytes) {
-    // NOLINTNEXTLINE(performance-no-int-to-ptr): the interface of OpenGL wants it so
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): required by the interface of OpenGL
     return reinterpret_cast<const void*>(bytes);
 }
 
-/// For the sampler of that number of every program.
+/// Binds the texture to a unit; the sampler with the same number reads it in every program.
 void bind_texture(const Api& api, int unit, GLuint texture);
 
 }  // namespace carom::render::gl

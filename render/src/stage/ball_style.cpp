@@ -19,7 +19,7 @@ struct NamedColor {
 
 constexpr Color kWhite{0.95F, 0.93F, 0.86F};
 
-// Numbered balls 1 to 7 (8 is black); 9 to 15 are the same colours striped.
+// Colours of the numbered balls 1 to 8 (8 is black); 9 to 15 have the first seven colours with stripes.
 constexpr std::array<Color, 8> kPool{{{0.96F, 0.73F, 0.06F},
                                       {0.07F, 0.20F, 0.66F},
                                       {0.84F, 0.10F, 0.08F},

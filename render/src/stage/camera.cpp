@@ -50,7 +50,7 @@ bool Camera::operator==(const Camera& other) const {
 }
 
 Camera top_camera(const Bounds& bounds, FrameSize size) {
-    // Narrow, so that the balls at the rails are hardly seen from the side, but not so narrow that depth is lost.
+    // [deg] Narrow, so that balls at the rails are hardly seen from the side, but not so narrow that the depth is lost.
     constexpr double kFov = 16.0;
     const Vec2 extent = (bounds.high - bounds.low).cwiseMax(1e-3);
     const Vec2 centre = 0.5 * (bounds.low + bounds.high);
@@ -60,7 +60,7 @@ Camera top_camera(const Bounds& bounds, FrameSize size) {
     Camera camera;
     camera.size = size;
     camera.fov_y_deg = kFov;
-    // y x (-x) = z: with +y to the right, -x points up the image, seen from above.
+    // y x (-x) = z: if +y points to the right of the image, -x points up, seen from above.
     camera.up = lying > upright ? Vec3(-1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
     const double pixels_per_metre = std::max(upright, lying);
     const double distance = 0.5 * size.height / (pixels_per_metre * camera.tan_half_y());

@@ -13,14 +13,14 @@ namespace carom::render {
 
 namespace {
 
-// Height of the follow camera's eye over its distance behind the ball, and both together [m].
+// [m] Position of the follow camera's eye relative to the ball.
 const Vec3 kFollowOffset(0.0, -0.95, 0.62);
 
-// [s] Half the time over which the followed ball's place is averaged, and the number of steps to each side.
+// [s] Half the time over which the position of the followed ball is averaged, and the number of steps on each side.
 constexpr double kFollowWindow = 0.5;
 constexpr int kFollowSteps = 12;
 
-// Direction in which the first ball leaves; +y if it does not move.
+// Direction of the first motion of the ball; +y if it does not move.
 Vec2 aim_of(const Record& record, int ball) {
     if (record.tracks.empty()) return Vec2::UnitY();
     for (const Segment& segment : record.tracks[ball].segments) {
@@ -44,7 +44,7 @@ Camera player_camera(const Record& record, FrameSize size) {
 }
 
 int ball_by_id(const Record& record, const std::string& id) {
-    constexpr std::size_t kListed = 40;
+    constexpr std::size_t kListed = 40;  // [-] most ids in the message
     std::string known;
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         if (record.tracks[i].id == id) return static_cast<int>(i);
@@ -55,7 +55,7 @@ int ball_by_id(const Record& record, const std::string& id) {
     throw RenderError("no ball '" + printable(id) + "' to follow; there are " + known);
 }
 
-// A ball that left the table is followed to where it left.
+// The position of a followed ball; the place of capture for a ball in a pocket.
 Vec3 place_to_follow(const Record& record, int ball, double t) {
     const BallTrack& track = record.tracks[ball];
     const Segment& last = track.segments.back();
@@ -89,7 +89,7 @@ Camera fitting_camera(const Bounds& bounds, const Vec3& direction, double fov_y_
                       0.0);
     const double extent = (bounds.high - bounds.low).norm();
     Vec3 target = middle;
-    // Worst overshoot of a corner from distance d, and the middle of what is seen, in the units of the image.
+    // Extent of the box in the image from distance d (1: it fills the image), and its centre in the image [pixels].
     const auto frame = [&](double d, Vec2& centre) {
         camera.target = target;
         camera.eye = target - d * along;
@@ -113,7 +113,7 @@ Camera fitting_camera(const Bounds& bounds, const Vec3& direction, double fov_y_
             (frame(d, centre) > 0.97 ? near : far) = d;
         }
         frame(far, centre);
-        // Shift sideways and up so that what is seen stands in the middle.
+        // Shift the target sideways and up, so that the box is centred in the image.
         const double metres = 1.0 / camera.scale(target);
         target += metres * ((centre.x() - 0.5 * size.width) * camera.right() -
                             (centre.y() - 0.5 * size.height) * camera.image_up());
@@ -137,7 +137,7 @@ CameraPath::CameraPath(const Record& record, const TableMesh& table, const std::
         fixed_.target = *free.target;
         fixed_.fov_y_deg = free.fov_deg;
         fixed_.size = size;
-        // Straight down, +y is up the image.
+        // If the camera looks straight down, +y points up in the image.
         fixed_.up = view.head<2>().norm() > 1e-6 * view.norm() ? Vec3::UnitZ() : Vec3::UnitY();
     } else if (name == "top") {
         fixed_ = top_camera(table.bounds, size);
@@ -161,7 +161,7 @@ CameraPath::CameraPath(const Record& record, const TableMesh& table, const std::
 
 Camera CameraPath::at(double t) const {
     if (follow_ball_ < 0) return fixed_;
-    // A raised cosine over the ball's past and future: the camera starts before the ball does and never jerks.
+    // Raised-cosine average over past and future positions: the camera starts before the ball and moves smoothly.
     Vec3 sum = Vec3::Zero();
     double weights = 0.0;
     for (int i = -kFollowSteps; i <= kFollowSteps; ++i) {

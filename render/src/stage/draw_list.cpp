@@ -9,9 +9,9 @@ namespace carom::render {
 
 namespace {
 
-// Places along every ball's path: the ends of its segments and points between them.
+// Positions along the path of every ball: the ends of its segments and points between them.
 std::vector<Vec2> visited_places(const Record& record) {
-    constexpr int kPieces = 4;
+    constexpr int kPieces = 4;  // [-] per segment
     std::vector<Vec2> places;
     for (const BallTrack& track : record.tracks) {
         for (std::size_t i = 0; i < track.segments.size(); ++i) {
@@ -29,7 +29,7 @@ std::vector<Vec2> visited_places(const Record& record) {
     return places;
 }
 
-// The ball that came last to each pocket is the one that shows.
+// Whether a later ball in the same pocket hides this one: only the last ball in each pocket is shown.
 bool is_covered(const Record& record, std::size_t ball, double t) {
     const auto arrival = [&](std::size_t i) {
         const Segment& last = record.tracks[i].segments.back();
@@ -71,7 +71,7 @@ DrawList Stage::at(double t, std::optional<FrameBudget> cost) const {
         if (ball.in_pocket && is_covered(record_, i, t)) continue;
         ball.center = state.position;
         ball.orientation = record_.orientation_at(static_cast<int>(i), t);
-        // Two pixels at least: on a cloth of kilometres the balls would otherwise be lost.
+        // The radius is at least two pixels: on a cloth of kilometres the balls would otherwise be invisible.
         ball.radius = std::max(record_.size(static_cast<int>(i)).R,
                                2.0 / std::max(list.camera.scale(state.position), 1e-12));
         ball.style = styles_[i];

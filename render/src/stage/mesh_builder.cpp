@@ -7,8 +7,8 @@
 namespace carom::render {
 
 namespace {
-constexpr double kTau = 6.28318530717958647692;
-constexpr int kCirclePieces = 96;
+constexpr double kTau = 6.28318530717958647692;  // [rad] full circle
+constexpr int kCirclePieces = 96;                // [-] straight pieces of a drawn circle
 
 bool is_blended(Material material) {
     return material == Material::kShade || material == Material::kChalk;
@@ -74,7 +74,7 @@ void MeshBuilder::sweep(const Chain& outline, const std::vector<ProfileRow>& row
     lines.reserve(rows.size());
     for (const ProfileRow& row : rows)
         lines.push_back(offset_left(outline.points, outline.closed, row.offset));
-    // Angle of the profile's normal from the vertical, towards the right-hand (playing) side, of each row.
+    // Angle of the profile's normal from the vertical towards the right-hand (playing) side, for each strip.
     const auto slope = [&](std::size_t row) {
         const double along = rows[row + 1].offset - rows[row].offset, up = rows[row + 1].z - rows[row].z;
         return std::atan2(up, along);

@@ -1,4 +1,4 @@
-// Puts triangles, strips and polygons into a TableMesh.
+// Adds triangles, strips and polygons to a TableMesh.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@ namespace carom::render {
 
 /// One line of a profile that is swept along an outline.
 struct ProfileRow {
-    double offset;   ///< to the left of the outline [m]
-    double z;        ///< [m], added to the height of the outline's point
+    double offset;   ///< distance to the left of the outline [m]
+    double z;        ///< added to the height of the outline's point [m]
     double opacity;  ///< for blended materials
 };
 
@@ -21,16 +21,16 @@ class MeshBuilder {
 
     void quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, Material material, double u = 0.0);
 
-    /// Horizontal polygon with its vertices at height z, seen from above.
+    /// A horizontal polygon at height z [m], visible from above.
     void polygon(const std::vector<Vec2>& outline, double z, Material material);
 
-    /// Sweeps a profile along an outline. Neighbouring rows share smoothed normals when `smooth`.
+    /// Sweeps a profile along an outline. If `smooth`, the normals are averaged between neighbouring strips.
     void sweep(const Chain& outline, const std::vector<ProfileRow>& rows, Material material, bool smooth);
 
-    /// Level ring sector or full disc (inner = 0).
+    /// A horizontal ring, or a full disc if inner = 0.
     void disc(const Vec2& center, double inner, double outer, double z, Material material, double u = 0.0);
 
-    /// A vertical wall seen from inside.
+    /// The vertical wall of a cylinder, visible from inside.
     void well(const Vec2& center, double radius, double top, double bottom, Material material);
 
   private:

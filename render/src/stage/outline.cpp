@@ -9,18 +9,18 @@ namespace carom::render {
 
 namespace {
 
-// [m] Ends closer than this are drawn as joined: far below a pixel, far above the rounding of typed coordinates.
+// [m] Ends closer than this are drawn as joined: far below a pixel, far above the rounding of given coordinates.
 constexpr double kJoin = 1e-5;
 
-// [m] An end lies on a jaw when it is this close to its circle: tangent points typed with four decimals count.
+// [m] An end lies on a jaw if it is this close to its circle: this includes tangent points given with four decimals.
 constexpr double kOnJaw = 2e-4;
 
 // [rad] Length of one straight piece of a drawn arc.
 constexpr double kArcStep = 0.06;
 
 struct Link {
-    int end = -1;  // the end it leads to: 2 * cushion for `from`, 2 * cushion + 1 for `to`
-    int jaw = -1;  // by way of this jaw's arc, or -1
+    int end = -1;  // the linked end: 2 * cushion for `from`, 2 * cushion + 1 for `to`
+    int jaw = -1;  // the jaw whose arc connects the two ends, or -1
 };
 
 const Vec2& point_of(const Table& table, int end) {
@@ -59,7 +59,7 @@ std::vector<Link> link_ends(const Table& table) {
     return links;
 }
 
-// The inner points of the shorter arc from a to b.
+// Appends the inner points of the shorter arc from a to b.
 void append_arc(Chain& chain, const Jaw& jaw, const Vec2& a, const Vec2& b) {
     const Vec2 start = a - jaw.center, stop = b - jaw.center;
     const double angle = std::atan2(cross(start, stop), start.dot(stop));
@@ -80,7 +80,7 @@ Chain walk(const Table& table, const std::vector<Link>& links, int first_end, st
         const int cushion = end / 2, other = end ^ 1;
         used[cushion] = 1;
         const double height = table.cushions[cushion].height;
-        // A joint without a jaw was pushed as the end of the cushion before.
+        // A joint without a jaw has already been added as the end of the previous cushion.
         if (chain.points.empty() || (chain.points.back() - point_of(table, end)).norm() >= kJoin) {
             chain.points.push_back(point_of(table, end));
             chain.heights.push_back(height);
@@ -110,7 +110,7 @@ std::vector<Chain> join_outline(const Table& table) {
     const std::vector<Link> links = link_ends(table);
     std::vector<char> used(table.cushions.size(), 0);
     std::vector<Chain> chains;
-    // Open chains start at a free end; what is left after them are rings.
+    // Open chains start at a free end; the cushions that remain after them form closed chains.
     for (int pass = 0; pass < 2; ++pass) {
         for (std::size_t end = 0; end < links.size(); ++end) {
             const bool start = pass == 1 || links[end].end < 0;
@@ -156,7 +156,7 @@ std::vector<Vec2> offset_left(const std::vector<Vec2>& points, bool closed, doub
             continue;
         }
         const Vec2 middle = *before + *after;
-        // |middle|^2 / 2 = 1 + cos(turn); moving by middle / (1 + cos) keeps both edges at the distance.
+        // |middle|^2 / 2 = 1 + cos(turn); a shift by distance * middle / (1 + cos) moves both edges by the distance.
         const double spread = std::max(0.5 * middle.squaredNorm(), 0.3);
         moved[i] = points[i] + middle * (distance / spread);
     }
@@ -184,7 +184,7 @@ std::vector<int> triangulate(const std::vector<Vec2>& polygon) {
         for (std::size_t i = 0; i < n && ear == n; ++i) {
             if (is_ear(left[(i + n - 1) % n], left[i], left[(i + 1) % n])) ear = i;
         }
-        // None left: collinear rest, or an outline that crosses itself; any cut ends the loop.
+        // No ear: the remaining points are collinear, or the outline crosses itself. Any cut then ends the loop.
         if (ear == n) ear = 0;
         for (std::size_t k : std::array<std::size_t, 3>{(ear + n - 1) % n, ear, (ear + 1) % n}) {
             triangles.push_back(left[k]);

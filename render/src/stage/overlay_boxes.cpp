@@ -12,15 +12,15 @@ namespace carom::render {
 
 namespace {
 
-constexpr Rgba kPanel{0.0F, 0.0F, 0.0F, 0.60F};
-constexpr Rgba kInk{0.97F, 0.97F, 0.95F, 1.0F};
+constexpr Rgba kPanel{0.0F, 0.0F, 0.0F, 0.60F};  // background of the panels
+constexpr Rgba kInk{0.97F, 0.97F, 0.95F, 1.0F};  // text
 
-// Height of a capital: readable on a small frame, not large on a big one, and both panels fit beside each other.
+// [pixels] Height of a capital letter: readable in small frames, bounded in large ones; both panels fit side by side.
 double text_height(const DrawList& list) {
     return std::clamp(std::min(list.camera.size.height / 48.0, list.camera.size.width / 36.0), 5.0, 28.0);
 }
 
-// Width of one character over the height of a capital.
+// [-] Width of one character divided by the height of a capital letter.
 constexpr double kAdvance = 0.92;
 
 }  // namespace
@@ -30,7 +30,7 @@ double text_width(double height, std::string_view text) {
 }
 
 void add_text(DrawList& list, const Vec2& at, double height, std::string_view text, const Rgba& color) {
-    // A cell of the atlas is 6 x 9 units, a capital 4 x 6 in its middle.
+    // A cell of the atlas is 6 x 9 units; the capital in its centre is 4 x 6 units.
     const double unit = height / 6.0;
     double x = at.x();
     for (char c : text) {
@@ -57,7 +57,7 @@ void add_margin_bar(DrawList& list, const FrameBudget& cost) {
     const std::string text = fmt::format("{:.1f} OF {:.1f} MS", cost.cost_ms, cost.budget_ms);
     list.boxes.push_back({{left, room}, {right, 4.0 * room + 1.7 * height}, kPanel, -1});
     add_text(list, {left + room, 2.0 * room}, height, text, kInk);
-    // The whole bar is twice the budget; its middle is where a frame is missed.
+    // The full bar is twice the budget; beyond its middle the frame exceeds its budget.
     const double top = 3.0 * room + height, share = std::clamp(0.5 * cost.cost_ms / cost.budget_ms, 0.0, 1.0);
     const Rgba good{0.25F, 0.80F, 0.35F, 1.0F}, bad{0.92F, 0.25F, 0.20F, 1.0F}, mark{1.0F, 1.0F, 1.0F, 0.9F};
     const double x = left + room, bottom = top + 0.7 * height;

@@ -1,4 +1,4 @@
-// Panels of the overlays: text and bars over the picture.
+// Panels of the overlays: text and bars on top of the picture.
 #pragma once
 
 #include "carom/render/draw_list.h"

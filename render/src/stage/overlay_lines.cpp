@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kOnCloth = 0.0012;  // [m] height of lines on the cloth
 
-// [s] For how long a ring shows a new event.
+// [s] Duration of the ring around a new event.
 constexpr double kRingTime = 0.33;
 
 Rgba state_color(MotionState state) {
@@ -27,7 +27,7 @@ Rgba state_color(MotionState state) {
     }
 }
 
-// Width that suits the image: thin lines on small frames.
+// Line width [pixels] in proportion to the image, at least 1.
 float line_width(const DrawList& list, double pixels_at_720) {
     const double shorter = std::min(list.camera.size.width, list.camera.size.height);
     return static_cast<float>(std::max(1.0, pixels_at_720 * shorter / 720.0));
@@ -40,7 +40,7 @@ void add_trail(DrawList& list, const BallTrack& track, double t, float width) {
         const double end = i + 1 < track.segments.size() ? std::min(track.segments[i + 1].start, t) : t;
         const double lasts = std::min(end - segment.start, segment.duration);
         if (!(lasts > 0.0) || segment.v.norm() == 0.0) continue;
-        // Only a path whose acceleration is not along its velocity bends.
+        // The path is curved only if the acceleration is not parallel to the velocity.
         const Vec2 v = segment.v.head<2>();
         const bool bends = std::abs(cross(v, segment.a)) > 1e-9 * v.norm() * segment.a.norm();
         const int pieces = bends ? 8 : 1;
@@ -80,10 +80,9 @@ void add_events(DrawList& list, const Record& record, double t) {
         if (event.time > t) break;
         const EventPhase phase = kind(event.type).phase;
         if ((phase != EventPhase::kImpact && phase != EventPhase::kStrike) || event.a < 0) continue;
-        const double when = std::nextafter(event.time, -1.0);  // before a pocket takes the ball away
+        const double when = std::nextafter(event.time, -1.0);  // before the ball is moved into a pocket
         Vec3 place = record.state_at(event.a, when).position;
-        const bool pair =
-            event.b >= 0 && balls_collide(event.type);
+        const bool pair = event.b >= 0 && balls_collide(event.type);
         if (pair) place = 0.5 * (place + record.state_at(event.b, when).position);
         place.z() = kOnCloth;
         const Rgba color = event_color(event.type);
@@ -106,7 +105,7 @@ void add_arrow_head(DrawList& list, const Vec3& tip, const Vec3& along, double s
     }
 }
 
-// A dark copy under the lines from `first` on: yellow on a yellow ball is not seen otherwise.
+// Adds a dark copy under the lines from `first` on; a yellow line on a yellow ball would otherwise not be visible.
 void add_outline(DrawList& list, std::size_t first, float wider) {
     std::vector<DrawLine> dark(list.lines.begin() + static_cast<std::ptrdiff_t>(first), list.lines.end());
     for (DrawLine& line : dark) {
@@ -125,7 +124,7 @@ void add_spin(DrawList& list, const Record& record, double t) {
         if (state.state == MotionState::kPocketed || state.state == MotionState::kStationary) continue;
         const double R = record.size(static_cast<int>(i)).R;
         const Vec3 top = state.position + Vec3(0.0, 0.0, R);
-        // The top of the ball moves with w x R z: a tenth of a second of it, at most ten radii.
+        // The spin moves the top of the ball with w x R z; the arrow shows 0.1 s of this, at most ten radii.
         const Vec3 surface(R * state.spin.y(), -R * state.spin.x(), 0.0);
         const double length = std::min(0.1 * surface.norm(), 10.0 * R);
         if (length > 0.2 * R) {
@@ -133,7 +132,7 @@ void add_spin(DrawList& list, const Record& record, double t) {
             list.lines.push_back({top, tip, width, level, LineLayer::kOverBalls});
             add_arrow_head(list, tip, along, std::min(0.6 * R, 0.5 * length), width, level);
         }
-        // A full arc stands for 60 rad/s about the vertical.
+        // The longest arc represents 60 rad/s about the vertical, or more.
         const double arc = std::clamp(state.spin.z() / 60.0, -1.0, 1.0) * 1.7 * std::numbers::pi;
         if (std::abs(arc) > 0.05) {
             const Vec3 level_center(state.position.x(), state.position.y(), R);
@@ -149,8 +148,7 @@ void add_spin(DrawList& list, const Record& record, double t) {
 
 void add_ghost(DrawList& list, const Record& record, double t) {
     const auto next = std::find_if(record.events.begin(), record.events.end(), [t](const Event& event) {
-        return event.time > t &&
-               balls_collide(event.type);
+        return event.time > t && balls_collide(event.type);
     });
     if (next == record.events.end()) return;
     const auto speed = [&](int ball) {

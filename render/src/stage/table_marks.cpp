@@ -6,7 +6,7 @@ namespace carom::render {
 
 namespace {
 
-constexpr double kAboveCloth = 0.0005;  // [m]
+constexpr double kAboveCloth = 0.0005;  // [m] height of painted marks above the cloth
 
 void line(MeshBuilder& builder, const Vec2& a, const Vec2& b, double width, double opacity) {
     const Vec2 along = (b - a).normalized(), side = 0.5 * width * Vec2(-along.y(), along.x());
@@ -40,12 +40,12 @@ void add_diamonds(const Table& table, const TableMesh& mesh, MeshBuilder& builde
     }
 }
 
-// Baulk line and D of an English table, and its six spots (World Snooker rules, section 1; baulk line 29 in
-// from the bottom cushion face, D of 11 1/2 in; black spot 12 3/4 in from the top cushion).
+// Baulk line, D and the six spots of an English table (World Snooker rules, section 1: the baulk line is 29 in from
+// the face of the bottom cushion, the D has a radius of 11 1/2 in, the black spot is 12 3/4 in from the top cushion).
 void add_snooker_marks(const Table& table, MeshBuilder& builder) {
     const double w = table.width, l = table.length, baulk = 0.737, d = 0.292;
     line(builder, {0.0, baulk}, {w, baulk}, 0.003, 0.6);
-    constexpr int kPieces = 48;
+    constexpr int kPieces = 48;  // [-] straight pieces of the D
     Vec2 before(0.5 * w - d, baulk);
     for (int i = 1; i <= kPieces; ++i) {
         const double angle = 3.14159265358979323846 * i / kPieces;

@@ -10,12 +10,12 @@ namespace carom::render {
 
 namespace {
 
-// Proportions of what the engine does not know because no ball feels it [m].
-constexpr double kCushionWidth = 0.05;    // of a cushion without facings to tell its depth
+// [m] Dimensions that the engine does not define because they do not affect the balls.
+constexpr double kCushionWidth = 0.05;    // of a cushion without facings, which would show its depth
 constexpr double kRailWidth = 0.095;      // of the wooden rail outside the cushion
-constexpr double kWallHalfWidth = 0.005;  // of a cushion that balls meet on both sides
-constexpr double kShadeWidth = 0.045;     // of the dark seam along a cushion
-constexpr double kApron = 0.22;           // how far the frame reaches down
+constexpr double kWallHalfWidth = 0.005;  // of a cushion with balls on both sides
+constexpr double kShadeWidth = 0.045;     // of the dark shading along a cushion
+constexpr double kApron = 0.22;           // depth of the frame below the cloth
 
 struct Box {
     Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
@@ -34,7 +34,7 @@ Chain closed_chain(std::vector<Vec2> points, double height) {
     return chain;
 }
 
-// Clockwise, so that the frame lies to the left of it.
+// A clockwise rectangle: the frame lies to the left of it.
 Chain rectangle(const Vec2& low, const Vec2& high, double height) {
     return closed_chain({low, {low.x(), high.y()}, high, {high.x(), low.y()}}, height);
 }
@@ -75,24 +75,23 @@ class TableMaker {
         mesh_.wood_top = nose_ + 0.008;
     }
 
-    // Rails with jaws around pockets stand in a rectangular frame.
+    // Whether the table has rails with jaws around pockets; these get a rectangular frame.
     bool is_railed(const std::vector<Chain>& chains) const {
         return !table_.pockets.empty() &&
                std::any_of(chains.begin(), chains.end(), [](const Chain& chain) { return chain.has_jaw; });
     }
 
-    // On which side of an open chain the balls are: +1 all to the left, -1 all to the right, 0 both or none.
+    // The side of an open chain on which the balls are: +1: all left; -1: all right; 0: on both sides, or no balls.
     int side_of_balls(const Chain& chain) const {
         bool left = false, right = false;
         for (const Vec2& ball : visited_) {
             double nearest = 1e300, side = 0.0;
             for (std::size_t i = 0; i + 1 < chain.points.size(); ++i) {
-                const Vec2 edge = chain.points[i + 1] - chain.points[i], to = ball - chain.points[i];
-                const double t = std::clamp(edge.dot(to) / edge.squaredNorm(), 0.0, 1.0);
-                const double distance = (to - t * edge).squaredNorm();
+                const Vec2 &from = chain.points[i], &to = chain.points[i + 1];
+                const double distance = distance_to_segment(ball, from, to);
                 if (distance < nearest) {
                     nearest = distance;
-                    side = cross(edge, to);
+                    side = cross(to - from, ball - from);
                 }
             }
             (side > 0.0 ? left : right) = true;
@@ -138,7 +137,7 @@ class TableMaker {
             Material::kShade, false);
     }
 
-    // The side that balls meet: from under the nose, over the nose, to where the flat top begins.
+    // The side towards the balls: from below the nose, over the nose, to the edge of the flat top.
     void add_nose(const Chain& chain, double inset) {
         Chain ground = chain;
         std::fill(ground.heights.begin(), ground.heights.end(), 0.0);
@@ -153,8 +152,8 @@ class TableMaker {
         shade_cloth(chain);
     }
 
-    // A cushion whose back is known: its outline, closed by a straight line if it is open. What stands free
-    // on the cloth has a wooden top, or it would be lost on the cloth.
+    // A cushion whose back is known: its outline, closed by a straight line if it is open. The caller chooses a wooden
+    // top for a body that is free-standing on the cloth, where a top of cloth would hardly be visible.
     void add_body(const Chain& chain, Material top = Material::kCushion) {
         const double inset = 0.006;
         add_nose(chain, inset);
@@ -170,7 +169,7 @@ class TableMaker {
                        wall ? Material::kWood : Material::kCushion, false);
     }
 
-    // A closed outline with the balls inside: cloth, cushion and wood follow it.
+    // A closed outline with the balls inside: cloth, cushion and wooden rail follow it.
     void add_surrounding(const Chain& chain) {
         builder_.polygon(reversed(offset_left(chain.points, true, 0.02)), 0.0, Material::kCloth);
         add_strip(chain, kCushionWidth, false);
@@ -246,7 +245,7 @@ class TableMaker {
     }
 
     void add_jaw(const Jaw& jaw) {
-        // Joined jaws lie inside their cushion; only a free-standing post shows.
+        // A jaw that is joined to a cushion lies inside it; only free-standing posts are drawn.
         const bool joined =
             std::any_of(table_.cushions.begin(), table_.cushions.end(), [&](const Cushion& cushion) {
                 return std::abs((cushion.from - jaw.center).norm() - jaw.radius) < 2e-4 ||

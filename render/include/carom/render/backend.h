@@ -1,4 +1,4 @@
-// Where the OpenGL context comes from. Both libraries are loaded at run time.
+// Which library creates the OpenGL context. Both libraries are loaded at run time.
 #pragma once
 
 #include <cstdint>

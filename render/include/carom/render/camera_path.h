@@ -1,4 +1,4 @@
-// Cameras by name: where the eye is at every time of a shot.
+// Named cameras: the position of the eye at every time of a shot.
 #pragma once
 
 #include <memory>
@@ -11,18 +11,18 @@
 
 namespace carom::render {
 
-/// A view given in numbers, and what else a named camera can be told.
+/// A view given in numbers, and the options of named cameras.
 struct FreeCamera {
-    std::optional<Vec3> eye, target;  ///< [m]; both, or neither for a named camera
-    double fov_deg = 45.0;            ///< of the free camera, over the height of the image
-    std::string ball;  ///< id of the ball that "follow" follows; default: the one that moves first
+    std::optional<Vec3> eye, target;  ///< [m]; set both, or neither for a named camera
+    double fov_deg = 45.0;            ///< vertical field of view of the free camera [deg]
+    std::string ball;  ///< id of the ball that "follow" follows; default: the ball that moves first
 };
 
-/// top: from above, the table filling the image. rail: from behind the head rail, the whole table. player:
-/// over the ball that moves first, along its way. follow: behind a ball, moving smoothly with it.
+/// top: from above; the table fills the image. rail: from behind the head rail; shows the whole table. player:
+/// above the ball that moves first, looking along its path. follow: behind a ball, moving smoothly with it.
 class CameraPath {
   public:
-    /// Both must outlive the path. @throws RenderError for an unknown camera or ball, naming those there are
+    /// `record` must outlive the path. @throws RenderError for an unknown camera or ball; it lists the known ones
     CameraPath(const Record& record, const TableMesh& table, const std::string& name, const FreeCamera& free,
                FrameSize size);
 
@@ -36,10 +36,11 @@ class CameraPath {
     Vec3 follow_offset_{0.0, 0.0, 1.0};
 };
 
-/// A camera looking along `direction` at the box, as near as shows all of it.
+/// A camera that looks along `direction` at the box, at the shortest distance that still shows all of it.
 Camera fitting_camera(const Bounds& bounds, const Vec3& direction, double fov_y_deg, FrameSize size);
 
-/// The ball that moves first: the one the cue strikes, or else the first with a velocity; 0 if none moves.
+/// Index of the ball that moves first: the ball that the cue strikes, or else the first ball with a velocity; 0 if
+/// none moves.
 int first_ball(const Record& record);
 
 }  // namespace carom::render

@@ -1,4 +1,4 @@
-// What to draw, with no OpenGL in it: Record and time in, DrawList out.
+// What to draw, independent of OpenGL: a Stage turns a Record and a time into a DrawList.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,8 +21,8 @@ namespace carom::render {
 enum class BallPattern : std::uint8_t {
     kSolid,   ///< one colour, numbered
     kStripe,  ///< white with a coloured band, numbered
-    kDots,    ///< one colour with six small dots, so that a turn shows
-    kHalves,  ///< two shades of one colour: for balls that are not of a known game
+    kDots,    ///< one colour with six small dots, so that a rotation is visible
+    kHalves,  ///< two shades of one colour: for balls that belong to no known game
 };
 
 struct BallStyle {
@@ -31,7 +31,7 @@ struct BallStyle {
     int number = 0;  ///< 1..99, or 0 for none
 };
 
-/// How a ball looks, by its id and the table it is on ("3" is a numbered ball, but a red one on a snooker table).
+/// The style of a ball by its id and its table ("3" is a numbered ball, but a red ball on a snooker table).
 BallStyle ball_style(const std::string& id, const std::string& table_preset, int index);
 
 struct DrawBall {
@@ -42,11 +42,11 @@ struct DrawBall {
     bool in_pocket = false;
 };
 
-using Rgba = std::array<float, 4>;  ///< as on the screen, 0..1; the last is opacity
+using Rgba = std::array<float, 4>;  ///< sRGB and opacity, 0..1
 
 enum class LineLayer : std::uint8_t { kUnderBalls, kOverBalls };
 
-/// A straight line in the table's space, of a width in pixels, with round ends. What stands before it hides it.
+/// A straight line in the table frame [m] with a width in pixels and round ends. Nearer parts of the table hide it.
 struct DrawLine {
     Vec3 a{0.0, 0.0, 0.0}, b{0.0, 0.0, 0.0};
     float width = 2.0F;
@@ -54,14 +54,14 @@ struct DrawLine {
     LineLayer layer = LineLayer::kUnderBalls;
 };
 
-/// A rectangle of the image [pixels], filled, or as the cell of one character.
+/// A rectangle of the image [pixels]: filled, or the cell of one character (`glyph`).
 struct DrawBox {
     Vec2 low{0.0, 0.0}, high{0.0, 0.0};
     Rgba color{1.0F, 1.0F, 1.0F, 1.0F};
     int glyph = -1;
 };
 
-/// Samples of the table for a camera that moves, which pays for them in every frame.
+/// [samples per pixel] Limit for the table if the camera moves: the table is then redrawn in every frame.
 inline constexpr int kMovingSamples = 4;
 
 struct DrawList {
@@ -70,15 +70,15 @@ struct DrawList {
     std::vector<DrawBall> balls;
     std::vector<DrawLine> lines;
     std::vector<DrawBox> boxes;
-    /// Per pixel of the table; it is drawn anew only when the camera or the table changes
+    /// Samples per pixel of the table, which is redrawn only when the camera or the table changes
     int table_samples = 16;
 };
 
-/// Appends a line of text with its upper left corner at `at`; height of a capital in pixels.
-/// Characters that the renderer has no shape for are left blank.
+/// Appends a line of text with its upper left corner at `at`. `height`: height of a capital letter [pixels].
+/// Characters without a glyph are left blank.
 void add_text(DrawList& list, const Vec2& at, double height, std::string_view text, const Rgba& color);
 
-/// Width of that text [pixels].
+/// Width of the same text [pixels].
 double text_width(double height, std::string_view text);
 
 struct StageOptions {
@@ -89,12 +89,12 @@ struct StageOptions {
     int table_samples = 16;
 };
 
-/// What one frame cost of the time that it may take, for the margin bar.
+/// Computing time of one frame and the time available for it; the margin bar shows both.
 struct FrameBudget {
     double cost_ms = 0.0, budget_ms = 0.0;
 };
 
-/// Turns a record into draw lists: what does not change with time is made once.
+/// Turns a record into draw lists. Everything that does not change with time is computed once.
 class Stage {
   public:
     /// `record` must outlive the stage. @throws RenderError for an unknown camera

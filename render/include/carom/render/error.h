@@ -1,11 +1,11 @@
-// The one error that the renderer throws.
+// The only exception that the renderer throws.
 #pragma once
 
 #include <stdexcept>
 
 namespace carom::render {
 
-/// A renderer that cannot start, or a file that cannot be written. what() names the package or the file.
+/// The renderer cannot start, or a file cannot be written. what() names the missing package or the file.
 class RenderError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;

@@ -9,7 +9,7 @@
 
 namespace carom::render {
 
-/// Eight bits a channel, four channels (the fourth means nothing), sRGB, row 0 at the top.
+/// Four channels of eight bits (the fourth is unused), sRGB, row 0 at the top.
 struct Image {
     FrameSize size{0, 0};
     std::vector<std::uint8_t> rgbx;

@@ -9,8 +9,8 @@ namespace carom::render {
 
 struct DrawnPicture;
 
-/// An image that only a renderer fills, and that remembers what it shows: reading the next frame into it
-/// copies the pixels that may differ and no others. Any renderer may fill it.
+/// An image that only a renderer writes to and that records what it shows: reading the next frame into it
+/// copies only the pixels that may differ. It is not bound to one renderer.
 class KeptImage {
   public:
     const Image& image() const { return image_; }

@@ -1,4 +1,4 @@
-// What can be drawn over the picture, each on its own.
+// The overlays that can be drawn over the picture, independently of each other.
 #pragma once
 
 #include <string_view>
@@ -6,18 +6,18 @@
 namespace carom::render {
 
 struct Overlay {
-    bool trails = false;  ///< every ball's way so far, coloured by its motion state
-    bool events = false;  ///< a dot where an impact was; a ring shows it for a third of a second
-    /// Arrows: the way the top of a ball turns, and an arc for the spin about the vertical
+    bool trails = false;  ///< the path of every ball so far, coloured by its motion state
+    bool events = false;  ///< a dot at each impact, with a ring around it for the first third of a second
+    /// An arrow for the velocity of the top of a ball by its spin, and an arc for the spin about the vertical
     bool spin = false;
-    bool ghost = false;   ///< where a moving ball will stand when it next meets another
-    bool clock = false;   ///< s of the shot
-    bool margin = false;  ///< the frame's cost against its 1 / fps
+    bool ghost = false;   ///< position of a moving ball at its next collision with another ball
+    bool clock = false;   ///< time of the shot [s]
+    bool margin = false;  ///< computing time of the frame compared with the available time, 1 / fps
 
     bool any() const { return trails || events || spin || ghost || clock || margin; }
 };
 
-/// "trails,clock", or "all" or "" (none). @throws RenderError naming an unknown one and those there are
+/// "trails,clock", or "all" or "" (none). @throws RenderError that names an unknown overlay and lists the known ones
 Overlay parse_overlay(std::string_view list);
 
 }  // namespace carom::render

@@ -9,12 +9,12 @@
 
 namespace carom::render {
 
-/// Encodes as 8-bit RGB without row filters (on flat pictures faster and smaller than with them). level:
-/// zlib, 0..9. `bytes` is overwritten, its memory reused. @throws RenderError
+/// Encodes as 8-bit RGB without row filters, which is faster and smaller for pictures with large uniform areas.
+/// level: of zlib, 0..9. `bytes` is overwritten and its memory is reused. @throws RenderError
 void encode_png(const Image& image, int level, std::vector<std::uint8_t>& bytes);
 
-/// Writes to a temporary name beside `path` and renames. On failure nothing is left. @throws RenderError
-/// naming the file
+/// Writes to a temporary name in the same folder, then renames it to `path`. After a failure no file is left.
+/// @throws RenderError naming the file
 void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes);
 
 }  // namespace carom::render

@@ -1,4 +1,4 @@
-// Draw lists in, pixels out. Needs no display; one renderer belongs to the thread that made it.
+// Turns draw lists into pixels. Needs no display. A renderer may be used only by the thread that created it.
 #pragma once
 
 #include <functional>
@@ -14,31 +14,31 @@ namespace carom::render {
 
 class Renderer {
   public:
-    /// @throws RenderError: no such library (names its package), or no OpenGL 3.3
+    /// @throws RenderError if the library is missing (the message names its package) or has no OpenGL 3.3
     explicit Renderer(Backend backend = Backend::kOsmesa);
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// Starts to draw the list. If neither table nor camera changed, only what did is drawn; the pixels are
-    /// those of a whole picture.
+    /// Starts to draw the list. If table and camera are unchanged, only the parts that changed are redrawn; the
+    /// pixels are the same as those of a complete drawing.
     void draw(const DrawList& list);
 
-    /// Called, from now on, after every pass over a table while that is drawn, and the pass is then done; may
-    /// throw to stop. Nothing: no pass is waited for.
+    /// Sets a function that is called after every finished pass over the table; it may throw to stop. With an
+    /// empty function, which is the default, the renderer does not wait for each pass.
     void on_table(std::function<void(int done, int total)> pass);
 
-    /// Waits until the last draw() is done: for those who measure it.
+    /// Waits until the last draw() is finished, so that a caller can measure its time.
     void finish();
 
     /// Copies the pixels of the last draw().
     void read(Image& image);
 
-    /// The same, but only those that differ from what the image shows.
+    /// The same, but copies only the pixels that may differ from those in the image.
     void read(KeptImage& image);
 
-    /// Those of the draw() before, while the last one goes on in
-    /// the driver's threads. Needs two draws of one size before.
+    /// Copies the pixels of the draw() before the last one, while the last one continues in the threads of the
+    /// driver. Requires two earlier draws of the same size.
     void read_previous(KeptImage& image);
 
   private:

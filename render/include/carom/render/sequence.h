@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/frame_size.h"
 #include "carom/engine/record.h"
 #include "carom/render/backend.h"
 #include "carom/render/camera_path.h"
 #include "carom/render/error.h"
-#include "carom/engine/frame_size.h"
 #include "carom/render/overlay.h"
 
 namespace carom::render {
@@ -20,37 +20,37 @@ namespace carom::render {
 using RawSink = std::function<void(const std::uint8_t* rgb, std::size_t bytes)>;
 
 struct SequenceOptions {
-    /// Exactly one %d or %0Nd; empty: frames are encoded, thrown away
+    /// Contains exactly one %d or %0Nd. Empty: frames are encoded, but not written
     std::string pattern = "frames/%05d.png";
     double fps = 60.0;
     double from = 0.0;          ///< s
     std::optional<double> to;   ///< s; default: the record's duration
-    std::optional<long> frame;  ///< only this k
+    std::optional<long> frame;  ///< render only this frame k
     FrameSize size;
     std::string camera = "top";  ///< top, rail, player or follow
-    FreeCamera view;             ///< eye and target instead of a named camera; which ball to follow
+    FreeCamera view;             ///< eye and target that replace the named camera; id of the ball to follow
     Overlay overlay;
-    /// For the margin bar [ms]: what simulating frame k cost; default: 0. Added to it is what drawing,
-    /// reading back and encoding took for the last frames of which it is known while frame k is drawn (one to
-    /// a few before it).
+    /// For the margin bar: time that the simulation of frame k took [ms]; default: 0. The times of drawing,
+    /// reading back and encoding are added, each from the latest frame for which it is known while frame k is
+    /// drawn (one to a few frames earlier).
     std::function<double(long k)> simulate_ms;
-    /// Instead of all that: what the bar shows for frame k.
+    /// If set, the bar shows this time for frame k instead [ms].
     std::function<double(long k)> frame_cost_ms;
-    /// Per pixel of the table, drawn once per camera; a camera that moves takes at most 4
+    /// Samples per pixel of the table, which is drawn once per camera; at most 4 are used if the camera moves
     int table_samples = 16;
     int png_level = 1;  ///< zlib level 0..9
     Backend backend = Backend::kOsmesa;
-    /// Threads that encode and write. 1: no thread but the caller's, so that the timings do not disturb each
-    /// other. 0: one per core, and 1 with an empty pattern, which is for measuring.
+    /// Number of threads that encode and write. 1: everything runs on the calling thread, so that the timings do not
+    /// disturb each other. 0: one per core, or 1 with an empty pattern, which is used for measurements.
     int jobs = 0;
-    bool resume = false;  ///< leave out frames whose finished file is there; it must be a PNG of this size
+    bool resume = false;  ///< skip frames whose finished file exists; the file must be a PNG of this size
     RawSink raw;          ///< instead of PNG files; the pattern is not used
-    std::function<void(long done, long total)> progress;  ///< on the calling thread; may throw to stop
-    /// The same while the table is drawn, which comes before the first frame: passes of it.
+    std::function<void(long done, long total)> progress;  ///< called on the calling thread; may throw to stop
+    /// The same for the passes over the table, which is drawn before the first frame.
     std::function<void(int done, int total)> table_progress;
 };
 
-/// What one frame cost. Frame k shows the time from + k / fps, computed from the integer k.
+/// Computing times of one frame. Frame k shows the time from + k / fps, computed from the integer k.
 struct FrameTiming {
     long frame = 0;
     double time = 0.0;  ///< s of the shot
@@ -64,17 +64,17 @@ double frame_time(double from, long k, double fps);
 /// @throws RenderError unless fps > 0 and both times are finite
 long frame_count(double from, double to, double fps);
 
-/// Renders and writes (temporary name, then renamed). Makes the folder of the pattern if its parent exists.
-/// Frames that --resume leaves out have no timing. Memory does not grow with the number of frames.
-/// @throws RenderError naming the file; frames finished before stay, nothing half-written does
+/// Renders and writes the frames (to a temporary name, then renamed). Creates the folder of the pattern if its
+/// parent exists. Skipped frames (`resume`) have no timing. Memory does not grow with the number of frames.
+/// @throws RenderError naming the file; finished frames stay, and no incomplete file is left
 std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOptions& options);
 
 /// The file of frame k; @throws RenderError for a pattern without exactly one integer conversion.
 std::string frame_path(const std::string& pattern, long k);
 
-/// A contact sheet: columns x rows pictures of the shot, evenly spread from `from` to `to` with both ends,
-/// row by row, each with its clock. options.size is the size of the whole sheet; pattern, frame, jobs and raw
-/// are not used.
+/// Writes a contact sheet: columns x rows pictures of the shot, row by row, each with its clock. Their times are
+/// evenly spaced from `from` to `to`, both included. options.size is the size of the whole sheet; pattern, frame,
+/// jobs and raw are not used.
 /// @throws RenderError
 void render_sheet(const Record& record, const SequenceOptions& options, int columns, int rows,
                   const std::string& path);

@@ -1,4 +1,4 @@
-// The table as triangles, made from the cushions, jaws and pockets that balls really bounce off and fall into.
+// The table as triangles, made from the same cushions, jaws and pockets that the simulation uses.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 namespace carom::render {
 
 enum class Material : std::uint8_t {
-    kCloth,    ///< the playing surface; the only one that balls throw shadows on
+    kCloth,    ///< the playing surface; only here do balls cast shadows
     kCushion,  ///< cloth over rubber
-    kWood,     ///< u along the grain, v across [m]
+    kWood,     ///< texture coordinates [m]: u along the grain, v across it
     kPocket,   ///< the wall of a hole
     kTrim,     ///< the rim of a pocket
     kInlay,    ///< diamonds
     kFloor,
-    kShade,  ///< blended over the cloth: black, u = opacity
-    kChalk,  ///< blended over the cloth: white, u = opacity
+    kShade,  ///< black, blended over the cloth; u is the opacity
+    kChalk,  ///< white, blended over the cloth; u is the opacity
 };
 
 struct MeshVertex {
@@ -33,25 +33,25 @@ struct Hole {
     double radius = 0.0;
 };
 
-/// The lamp above the table: a level rectangle.
+/// The lamp above the table: a horizontal rectangle.
 struct Lamp {
     Vec3 center{0.0, 0.0, 1.0};
     Vec2 half{0.5, 0.5};
-    bool endless = false;  ///< light that does not fall off: for a cloth without end
+    bool endless = false;  ///< the light does not decrease with distance; for an unbounded cloth
 };
 
 struct TableMesh {
     Vec2 origin{0.0, 0.0};
-    std::vector<MeshVertex> solid, blended;          ///< three vertices a triangle
+    std::vector<MeshVertex> solid, blended;          ///< three vertices per triangle
     std::vector<Hole> holes;                         ///< of pockets; the first 128 are cut out of the cloth
-    Vec2 inner_low{0.0, 0.0}, inner_high{0.0, 0.0};  ///< box without wood
+    Vec2 inner_low{0.0, 0.0}, inner_high{0.0, 0.0};  ///< box inside the wooden frame
     double wood_top = 0.0;
     Bounds bounds;  ///< what a camera should show
     Lamp lamp;
 };
 
-/// Makes the table. `visited`: places that balls come to; they decide on which side of an open cushion its
-/// body lies, and what of an endless cloth is shown. R: ball radius.
+/// Makes the mesh. `visited`: positions that balls reach; they decide on which side of an open cushion its body
+/// lies, and which part of an unbounded cloth is shown. R: ball radius [m].
 TableMesh make_table_mesh(const Table& table, double R, const std::vector<Vec2>& visited);
 
 }  // namespace carom::render

@@ -2,11 +2,11 @@ flat in vec4 v_ball;
 flat in vec4 v_orientation;
 flat in vec4 v_color;
 flat in vec3 v_pattern;
-uniform sampler2D u_occluders;   // four distances of the table along the view
+uniform sampler2D u_occluders;   // four distances of the table along the view direction
 uniform sampler2D u_glyphs;
 out vec4 color;
 
-// The lamp on a ball: its middle is enough, its size shows as light that reaches past the rim.
+// Light of the lamp on a ball: its centre is accurate enough; the 0.15 stands for its size (light past the terminator).
 float lamp_on_ball(vec3 p, vec3 n) {
     vec3 to = vec3(u_lamp.xy, u_lamp.z) - p;
     if (u_lamp_endless > 0.5) to = vec3(0.0, 0.0, u_lamp.z);
@@ -20,10 +20,10 @@ vec3 to_body(vec3 n) {
     return n + 2.0 * cross(q, cross(q, n) + v_orientation.w * n);
 }
 
-// 1 inside; x grows outwards, w is the width of a pixel in the same unit.
+// Coverage: 1 inside. x increases outwards; w is the width of a pixel in the same unit.
 float inside(float x, float w) { return clamp(0.5 - x / w, 0.0, 1.0); }
 
-// How much ink: at is in radii of the ball, upright. Two digits stand side by side; each pixel looks up one.
+// Coverage by the digits; `at` is in radii of the ball, upright. Of two digits side by side each pixel reads one.
 float number_ink(int number, vec2 at, float w) {
     bool two = number > 9;
     int value = two && at.x < 0.0 ? number / 10 : number % 10;
@@ -33,10 +33,10 @@ float number_ink(int number, vec2 at, float w) {
     place /= box;
     vec2 unit = clamp(place * 0.5 + 0.5, vec2(0.02), vec2(0.98));
     float near = texture(u_glyphs, (vec2(value % 8, value / 8) + vec2(unit.x, 1.0 - unit.y)) * 0.125).r;
-    // Strokes 1.3 units thick; 9 units are the height of a cell.
+    // The strokes are 1.3 units thick; the height of a cell is 9 units.
     float ink = inside((1.0 - near) * 1.5 - 0.62, max(w * 4.5 / box.y, 0.05));
     ink = any(greaterThan(abs(place), vec2(1.0))) ? 0.0 : ink;
-    // A bar tells 6 from 9 when the ball lies upside down.
+    // A bar below the digit distinguishes 6 from 9 in every orientation.
     float bar = inside(max(abs(at.y + 0.43) - 0.035, abs(at.x) - 0.17), w);
     return number == 6 || number == 9 ? max(ink, bar) : ink;
 }
@@ -56,7 +56,7 @@ vec3 albedo(vec3 b, float w) {
     if (pattern == 3) base = mix(base, mix(base, vec3(1.0), 0.65), inside(b.x, w));
     int number = int(v_color.a + 0.5);
     if (number > 0) {
-        // The number stands on both ends of the body's z axis, upright for a camera that has +y to the right.
+        // The number is at both ends of the body's z axis, upright for a camera whose right-hand side is +y.
         float spot = inside(length(b.xy) - 0.52, w);
         base = mix(base, ivory, spot);
         vec2 at = vec2(b.y, b.z > 0.0 ? -b.x : b.x);
@@ -69,7 +69,7 @@ void main() {
     vec3 ray = pixel_ray(gl_FragCoord.xy);
     float per_depth = inversesqrt(dot(ray, ray));
     vec3 dir = ray * per_depth, oc = v_ball.xyz - u_eye;
-    // The foot of the perpendicular from the centre on the ray: no difference of large squares.
+    // Foot of the perpendicular from the centre to the ray: this avoids the difference of large squares.
     float along = dot(dir, oc);
     vec3 perpendicular = dir * along - oc;
     float miss = length(perpendicular), R = v_ball.w;
@@ -89,12 +89,12 @@ void main() {
     float facing = max(-dot(n, dir), 0.08);
     vec3 base = albedo(to_body(n), pixel / (R * mix(1.0, facing, 0.6)));
     vec3 cloth = from_screen(vec3(0.055, 0.50, 0.345));
-    // Light: the lamp, the dim room above, and what the cloth throws back from below.
+    // Light: the lamp, the dim room above, and the reflection of the cloth from below.
     float under = 0.5 - 0.5 * n.z;
     vec3 light = vec3(lamp_on_ball(p, n)) + 0.20 * (1.0 - under) + cloth * 0.75 * under * under;
     light *= 1.0 - 0.45 * smoothstep(0.55, 1.0, under);
     vec3 shade = base * light;
-    // Polish: a mirror image of the lamp, and the room at grazing angles.
+    // Specular reflection: a mirror image of the lamp, and of the room at grazing angles.
     vec3 r = reflect(dir, n);
     float grazing = 1.0 - max(-dot(n, dir), 0.0);
     float fresnel = 0.045 + 0.955 * grazing * grazing * grazing * grazing;

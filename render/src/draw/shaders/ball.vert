@@ -14,7 +14,7 @@ void main() {
     vec3 to_eye = u_eye - a_ball.xyz;
     float d = length(to_eye);
     vec3 side = normalize(cross(u_up_scaled, to_eye)), up = cross(to_eye / d, side);
-    // The silhouette seen from d, and a pixel and a half for its soft edge.
+    // The radius of the silhouette at distance d, and 1.5 pixels for its soft edge.
     float pixel = 2.0 * length(u_up_scaled) / u_size.y * d;
     float reach = a_ball.w * d / sqrt(max(d * d - a_ball.w * a_ball.w, 1e-12)) + 1.5 * pixel;
     vec2 corner = octagon_corner(gl_VertexID);

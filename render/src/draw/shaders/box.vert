@@ -1,6 +1,6 @@
 layout(location = 0) in vec4 a_box;      // low and high corner, pixels
 layout(location = 1) in vec4 a_color;
-layout(location = 2) in float a_glyph;   // cell of the atlas, or below 0 for a filled rectangle
+layout(location = 2) in float a_glyph;   // cell of the atlas; negative: a filled rectangle
 flat out vec4 v_box;
 flat out vec4 v_color;
 flat out int v_glyph;

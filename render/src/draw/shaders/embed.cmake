@@ -1,10 +1,10 @@
-# Writes the GLSL sources of this folder into one C++ source: cmake -DOUTPUT=shader_sources.cpp -P embed.cmake
+# Writes the GLSL sources of this folder into one C++ file: cmake -DOUTPUT=shader_sources.cpp -P embed.cmake
 set(folder ${CMAKE_CURRENT_LIST_DIR})
 set(text "// Made by render/src/draw/shaders/embed.cmake from the files beside it.\n#include \"draw/shaders.h\"\n\n")
 string(APPEND text "namespace carom::render::shaders {\n\nextern const char* const kCommon;\n\n")
 file(GLOB sources ${folder}/*.vert ${folder}/*.frag ${folder}/common.glsl)
 foreach(path IN LISTS sources)
-  # table.frag becomes kTableFragment.
+  # The source of table.frag gets the name kTableFragment.
   get_filename_component(name ${path} NAME_WE)
   get_filename_component(ending ${path} EXT)
   string(SUBSTRING ${name} 0 1 first)

@@ -3,12 +3,12 @@ layout(location = 1) in vec3 a_to;
 layout(location = 2) in vec4 a_color;
 layout(location = 3) in float a_width;
 flat out vec4 v_ends;      // pixels
-flat out vec2 v_closeness;  // one over the distance along the view, at both ends
+flat out vec2 v_closeness;  // reciprocal of the distance along the view direction, at both ends
 flat out vec4 v_color;
 flat out float v_half;
 void main() {
     vec4 p = u_view_projection * vec4(a_from, 1.0), q = u_view_projection * vec4(a_to, 1.0);
-    // What lies behind the eye is cut off.
+    // The part behind the eye is clipped.
     const float kNear = 0.01;
     if (max(p.w, q.w) < kNear) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
     if (p.w < kNear) p = mix(q, p, (q.w - kNear) / (q.w - p.w));

@@ -4,11 +4,11 @@ in vec2 v_uv;
 flat in int v_material;
 uniform vec4 u_holes[MAX_HOLES];   // x, y, radius
 uniform int u_hole_count;
-uniform vec2 u_clear;         // no hole reaches an x between these
-uniform vec4 u_inner;         // low x, low y, high x, high y of the box without wood
+uniform vec2 u_clear;         // no hole overlaps the range of x between these
+uniform vec4 u_inner;         // low x, low y, high x, high y of the box inside the wooden frame
 out vec4 color;
 
-// Value noise from an integer hash: the same on every machine, unlike fract(sin()).
+// Value noise from an integer hash, which gives the same result on every machine, unlike fract(sin()).
 uint hash(ivec2 p) {
     uint h = uint(p.x) * 0x9E3779B1u ^ uint(p.y) * 0x85EBCA77u;
     h ^= h >> 15; h *= 0x2C1B3C6Du; h ^= h >> 12; h *= 0x297A2D39u; h ^= h >> 15;
@@ -24,7 +24,7 @@ float noise(vec2 p) {
 }
 
 bool in_hole(vec2 p) {
-    // Most of the cloth is far from all holes: there the loop ends before it starts.
+    // Most of the cloth is far from all holes; the loop is skipped there.
     int count = p.x > u_clear.x && p.x < u_clear.y ? 0 : u_hole_count;
     for (int i = 0; i < count; ++i) {
         vec2 d = p - u_holes[i].xy;
@@ -36,7 +36,7 @@ bool in_inner(vec2 p) { return all(greaterThan(p, u_inner.xy)) && all(lessThan(p
 
 vec3 cloth_albedo(vec2 p) {
     vec3 base = from_screen(vec3(0.055, 0.50, 0.345));
-    // A coarse weave, seen only from near: it fades before its threads are narrower than a pixel or two.
+    // A coarse weave that is visible only from near: it fades out before its threads are one to two pixels wide.
     float pixel = length(fwidth(p));
     float fine = 1.0 - smoothstep(0.0006, 0.0016, pixel);
     vec2 thread = sin(p * (6.2831853 / 0.0026));
@@ -64,7 +64,7 @@ vec3 glossy(vec3 base, vec3 n, float strength, float blur) {
 }
 
 vec3 pocket_wall(vec3 p, vec3 n, float bottom) {
-    // Leather, lit through the mouth only: the light fades with depth.
+    // Leather that is lit only through the mouth of the pocket: the light decreases with depth.
     float fade = exp(min(p.z, 0.0) / 0.035);
     vec3 leather = from_screen(vec3(0.17, 0.13, 0.11));
     return leather * mix(0.06, 0.75, fade) * (bottom > 0.5 ? 0.5 : 0.6 + 0.4 * lamp_light(p, n));
@@ -74,7 +74,7 @@ vec3 floor_color(vec3 p) {
     vec2 half_size = 0.5 * (u_inner.zw - u_inner.xy), e = abs(p.xy - 0.5 * (u_inner.xy + u_inner.zw)) - half_size;
     float away = length(max(e, 0.0));
     vec3 near = from_screen(vec3(0.16, 0.145, 0.135)) * (0.10 + 0.9 * smoothstep(0.0, 1.0, away));
-    // Into the dark of the room, which is the background's colour.
+    // The floor fades into the dark room, which has the colour of the background.
     return mix(vec3(0.004), near, 1.0 / (1.0 + 0.25 * away * away));
 }
 
@@ -82,7 +82,7 @@ void main() {
     vec2 p = v_position.xy;
     vec3 n = normalize(v_normal);
 #if defined(CLOTH)
-    // Cushions reach over the rims of the holes; the playing surface ends there.
+    // Cushions extend over the rims of the holes; the playing surface ends there.
     bool playing = v_material == 0;
     if (playing && in_hole(p)) discard;
     color = vec4(lit(cloth_albedo(p) * (playing ? 1.0 : 1.12), n), playing ? 1.0 : 0.0);

@@ -1,7 +1,7 @@
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
 layout(location = 2) in vec3 a_surface;   // u, v, material
-uniform vec2 u_jitter;                    // of this pass, in clip space
+uniform vec2 u_jitter;                    // offset of this pass in clip space
 out vec3 v_position;
 out vec3 v_normal;
 out vec2 v_uv;
