@@ -231,7 +231,7 @@ int run(const DescribeArgs& args, const Options& program) {
 void add_describe(Options& program) {
     auto args = std::make_shared<DescribeArgs>();
     Options& command =
-        program.command("describe", "This program as a man page, or as completions for a shell");
+        program.command("describe", "This program and its file formats, for people and for other programs");
     Option& format = command.argument("FORMAT", args->format, "What to print");
     format.required = true;
     for (const auto& known : kFormats) format.choices.emplace_back(known.name);
