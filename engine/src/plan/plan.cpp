@@ -70,10 +70,6 @@ void choose_search(Plan& plan) {
 
 }  // namespace
 
-const char* name(Search search) {
-    return search == Search::kTree ? "tree" : "direct";
-}
-
 Plan make_plan(const Scene& scene, kernel::Isa isa) {
     Plan plan;
     plan.scene = scene;

@@ -21,36 +21,6 @@ static_assert([] {
     return true;
 }());
 
-const char* name(MotionState state) {
-    switch (state) {
-        case MotionState::kStationary:
-            return "stationary";
-        case MotionState::kSpinning:
-            return "spinning";
-        case MotionState::kSliding:
-            return "sliding";
-        case MotionState::kRolling:
-            return "rolling";
-        case MotionState::kPocketed:
-            return "pocketed";
-    }
-    return "unknown";
-}
-
-const char* name(StopReason reason) {
-    switch (reason) {
-        case StopReason::kAtRest:
-            return "at rest";
-        case StopReason::kTime:
-            return "stop time";
-        case StopReason::kEvents:
-            return "number of events";
-        case StopReason::kEndless:
-            return "endless motion";
-    }
-    return "unknown";
-}
-
 namespace {
 
 // The segment in force at time t: the last that starts at or before it.

@@ -33,9 +33,8 @@ void check_ids(const Section& top, const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
         const auto [first, fresh] = seen.emplace(ball.id, ball.where);
         if (fresh) continue;
-        top.fail(ball.where,
-                 fmt::format("ball id {} is already used in line {}; give each ball an id of its own",
-                             in_quotes(ball.id), first->second.line));
+        top.fail(ball.where, "ball id {} is already used in line {}; give each ball an id of its own",
+                 in_quotes(ball.id), first->second.line);
     }
 }
 
@@ -51,17 +50,16 @@ void check_overlaps(const Section& top, const Scene& scene) {
             if (std::abs(d.x()) >= diameter || std::abs(d.y()) >= diameter) continue;
             const double distance = d.norm();
             if (distance >= least) continue;
-            top.fail(scene.ball[i].where, fmt::format("balls {} and {} overlap by {:.4g} m; move one of them",
-                                                      in_quotes(scene.ball[j].id),
-                                                      in_quotes(scene.ball[i].id), diameter - distance));
+            top.fail(scene.ball[i].where, "balls {} and {} overlap by {:.4g} m; move one of them",
+                     in_quotes(scene.ball[j].id), in_quotes(scene.ball[i].id), diameter - distance);
         }
     }
 }
 
 void check_reach(const Section& top, const Scene& scene) {
     const auto refuse = [&](const BallStart& ball, const char* kind, const std::string& id, double depth) {
-        top.fail(ball.where, fmt::format("ball {} reaches {:.4g} m into {} {}; move it away",
-                                         in_quotes(ball.id), depth, kind, id));
+        top.fail(ball.where, "ball {} reaches {:.4g} m into {} {}; move it away", in_quotes(ball.id), depth,
+                 kind, id);
     };
     for (const BallStart& ball : scene.ball) {
         const Vec2 p = planar(ball);
@@ -87,8 +85,8 @@ void check_noses(const Section& top, const Scene& scene) {
                 "the nose of {} {} is {} m high, not below the top of a ball ({} m); "
                 "use larger balls or a lower cushion",
                 kind, id, height, 2.0 * R);
-            if (ball.own) top.fail(ball.where, message);
-            top.fail(top.has("table") ? "table" : "balls", message);
+            if (ball.own) top.fail(ball.where, "{}", message);
+            top.fail(top.has("table") ? "table" : "balls", "{}", message);
         }
     };
     for (const Cushion& c : scene.table.cushions) check("cushion", c.id, c.height);
@@ -106,8 +104,8 @@ void check_sizes(const Section& top, const Scene& scene) {
         if (size == first) continue;
         const SourceLocation where = ball.own ? ball.where : scene.ball.front().where;
         const auto refuse = [&](const std::string& why) {
-            top.fail(where, fmt::format("balls {} and {} differ in size: {}",
-                                        in_quotes(scene.ball.front().id), in_quotes(ball.id), why));
+            top.fail(where, "balls {} and {} differ in size: {}", in_quotes(scene.ball.front().id),
+                     in_quotes(ball.id), why);
         };
         if (rough && size.R != first.R)
             refuse(
@@ -135,11 +133,10 @@ void check_cushion_model(const Section& top, const Scene& scene) {
         for (const BallStart& ball : scene.ball) {
             const BallSize size = scene.size_of(ball);
             if (model.accepts({size.R, size.m, p.mu_s, p.e_c, p.f_c, height})) continue;
-            top.fail(
-                top.has("physics") ? "physics" : "balls",
-                fmt::format("with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the "
-                            "model {}; lower one of them or use another cushion model",
-                            p.f_c, p.mu_s, kind, id, model.name));
+            top.fail(top.has("physics") ? "physics" : "balls",
+                     "with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the "
+                     "model {}; lower one of them or use another cushion model",
+                     p.f_c, p.mu_s, kind, id, model.name);
         }
     };
     for (const Cushion& c : scene.table.cushions) check(*scene.physics.cushion, "cushion", c.id, c.height);
@@ -190,9 +187,8 @@ void check_rest(const Section& top, const Scene& scene) {
     const Motions m = possible_motions(scene);
     const auto refuse = [&](const char* section, const char* cause, const char* result) {
         top.fail(section,
-                 fmt::format(
-                     "with {} = 0 {} for ever and the run cannot end at rest; add [stop] with time or events",
-                     cause, result));
+                 "with {} = 0 {} for ever and the run cannot end at rest; add [stop] with time or events",
+                 cause, result);
     };
     if (scene.physics.gravity == 0.0 && (m.travel || m.twist))
         refuse("physics", "physics.gravity", "balls move");

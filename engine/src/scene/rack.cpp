@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/splitmix64.h"
@@ -13,24 +14,12 @@ namespace {
 
 /// Balls per row, from the apex.
 std::vector<int> rows_of(const Rack& rack) {
-    switch (rack.game) {
-        case RackGame::kEightBall:
-            return {1, 2, 3, 4, 5};
-        case RackGame::kNineBall:
-            return {1, 2, 3, 2, 1};
-        case RackGame::kSnooker:
-            return {1, 2, 3, 4, 5};
-        case RackGame::kTriangle: {
-            std::vector<int> rows;
-            for (int n = 1; n <= rack.rows; ++n) rows.push_back(n);
-            return rows;
-        }
-        case RackGame::kThreeCushion:
-            return {};
-        case RackGame::kLine:
-            break;
-    }
-    return std::vector<int>(static_cast<std::size_t>(rack.count), 1);
+    if (rack.game == RackGame::kThreeCushion) return {};
+    if (rack.game == RackGame::kNineBall) return {1, 2, 3, 2, 1};
+    if (rack.game == RackGame::kLine) return std::vector<int>(static_cast<std::size_t>(rack.count), 1);
+    std::vector<int> rows(rack.game == RackGame::kTriangle ? static_cast<std::size_t>(rack.rows) : 5);
+    std::iota(rows.begin(), rows.end(), 1);
+    return rows;
 }
 
 /// Fisher-Yates.
@@ -46,29 +35,15 @@ std::vector<int> eight_ball_numbers(SplitMix64& random) {
     const int solid = 1 + random.below(7);
     const int stripe = 9 + random.below(7);
     const bool solid_left = random.below(2) == 0;
-    std::vector<int> rest;
+    std::vector<int> numbers;
     for (int n = 1; n <= 15; ++n) {
-        if (n != 8 && n != solid && n != stripe) rest.push_back(n);
+        if (n != 8 && n != solid && n != stripe) numbers.push_back(n);
     }
-    shuffle(rest, random);
-    std::vector<int> out;
-    std::size_t next = 0;
-    for (int slot = 0; slot < 15; ++slot) {
-        switch (slot) {
-            case 4:
-                out.push_back(8);
-                break;
-            case 10:
-                out.push_back(solid_left ? solid : stripe);
-                break;
-            case 14:
-                out.push_back(solid_left ? stripe : solid);
-                break;
-            default:
-                out.push_back(rest[next++]);
-        }
-    }
-    return out;
+    shuffle(numbers, random);
+    numbers.insert(numbers.begin() + 4, 8);
+    numbers.insert(numbers.begin() + 10, solid_left ? solid : stripe);
+    numbers.push_back(solid_left ? stripe : solid);
+    return numbers;
 }
 
 /// 1 at the apex, 9 in the middle, the rest at random.
@@ -81,10 +56,9 @@ std::vector<int> nine_ball_numbers(SplitMix64& random) {
 std::vector<int> numbers_of(const Rack& rack, SplitMix64& random) {
     if (rack.game == RackGame::kEightBall) return eight_ball_numbers(random);
     if (rack.game == RackGame::kNineBall) return nine_ball_numbers(random);
-    int count = 0;
-    for (const int row : rows_of(rack)) count += row;
-    std::vector<int> out;
-    for (int n = 1; n <= count; ++n) out.push_back(n);
+    const std::vector<int> rows = rows_of(rack);
+    std::vector<int> out(static_cast<std::size_t>(std::accumulate(rows.begin(), rows.end(), 0)));
+    std::iota(out.begin(), out.end(), 1);
     return out;
 }
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -19,8 +20,9 @@
 namespace carom {
 
 enum class MotionState : std::uint8_t { kStationary, kSpinning, kSliding, kRolling, kPocketed };
-inline constexpr int kMotionStates = 5;
-const char* name(MotionState state);
+constexpr auto names_of(MotionState) {
+    return std::array{"stationary", "spinning", "sliding", "rolling", "pocketed"};
+}
 
 /// One ball between two events that touch it. Times inside are relative to `start`.
 struct Segment {
@@ -133,8 +135,9 @@ struct EventCost {
 /// kEndless: balls move that nothing stops, nothing more happens to them, and there was no time to stop at;
 /// the record ends at its last event.
 enum class StopReason : std::uint8_t { kAtRest, kTime, kEvents, kEndless };
-inline constexpr int kStopReasons = 4;
-const char* name(StopReason reason);
+constexpr auto names_of(StopReason) {
+    return std::array{"at rest", "stop time", "number of events", "endless motion"};
+}
 
 /// State of one ball at a time.
 struct BallState {

@@ -16,7 +16,6 @@ extern constinit const BallBallModelInfo kInelastic = {
     .name = "inelastic",
     .source = "D. Alciatore, Technical Proof A.14",
     .collide = inelastic,
-    .reads_spin = true,
     .reads_friction = true,
     .reads_restitution = true,
     .rough_masses = true,
