@@ -12,7 +12,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// Time left until |w_z| has decayed to 0.
+// Returns the time until |w_z| has decayed to 0.
 double spin_time(double w_z, const MotionParams& p) {
     return w_z == 0.0 ? 0.0 : (p.spin > 0.0 ? std::abs(w_z) / p.spin : kInfinity);
 }
@@ -46,7 +46,7 @@ namespace effects {
     s.dw = Vec2(-s.a.y() / p.R, s.a.x() / p.R);
 }
 
-// Vertical spin decays; a ball that spins in place does so until it is gone.
+// The vertical spin decays. The motion of a ball that spins in place ends when no spin is left.
 [[gnu::noinline]] void spin_decay(Segment& s, const MotionParams& p) {
     if (s.w.z() == 0.0) return;
     s.spin_decay = p.spin;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kUlp = 2.220446049250313e-16;
 
-// Over the mass that all balls have unless they have their own: 1 in most scenes.
+// Returns the mass over that of a ball without a mass of its own: 1 in most scenes.
 double mass(const Record& record, int ball) {
     return record.size(ball).m / record.balls.m;
 }
@@ -54,7 +54,7 @@ class Checker {
                 report("U2", "time falls from {:.17g} to {:.17g} s", last_time, e.time);
             last_time = e.time;
             check_crowd();
-            // Several events at one instant: the state after the last of them is the one that must hold.
+            // Where several events have one instant, the laws hold for the state after the last of them.
             const bool last_of_instant =
                 event_ + 1 == record_.events.size() || record_.events[event_ + 1].time > e.time;
             if (!last_of_instant) continue;
@@ -137,7 +137,7 @@ class Checker {
         }
     }
 
-    // What the segment holds: state_at takes the spin of a rolling ball from its velocity.
+    // The segment itself is checked, because state_at takes the spin of a rolling ball from its velocity.
     void check_rolling(double time) {
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
             const std::vector<Segment>& segments = record_.tracks[i].segments;
@@ -151,13 +151,13 @@ class Checker {
         }
     }
 
-    // Before and after a ball-ball impact: the ends of the segments that meet there.
+    // Compares the velocities before and after a ball-ball impact, at the ends of the segments that meet there.
     void check_impacts() {
         for (event_ = 0; event_ < record_.events.size() && !found_; ++event_) {
             const Event& e = record_.events[event_];
             if (e.type != EventType::kBallBall) continue;
-            // Only where each ball has exactly one segment that starts here: two impacts at one instant
-            // cannot be told apart.
+            // This is done only where each ball has exactly one segment that starts here, because two impacts at one
+            // instant cannot be told apart.
             const Segment *before1, *after1, *before2, *after2;
             if (!around(e.a, e.time, before1, after1) || !around(e.b, e.time, before2, after2)) continue;
             const Vec3 v1 = velocity_at(*before1, e.time - before1->start),
@@ -172,8 +172,8 @@ class Checker {
             const double scale = m1 * (v1.norm() + R1 * w1.norm()) + m2 * (v2.norm() + R2 * w2.norm());
             const Vec3 change = m1 * (after1->v - v1) + m2 * (after2->v - v2);
             const Vec3 dw1 = m1 * R1 * (after1->w - w1), dw2 = m2 * R2 * (after2->w - w2);
-            // The cloth gives at most mu_s of the vertical friction, which is at most mu_b of the normal
-            // impulse, all the way.
+            // During the whole impact the friction of the cloth is at most mu_s times the vertical friction, which is at most
+            // mu_b times the normal impulse.
             const double J_n =
                 std::max(m1 * std::abs((after1->v - v1).dot(n3)), m2 * std::abs((after2->v - v2).dot(n3)));
             const bool cloth = plan_.balls.mu_s > 0.0 && plan_.ball_ball->reads_cloth;

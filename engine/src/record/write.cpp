@@ -32,7 +32,7 @@ OrderedJson json_of(const Key& key, const FieldValue& value) {
     return std::get<double>(value);
 }
 
-/// The values that are given, by the keys of record files.
+/// Writes the values that are given under the keys of record files.
 template <class T, std::size_t kRows>
 OrderedJson json_of(const Field<T> (&fields)[kRows], const T& object) {
     OrderedJson json;
@@ -90,7 +90,7 @@ OrderedJson event_json(const Record& record, const Event& event, const EventCost
     return out;
 }
 
-/// A list with one item per line; `write_item(item)` writes one.
+/// Writes a list with one item per line; `write_item(item)` writes an item.
 template <class Item, class Write>
 void write_lines(OutputFile& file, const std::vector<Item>& list, const char* indent, Write&& write_item) {
     const char* separator = "[\n";

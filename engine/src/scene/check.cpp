@@ -19,10 +19,6 @@ namespace {
 // difference make up to four roundings.
 constexpr double kTouchRounding = 0x1p-51;
 
-Vec2 planar(const BallStart& ball) {
-    return ball.position.head<2>();
-}
-
 /// How deep two things may overlap and still count as touching, at this distance from the origin.
 double touch_tolerance(const Vec2& p) {
     return std::max(kTouchTolerance, kTouchRounding * std::max(std::abs(p.x()), std::abs(p.y())));
@@ -40,13 +36,13 @@ void check_ids(const Section& top, const Scene& scene) {
 
 void check_overlaps(const Section& top, const Scene& scene) {
     for (std::size_t i = 0; i < scene.ball.size(); ++i) {
-        const Vec2 p = planar(scene.ball[i]);
+        const Vec2 p = planar(scene.ball[i].position);
         const double R = scene.size_of(scene.ball[i]).R;
         for (std::size_t j = 0; j < i; ++j) {
             const double diameter = contact_distance(R, scene.size_of(scene.ball[j]).R);
             const double least = diameter - touch_tolerance(p);
             // The axes are compared first, because most pairs are far apart.
-            const Vec2 d = p - planar(scene.ball[j]);
+            const Vec2 d = p - planar(scene.ball[j].position);
             if (std::abs(d.x()) >= diameter || std::abs(d.y()) >= diameter) continue;
             const double distance = d.norm();
             if (distance >= least) continue;
@@ -62,7 +58,7 @@ void check_reach(const Section& top, const Scene& scene) {
                  kind, id);
     };
     for (const BallStart& ball : scene.ball) {
-        const Vec2 p = planar(ball);
+        const Vec2 p = planar(ball.position);
         const double touch = touch_tolerance(p), R = scene.size_of(ball).R;
         for (const Cushion& c : scene.table.cushions) {
             const double depth = R - distance_to_segment(p, c.from, c.to);
@@ -124,7 +120,7 @@ void check_sizes(const Section& top, const Scene& scene) {
     }
 }
 
-/// Every impact has to have a solution in its model.
+/// Refuses a scene in which an impact may have no solution in its model.
 void check_cushion_model(const Section& top, const Scene& scene) {
     const BallParams& p = scene.balls;
     const auto check = [&](const CushionModelInfo& model, const char* kind, const std::string& id,

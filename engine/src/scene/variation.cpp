@@ -104,18 +104,16 @@ std::size_t take_ball(toml::table& file, std::string_view& key) {
          ids.empty() ? "none is written" : ids);
 }
 
-/// Takes the name of a part of the table ("c2") from the front of a key, and returns its place in the list.
-std::size_t take_part(std::string_view& key, char letter) {
+/// Takes the name of a part of the table from the front of a key ("c2" in the list "cushion"), and returns its place in the
+/// list.
+std::size_t take_part(std::string_view& key, const std::string& list) {
+    const char letter = list.front();
     std::size_t number = 0;
     const char* const end = key.data() + key.size();
     const bool lettered = !key.empty() && key[0] == letter;
     const auto [rest, error] = std::from_chars(key.data() + (lettered ? 1 : 0), end, number);
     if (!lettered || error != std::errc() || rest == end || *rest != '.' || number < 1)
-        fail("name the part by its number, as in table.{}.{}1.radius",
-             letter == 'c'   ? "cushion"
-             : letter == 'j' ? "jaw"
-                             : "pocket",
-             letter);
+        fail("name the part by its number, as in table.{}.{}1.radius", list, letter);
     key.remove_prefix(static_cast<std::size_t>(rest + 1 - key.data()));
     return number - 1;
 }
@@ -150,10 +148,10 @@ std::vector<Step> find_section(toml::table& file, std::string_view& key) {
     }
     std::vector<Step> path = {{section}};
     if (section != "table") return path;
-    for (const auto& [list, letter] : {std::pair{"cushion", 'c'}, {"jaw", 'j'}, {"pocket", 'p'}}) {
+    for (const std::string list : {"cushion", "jaw", "pocket"}) {
         if (!take(key, list)) continue;
         path.push_back({list});
-        path.push_back({"", take_part(key, letter)});
+        path.push_back({"", take_part(key, list)});
         break;
     }
     return path;

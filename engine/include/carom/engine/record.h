@@ -158,7 +158,6 @@ struct BallTrack {
 
 class Record {
   public:
-    Record();
     bool operator==(const Record&) const = default;
 
     Table table;
@@ -199,11 +198,13 @@ class Record {
     /// What is no part of what happened: any two of these are equal.
     struct Aside {
         Aside();
-        Aside(const Aside& other);  // a copy may be changed, so that it works out its orientations anew
-        Aside& operator=(const Aside& other);
+        Aside(const Aside&) : Aside() {}  // A copy may be changed, so it works out its orientations anew.
         Aside(Aside&&) noexcept = default;
-        Aside& operator=(Aside&&) noexcept = default;
         ~Aside() = default;
+        Aside& operator=(Aside other) noexcept {
+            orientations = std::move(other.orientations);
+            return *this;
+        }
         bool operator==(const Aside&) const { return true; }
         std::shared_ptr<Orientations> orientations;  // made on first use, by any thread
     };

@@ -95,8 +95,7 @@ inline constexpr Field<BallParams> kBallFields[] = {
       Key::Kind::kNumbers,
       kFriction,
       "ball-ball friction a + b exp(-c u) at the slip u in m/s before the impact; `[0.009951, 0.108, 1.088]` "
-      "is the "
-      "fit of Alciatore's TP A.14",
+      "is the fit of Alciatore's TP A.14",
       {.shape = "[a, b, c] for a + b exp(-c u)", .files = Files::kScene, .instead_of = "mu_b"},
       true,
       0,
