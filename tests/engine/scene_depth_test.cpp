@@ -163,7 +163,7 @@ TEST(SceneDepth, ValuesThatVaryAreReadWithTheSameLimits) {
         for (const std::string& values :
              {"{" + dotted(40000) + " = 1}", "1]\n" + dotted(40000) + " = [2", std::string(40000, '[')}) {
             try {
-                detail::Distribution::parse("list(" + values + ")", nullptr);
+                detail::parse_distribution("list(" + values + ")", nullptr);
             } catch (const std::invalid_argument& error) {
                 errors.push_back(error.what());
             }

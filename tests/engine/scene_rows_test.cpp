@@ -14,7 +14,7 @@ namespace carom {
 /// Stands for a value of any type in an initializer.
 struct Anything {
     template <class T>
-    requires(!detail::OptionalOf<T>::value) operator T() const;  // NOLINT: the conversion is what it is for
+    requires(!detail::kIsOptional<T>) operator T() const;  // NOLINT: the conversion is what it is for
 };
 
 namespace {

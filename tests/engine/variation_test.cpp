@@ -198,15 +198,15 @@ TEST(StandardNormal, HasTheMomentsAndTailsOfTheNormalDistribution) {
 
 TEST(Distribution, DrawsLieInTheirRangesAndReachTheirEnds) {
     SplitMix64 random(1);
-    const auto uniform = detail::Distribution::parse("uniform(-1, 3)", nullptr);
-    const auto integer = detail::Distribution::parse("integer(-2,2)", nullptr);
+    const auto uniform = detail::parse_distribution("uniform(-1, 3)", nullptr);
+    const auto integer = detail::parse_distribution("integer(-2,2)", nullptr);
     double least = 9.0, most = -9.0;
     std::set<std::int64_t> seen;
     for (int i = 0; i < 10000; ++i) {
-        const double x = std::get<double>(uniform.draw(random));
+        const double x = std::get<double>(uniform(random));
         least = std::min(least, x);
         most = std::max(most, x);
-        seen.insert(std::get<std::int64_t>(integer.draw(random)));
+        seen.insert(std::get<std::int64_t>(integer(random)));
     }
     EXPECT_GE(least, -1.0);
     EXPECT_LT(least, -0.99);

@@ -173,10 +173,9 @@ TEST(RecordSchema, EveryKeyIsWritten) {
 
 TEST(RecordSchema, NamesAllStatesEventsAndReasons) {
     const Json rules = schema();
-    Json states, events, reasons;
-    for (int i = 0; i < kMotionStates; ++i) states.push_back(name(static_cast<MotionState>(i)));
+    const Json states = names_of(MotionState()), reasons = names_of(StopReason());
+    Json events;
     for (int i = 0; i < kEventTypes; ++i) events.push_back(name(static_cast<EventType>(i)));
-    for (int i = 0; i < kStopReasons; ++i) reasons.push_back(name(static_cast<StopReason>(i)));
     EXPECT_EQ(rules.at("/definitions/segment/properties/state/enum"_json_pointer), states);
     EXPECT_EQ(rules.at("/definitions/event/properties/type/enum"_json_pointer), events);
     EXPECT_EQ(rules.at("/properties/stopped/enum"_json_pointer), reasons);

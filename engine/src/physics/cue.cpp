@@ -29,9 +29,7 @@ StruckBall strike(const Cue& cue, const BallSize& ball, bool squirt) {
     const double turn = 2.5 * v / ball.R;
     const Vec3 w(turn * (-b * sin_aim - a * sin_up * cos_aim), turn * (b * cos_aim - a * sin_up * sin_aim),
                  -turn * a * cos_up);
-    SinCos turned{0.0, 1.0};
-    if (squirt) turned = effects::squirt(cue, ball);
-    const double cos_squirt = turned.cos, sin_squirt = turned.sin;
+    const auto [sin_squirt, cos_squirt] = squirt ? effects::squirt(cue, ball) : SinCos{0.0, 1.0};
     const double speed = v * cos_up;
     return {Vec3(speed * (cos_aim * cos_squirt - sin_aim * sin_squirt),
                  speed * (sin_aim * cos_squirt + cos_aim * sin_squirt), 0.0),

@@ -12,7 +12,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// Time left until |w_z| has decayed to 0.
+// Returns the time until |w_z| has decayed to 0.
 double spin_time(double w_z, const MotionParams& p) {
     return w_z == 0.0 ? 0.0 : (p.spin > 0.0 ? std::abs(w_z) / p.spin : kInfinity);
 }
@@ -46,7 +46,7 @@ namespace effects {
     s.dw = Vec2(-s.a.y() / p.R, s.a.x() / p.R);
 }
 
-// Vertical spin decays; a ball that spins in place does so until it is gone.
+// The vertical spin decays. The motion of a ball that spins in place ends when no spin is left.
 [[gnu::noinline]] void spin_decay(Segment& s, const MotionParams& p) {
     if (s.w.z() == 0.0) return;
     s.spin_decay = p.spin;
@@ -98,22 +98,13 @@ Segment after_transition(const Segment& s, const MotionParams& p) {
     const double tau = s.duration;
     const Vec3 r = position_at(s, tau);
     Vec3 v = Vec3::Zero(), w(0.0, 0.0, spin_at(s, tau, p.R).z());
-    switch (s.state) {
-        case MotionState::kSliding: {
-            // v_f = v - (2/7) u, and the spin that rolls with it.
-            const Vec2 u = cloth_slip(s.v, s.w, p.R);
-            v = Vec3(s.v.x() - u.x() * (2.0 / 7.0), s.v.y() - u.y() * (2.0 / 7.0), 0.0);
-            w.x() = -v.y() / p.R;
-            w.y() = v.x() / p.R;
-            break;
-        }
-        case MotionState::kSpinning:
-            w.z() = 0.0;
-            break;
-        case MotionState::kRolling:
-        case MotionState::kStationary:
-        case MotionState::kPocketed:
-            break;
+    if (s.state == MotionState::kSpinning) w.z() = 0.0;
+    if (s.state == MotionState::kSliding) {
+        // v_f = v - (2/7) u, and the spin that rolls with it.
+        const Vec2 u = cloth_slip(s.v, s.w, p.R);
+        v = Vec3(s.v.x() - u.x() * (2.0 / 7.0), s.v.y() - u.y() * (2.0 / 7.0), 0.0);
+        w.x() = -v.y() / p.R;
+        w.y() = v.x() / p.R;
     }
     return start_segment(s.start + tau, r, v, w, p);
 }

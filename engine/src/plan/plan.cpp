@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "carom/engine/tolerances.h"
@@ -20,10 +21,9 @@ constexpr double kJawJoinShare = 1e-9;
 
 // An end of a cushion needs a circle of its own unless a jaw rounds it off.
 bool rounded_by_jaw(const Vec2& end, const std::vector<Jaw>& jaws) {
-    for (const Jaw& jaw : jaws) {
-        if (std::abs(length(end - jaw.center) - jaw.radius) <= kJawJoinShare * jaw.radius) return true;
-    }
-    return false;
+    return std::any_of(jaws.begin(), jaws.end(), [&](const Jaw& jaw) {
+        return std::abs(length(end - jaw.center) - jaw.radius) <= kJawJoinShare * jaw.radius;
+    });
 }
 
 void add_geometry(const Table& table, Plan& plan) {
@@ -69,10 +69,6 @@ void choose_search(Plan& plan) {
 }
 
 }  // namespace
-
-const char* name(Search search) {
-    return search == Search::kTree ? "tree" : "direct";
-}
 
 Plan make_plan(const Scene& scene, kernel::Isa isa) {
     Plan plan;

@@ -1,5 +1,6 @@
 #include "record/json_text.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -14,9 +15,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Long enough for any id or method name, short enough that a hostile file cannot fill messages.
+/// [bytes] It is long enough for any id or method name, and so short that a hostile file cannot fill messages.
 constexpr std::size_t kLongestName = 256;
-/// What one byte of a text can take where it is written as an escape: \u0000.
+/// [bytes] What one byte of a text takes at most, where it is written as an escape: \u0000.
 constexpr std::size_t kLongestEscape = 6;
 
 bool is_space(char c) {
@@ -28,21 +29,21 @@ std::size_t after_space(std::string_view text, std::size_t at) {
     return at;
 }
 
-/// Past the string that begins at `at`.
+/// Returns the place behind the string that begins at `at`.
 std::size_t after_string(std::string_view text, std::size_t at) {
     for (++at; at < text.size() && text[at] != '"'; ++at)
         if (text[at] == '\\') ++at;
     return at < text.size() ? at + 1 : text.size();
 }
 
-/// Past a number, true, false or null.
+/// Returns the place behind a number, true, false or null.
 std::size_t after_word(std::string_view text, std::size_t at) {
     const auto ends = [](char c) { return is_space(c) || c == ',' || c == ']' || c == '}'; };
     while (at < text.size() && !ends(text[at])) ++at;
     return at;
 }
 
-/// Past the value that begins at `at`.
+/// Returns the place behind the value that begins at `at`.
 std::size_t after_value(std::string_view text, std::size_t at) {
     if (at < text.size() && text[at] != '{' && text[at] != '[')
         return text[at] == '"' ? after_string(text, at) : after_word(text, at);
@@ -60,24 +61,18 @@ std::size_t after_value(std::string_view text, std::size_t at) {
     return at;
 }
 
-/// What a string token says; "" where it is too long to be any name.
+/// Returns what a string token says, or "" where it is too long to be any name.
 std::string unescaped(std::string_view token) {
     if (token.size() > 2 + kLongestEscape * kLongestName) return "";
     return Json::parse(token).get<std::string>();
 }
 
-/// Where in the text a byte stands. A NUL or a newline more or less does not matter: this is for a person's editor.
+/// Returns line and column of a byte, for a person's editor; one byte more or less does not matter there.
 SourceLocation location(std::string_view text, std::size_t byte) {
-    SourceLocation where{1, 1};
-    for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {
-        if (text[i] == '\n') {
-            ++where.line;
-            where.column = 1;
-        } else {
-            ++where.column;
-        }
-    }
-    return where;
+    const std::string_view before = text.substr(0, byte > 0 ? byte - 1 : 0);
+    const std::size_t line_start = before.rfind('\n') + 1;  // 0 in the first line
+    return {1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')),
+            1 + static_cast<int>(before.size() - line_start)};
 }
 
 /// Takes every value and keeps none of them.

@@ -66,11 +66,10 @@ class JsonValue {
 
     /// One of an enumeration whose values 0..count-1 all have a name().
     template <class Enum>
-    Enum one_of(int count) const {
+    Enum one_of(std::size_t count) const {
         const std::string value = text();
-        for (int i = 0; i < count; ++i) {
+        for (std::size_t i = 0; i < count; ++i)
             if (value == name(static_cast<Enum>(i))) return static_cast<Enum>(i);
-        }
         fail_unknown(value);
     }
 

@@ -108,7 +108,7 @@ Segment read_segment(const JsonValue& value) {
         value, {"start", "state", "r", "v", "w", "a", "dw", "spin_decay", "duration", "held", "ends"});
     Segment s;
     s.start = all.at("start").non_negative();
-    s.state = all.at("state").one_of<MotionState>(kMotionStates);
+    s.state = all.at("state").one_of<MotionState>(names_of(MotionState()).size());
     s.r = all.at("r").vector<3>();
     s.v = all.at("v").vector<3>();
     s.w = all.at("w").vector<3>();
@@ -162,7 +162,7 @@ std::int64_t partners(EventType type, const Record& record) {
 Event read_event(const JsonObject& all, Record& record) {
     Event event;
     event.time = all.at("time").non_negative();
-    event.type = all.at("type").one_of<EventType>(kEventTypes);
+    event.type = all.at("type").one_of<EventType>(std::size(kEventKinds));
     event.a = index_below(all.at("a"), 0, record.tracks.size());
     const std::int64_t count = partners(event.type, record);
     event.b = static_cast<int>(all.at("b").integer(count > 0 ? 0 : -1, count > 0 ? count - 1 : -1));
@@ -275,7 +275,7 @@ Record parse_record(std::string_view text, const std::string& name, std::vector<
     const Format format{read_version(all), all.at("profiled").boolean()};
     Record record;
     record.duration = all.at("duration").non_negative();
-    record.stopped = all.at("stopped").one_of<StopReason>(kStopReasons);
+    record.stopped = all.at("stopped").one_of<StopReason>(names_of(StopReason()).size());
     record.start_time = all.at("start_time").number();
     record.gravity = all.at("gravity").number();
     record.setup_detect_ns = all.at("setup_detect_ns").non_negative();

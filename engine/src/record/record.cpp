@@ -1,4 +1,4 @@
-// Looking at what happened: states, orientations, hash.
+// What can be asked of a record: states, orientations and the hash.
 #include "carom/engine/record.h"
 
 #include <fmt/format.h>
@@ -21,46 +21,16 @@ static_assert([] {
     return true;
 }());
 
-const char* name(MotionState state) {
-    switch (state) {
-        case MotionState::kStationary:
-            return "stationary";
-        case MotionState::kSpinning:
-            return "spinning";
-        case MotionState::kSliding:
-            return "sliding";
-        case MotionState::kRolling:
-            return "rolling";
-        case MotionState::kPocketed:
-            return "pocketed";
-    }
-    return "unknown";
-}
-
-const char* name(StopReason reason) {
-    switch (reason) {
-        case StopReason::kAtRest:
-            return "at rest";
-        case StopReason::kTime:
-            return "stop time";
-        case StopReason::kEvents:
-            return "number of events";
-        case StopReason::kEndless:
-            return "endless motion";
-    }
-    return "unknown";
-}
-
 namespace {
 
-// The segment in force at time t: the last that starts at or before it.
+// Returns the index of the segment in force at time t, which is the last one that starts at or before t.
 std::size_t segment_index(const std::vector<Segment>& segments, double t) {
     const auto later = std::upper_bound(segments.begin(), segments.end(), t,
                                         [](double time, const Segment& s) { return time < s.start; });
     return later == segments.begin() ? 0 : static_cast<std::size_t>(later - segments.begin()) - 1;
 }
 
-// Rotation by a vector (axis times angle).
+// Returns the rotation by a vector (axis times angle).
 Eigen::Quaterniond rotation(const Vec3& turn) {
     const double angle = std::sqrt(turn.x() * turn.x() + turn.y() * turn.y() + turn.z() * turn.z());
     if (angle == 0.0) return Eigen::Quaterniond::Identity();
@@ -69,22 +39,22 @@ Eigen::Quaterniond rotation(const Vec3& turn) {
     return {c, k * turn.x(), k * turn.y(), k * turn.z()};
 }
 
-// Angle a step, and steps that all balls of a record may take together: one that turns them more, which no
-// shot does, is followed more coarsely instead of for ever.
+// [rad] The largest angle of a step, and [-] the number of steps that all balls of a record may take together. A record that
+// turns them more, which no shot does, is followed in larger steps, so that the work has a bound.
 constexpr double kLargestStep = 0.2, kMostSteps = 1e7;
 
-// Steps for w from w0 at the rate dw over `time`, if one turns the ball by `largest_step`.
+// Returns how many steps it takes to follow w from w0 at the rate dw over `time`, if each turns the ball by `largest_step`.
 double step_count(const Vec3& w0, const Vec3& dw, double time, double largest_step) {
     const double steps = std::max(w0.norm(), (w0 + time * dw).norm()) * time / largest_step;
     return steps < kMostSteps ? steps : kMostSteps;
 }
 
-// Turning over `time` while w goes linearly from w0 at the rate dw.
+// Returns the rotation over `time` while w changes linearly from w0 at the rate dw.
 Eigen::Quaterniond turned(const Vec3& w0, const Vec3& dw, double time, double largest_step) {
     const Vec3 swerve = w0.cross(dw);
     if (swerve == Vec3::Zero()) return rotation(w0 * time + 0.5 * time * time * dw);  // fixed axis
-    // Magnus expansion to fourth order: Omega = h w_mid - h^3/12 w_mid x dw, at a fifth of a radian a step
-    // 1e-7 over a shot.
+    // Magnus expansion to fourth order: Omega = h w_mid - h^3/12 w_mid x dw. With steps of a fifth of a radian the error is
+    // 1e-7 rad over a shot.
     const int steps = 1 + static_cast<int>(step_count(w0, dw, time, largest_step));
     const double h = time / steps;
     Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
@@ -95,7 +65,7 @@ Eigen::Quaterniond turned(const Vec3& w0, const Vec3& dw, double time, double la
     return q.normalized();
 }
 
-// Turning of a segment over its first `tau` seconds; w_z stops decaying at 0.
+// Returns the rotation of a segment over its first `tau` seconds. The decay of w_z ends at 0.
 Eigen::Quaterniond segment_turn(const Segment& s, double tau, double largest_step) {
     if (!(tau > 0.0)) return Eigen::Quaterniond::Identity();
     const double sign = s.w.z() > 0.0 ? 1.0 : (s.w.z() < 0.0 ? -1.0 : 0.0);
@@ -140,16 +110,7 @@ Vec3 spin_at(const Segment& s, double tau, double R) {
     return {s.w.x() + tau * s.dw.x(), s.w.y() + tau * s.dw.y(), w_z};
 }
 
-Record::Record() = default;
-
 Record::Aside::Aside() : orientations(std::make_shared<Orientations>()) {}
-
-Record::Aside::Aside(const Aside&) : orientations(std::make_shared<Orientations>()) {}
-
-Record::Aside& Record::Aside::operator=(const Aside& other) {
-    if (this != &other) *this = Aside(other);
-    return *this;
-}
 
 BallState Record::state_at(int ball, double t) const {
     const BallTrack& track = tracks[ball];

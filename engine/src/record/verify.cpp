@@ -16,23 +16,28 @@ namespace {
 
 constexpr double kUlp = 2.220446049250313e-16;
 
-struct Moment {
-    std::vector<BallState> balls;
-};
-
-bool finite(const Vec3& a) {
-    return std::isfinite(a.x()) && std::isfinite(a.y()) && std::isfinite(a.z());
-}
-
-// Over the mass that all balls have unless they have their own: 1 in most scenes.
+// Returns the mass over that of a ball without a mass of its own: 1 in most scenes.
 double mass(const Record& record, int ball) {
     return record.size(ball).m / record.balls.m;
 }
 
-double energy_of(const Record& record, int ball, const BallState& s) {
-    if (s.state == MotionState::kPocketed) return 0.0;
-    const double R = record.size(ball).R;
-    return mass(record, ball) * (0.5 * s.velocity.squaredNorm() + 0.2 * R * R * s.spin.squaredNorm());
+std::vector<BallState> states_at(const Record& record, double t) {
+    std::vector<BallState> states;
+    for (std::size_t i = 0; i < record.tracks.size(); ++i)
+        states.push_back(record.state_at(static_cast<int>(i), t));
+    return states;
+}
+
+double energy_of(const Record& record, const std::vector<BallState>& states) {
+    double energy = 0.0;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        const BallState& s = states[i];
+        if (s.state == MotionState::kPocketed) continue;
+        const int ball = static_cast<int>(i);
+        const double R = record.size(ball).R;
+        energy += mass(record, ball) * (0.5 * s.velocity.squaredNorm() + 0.2 * R * R * s.spin.squaredNorm());
+    }
+    return energy;
 }
 
 class Checker {
@@ -46,24 +51,20 @@ class Checker {
         for (event_ = 0; event_ < record_.events.size() && !found_; ++event_) {
             const Event& e = record_.events[event_];
             if (!(e.time >= last_time))
-                report("U2", fmt::format("time falls from {:.17g} to {:.17g} s", last_time, e.time));
+                report("U2", "time falls from {:.17g} to {:.17g} s", last_time, e.time);
             last_time = e.time;
             check_crowd();
-            // Several events at one instant: the state after the last of them is the one that must hold.
+            // Where several events have one instant, the laws hold for the state after the last of them.
             const bool last_of_instant =
                 event_ + 1 == record_.events.size() || record_.events[event_ + 1].time > e.time;
             if (!last_of_instant) continue;
-            Moment now;
-            for (std::size_t i = 0; i < record_.tracks.size(); ++i)
-                now.balls.push_back(record_.state_at(static_cast<int>(i), e.time));
+            const std::vector<BallState> now = states_at(record_, e.time);
             check_penetration(now);
             check_rolling(e.time);
-            double energy = 0.0;
-            for (std::size_t i = 0; i < now.balls.size(); ++i)
-                energy += energy_of(record_, static_cast<int>(i), now.balls[i]);
+            const double energy = energy_of(record_, now);
             if (e.type == EventType::kCueStrike) last_energy = energy;
             if (keeps_energy() && energy > last_energy + 1e-12 * first_energy)
-                report("U4", fmt::format("energy rises from {:.17g} to {:.17g} J/kg", last_energy, energy));
+                report("U4", "energy rises from {:.17g} to {:.17g} J/kg", last_energy, energy);
             last_energy = energy;
         }
         check_impacts();
@@ -74,8 +75,9 @@ class Checker {
   private:
     double R(std::size_t ball) const { return record_.size(static_cast<int>(ball)).R; }
 
-    void report(const char* law, std::string message) {
-        if (!found_) found_ = Violation{event_, law, std::move(message)};
+    template <class... Values>
+    void report(const char* law, fmt::format_string<Values...> message, Values&&... values) {
+        if (!found_) found_ = Violation{event_, law, fmt::format(message, std::forward<Values>(values)...)};
     }
 
     bool keeps_energy() const {
@@ -92,12 +94,11 @@ class Checker {
     void check_finite() {
         for (const BallTrack& track : record_.tracks) {
             for (const Segment& s : track.segments) {
-                const bool ok = std::isfinite(s.start) && finite(s.r) && finite(s.v) && finite(s.w) &&
-                                s.a.allFinite() && s.dw.allFinite() && std::isfinite(s.spin_decay) &&
-                                !std::isnan(s.duration) && s.duration >= 0.0;
+                const bool ok = std::isfinite(s.start) && s.r.allFinite() && s.v.allFinite() &&
+                                s.w.allFinite() && s.a.allFinite() && s.dw.allFinite() &&
+                                std::isfinite(s.spin_decay) && !std::isnan(s.duration) && s.duration >= 0.0;
                 if (!ok)
-                    report("U1", fmt::format("ball {} at {:.17g} s holds a number that is not finite",
-                                             track.id, s.start));
+                    report("U1", "ball {} at {:.17g} s holds a number that is not finite", track.id, s.start);
             }
         }
     }
@@ -108,16 +109,16 @@ class Checker {
             report("U8", "too many events in one span");
     }
 
-    void check_penetration(const Moment& now) {
-        for (std::size_t i = 0; i < now.balls.size(); ++i) {
-            if (now.balls[i].state == MotionState::kPocketed) continue;
-            const Vec2 r = planar(now.balls[i].position);
-            for (std::size_t j = i + 1; j < now.balls.size(); ++j) {
-                if (now.balls[j].state == MotionState::kPocketed) continue;
-                const double gap = length(planar(now.balls[j].position) - r) - contact_distance(R(i), R(j));
+    void check_penetration(const std::vector<BallState>& now) {
+        for (std::size_t i = 0; i < now.size(); ++i) {
+            if (now[i].state == MotionState::kPocketed) continue;
+            const Vec2 r = planar(now[i].position);
+            for (std::size_t j = i + 1; j < now.size(); ++j) {
+                if (now[j].state == MotionState::kPocketed) continue;
+                const double gap = length(planar(now[j].position) - r) - contact_distance(R(i), R(j));
                 if (gap < -kTouchTolerance)
-                    report("U3", fmt::format("balls {} and {} overlap by {:.3g} m", record_.tracks[i].id,
-                                             record_.tracks[j].id, -gap));
+                    report("U3", "balls {} and {} overlap by {:.3g} m", record_.tracks[i].id,
+                           record_.tracks[j].id, -gap);
             }
             // A ball may cross a cushion's line only where the cushion is not.
             for (const CushionLine& line : plan_.geometry.cushions) {
@@ -125,19 +126,18 @@ class Checker {
                 const double foot = dot(line.direction, offset);
                 const double gap = std::abs(cross(line.direction, offset)) - R(i);
                 if (foot >= 0.0 && foot <= line.length && gap < -kTouchTolerance)
-                    report("U3",
-                           fmt::format("ball {} is {:.3g} m deep in a cushion", record_.tracks[i].id, -gap));
+                    report("U3", "ball {} is {:.3g} m deep in a cushion", record_.tracks[i].id, -gap);
             }
             for (const Nose& nose : plan_.geometry.noses) {
                 const double gap = length(r - nose.center) - nose.radius - R(i);
                 if (gap < -kTouchTolerance)
-                    report("U3", fmt::format("ball {} is {:.3g} m deep in a jaw or cushion end",
-                                             record_.tracks[i].id, -gap));
+                    report("U3", "ball {} is {:.3g} m deep in a jaw or cushion end", record_.tracks[i].id,
+                           -gap);
             }
         }
     }
 
-    // What the segment holds: state_at takes the spin of a rolling ball from its velocity.
+    // The segment itself is checked, because state_at takes the spin of a rolling ball from its velocity.
     void check_rolling(double time) {
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
             const std::vector<Segment>& segments = record_.tracks[i].segments;
@@ -147,17 +147,17 @@ class Checker {
             const Segment& s = *(next - 1);
             if (s.state == MotionState::kRolling &&
                 length(cloth_slip(s.v, s.w, R(i))) > 1e-13 * length(planar(s.v)))
-                report("U7", fmt::format("ball {} rolls and slips", record_.tracks[i].id));
+                report("U7", "ball {} rolls and slips", record_.tracks[i].id);
         }
     }
 
-    // Before and after a ball-ball impact: the ends of the segments that meet there.
+    // Compares the velocities before and after a ball-ball impact, at the ends of the segments that meet there.
     void check_impacts() {
         for (event_ = 0; event_ < record_.events.size() && !found_; ++event_) {
             const Event& e = record_.events[event_];
             if (e.type != EventType::kBallBall) continue;
-            // Only where each ball has exactly one segment that starts here: two impacts at one instant
-            // cannot be told apart.
+            // This is done only where each ball has exactly one segment that starts here, because two impacts at one
+            // instant cannot be told apart.
             const Segment *before1, *after1, *before2, *after2;
             if (!around(e.a, e.time, before1, after1) || !around(e.b, e.time, before2, after2)) continue;
             const Vec3 v1 = velocity_at(*before1, e.time - before1->start),
@@ -172,16 +172,15 @@ class Checker {
             const double scale = m1 * (v1.norm() + R1 * w1.norm()) + m2 * (v2.norm() + R2 * w2.norm());
             const Vec3 change = m1 * (after1->v - v1) + m2 * (after2->v - v2);
             const Vec3 dw1 = m1 * R1 * (after1->w - w1), dw2 = m2 * R2 * (after2->w - w2);
-            // The cloth gives at most mu_s of the vertical friction, which is at most mu_b of the normal
-            // impulse, all the way.
+            // During the whole impact the friction of the cloth is at most mu_s times the vertical friction, which is at most
+            // mu_b times the normal impulse.
             const double J_n =
                 std::max(m1 * std::abs((after1->v - v1).dot(n3)), m2 * std::abs((after2->v - v2).dot(n3)));
             const bool cloth = plan_.balls.mu_s > 0.0 && plan_.ball_ball->reads_cloth;
             const double limit =
                 cloth ? plan_.balls.mu_s * (plan_.balls.mu_b + plan_.balls.mu_b_more) * J_n : 0.0;
             if (change.norm() > limit + 64.0 * kUlp * scale)
-                report("U5",
-                       fmt::format("the impact changes the pair's momentum by {:.3g} m/s", change.norm()));
+                report("U5", "the impact changes the pair's momentum by {:.3g} m/s", change.norm());
             const double rounding = 1e-12 * scale;
             if (!cloth && (std::abs(dw1.dot(n3)) > rounding || std::abs(dw2.dot(n3)) > rounding ||
                            (dw1 - dw2).norm() > rounding))
@@ -208,7 +207,7 @@ class Checker {
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
             const Segment& s = record_.tracks[i].segments.back();
             const bool at_rest = s.state == MotionState::kStationary || s.state == MotionState::kPocketed;
-            if (!at_rest) report("U9", fmt::format("ball {} has not come to rest", record_.tracks[i].id));
+            if (!at_rest) report("U9", "ball {} has not come to rest", record_.tracks[i].id);
         }
     }
 
@@ -221,10 +220,7 @@ class Checker {
 }  // namespace
 
 double energy_at(const Record& record, double t) {
-    double energy = 0.0;
-    for (std::size_t i = 0; i < record.tracks.size(); ++i)
-        energy += energy_of(record, static_cast<int>(i), record.state_at(static_cast<int>(i), t));
-    return energy;
+    return energy_of(record, states_at(record, t));
 }
 
 std::optional<Violation> verify(const Record& record, const Plan& plan) {

@@ -94,7 +94,7 @@ class Skipped {
         }
     }
 
-    // One ball moves at most where no pair can meet: the others stay where they are.
+    // Where no pair can meet, at most one ball moves, and the others stay where they are.
     void check_pairs(int ball, const Path& path) {
         for (std::size_t j = 0; j < record_.tracks.size(); ++j) {
             if (static_cast<int>(j) == ball) continue;

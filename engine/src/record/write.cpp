@@ -5,6 +5,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -17,17 +18,9 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-OrderedJson numbers(const Vec2& v) {
-    return OrderedJson::array({v.x(), v.y()});
-}
-
-OrderedJson numbers(const Vec3& v) {
-    return OrderedJson::array({v.x(), v.y(), v.z()});
-}
-
-/// JSON has no infinity: null stands for "never ends".
-OrderedJson duration_or_null(double seconds) {
-    return std::isinf(seconds) ? OrderedJson(nullptr) : OrderedJson(seconds);
+template <class Vector>
+OrderedJson numbers(const Vector& v) {
+    return std::vector<double>(v.begin(), v.end());
 }
 
 OrderedJson json_of(const Key& key, const FieldValue& value) {
@@ -39,7 +32,7 @@ OrderedJson json_of(const Key& key, const FieldValue& value) {
     return std::get<double>(value);
 }
 
-/// The values that are given, by the keys of record files.
+/// Writes the values that are given under the keys of record files.
 template <class T, std::size_t kRows>
 OrderedJson json_of(const Field<T> (&fields)[kRows], const T& object) {
     OrderedJson json;
@@ -74,7 +67,8 @@ OrderedJson segment_json(const Segment& s) {
             {"a", numbers(s.a)},
             {"dw", numbers(s.dw)},
             {"spin_decay", s.spin_decay},
-            {"duration", duration_or_null(s.duration)},
+            // JSON has no infinity: null stands for "never ends".
+            {"duration", std::isinf(s.duration) ? OrderedJson(nullptr) : OrderedJson(s.duration)},
             {"held", s.held},
             {"ends", s.ends}};
 }
@@ -96,42 +90,29 @@ OrderedJson event_json(const Record& record, const Event& event, const EventCost
     return out;
 }
 
-/// `,` between the items of a list, one item per line.
-class Lines {
-  public:
-    Lines(OutputFile& file, const char* indent) : file_(file), indent_(indent) {}
-    void add(const std::string& item) {
-        file_.write(first_ ? "\n" : ",\n");
-        file_.write(indent_);
-        file_.write(item);
-        first_ = false;
+/// Writes a list with one item per line; `write_item(item)` writes an item.
+template <class Item, class Write>
+void write_lines(OutputFile& file, const std::vector<Item>& list, const char* indent, Write&& write_item) {
+    const char* separator = "[\n";
+    file.write(list.empty() ? "[" : "");
+    for (const Item& item : list) {
+        file.write(std::exchange(separator, ",\n"));
+        file.write(indent);
+        write_item(item);
     }
-
-  private:
-    OutputFile& file_;
-    const char* indent_;
-    bool first_ = true;
-};
+    file.write("]");
+}
 
 std::string dump(const OrderedJson& json) {
     return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
-void write_tracks(const Record& record, OutputFile& file) {
-    file.write("\"tracks\": [");
-    bool first = true;
-    for (const BallTrack& track : record.tracks) {
-        file.write(first ? "\n" : ",\n");
-        first = false;
-        file.write(" {\"id\": " + dump(track.id) + ", \"pocket\": " + std::to_string(track.pocket));
-        if (track.own)
-            file.write(", \"radius\": " + dump(track.own->R) + ", \"mass\": " + dump(track.own->m));
-        file.write(", \"segments\": [");
-        Lines lines(file, "  ");
-        for (const Segment& segment : track.segments) lines.add(dump(segment_json(segment)));
-        file.write("]}");
-    }
-    file.write("],\n");
+void write_track(const BallTrack& track, OutputFile& file) {
+    file.write("{\"id\": " + dump(track.id) + ", \"pocket\": " + std::to_string(track.pocket));
+    if (track.own) file.write(", \"radius\": " + dump(track.own->R) + ", \"mass\": " + dump(track.own->m));
+    file.write(", \"segments\": ");
+    write_lines(file, track.segments, "  ", [&](const Segment& s) { file.write(dump(segment_json(s))); });
+    file.write("}");
 }
 
 }  // namespace
@@ -150,15 +131,15 @@ void write_record(const Record& record, const std::string& path) {
                ", \"setup_detect_ns\": " + dump(record.setup_detect_ns));
     file.write(",\n\"render\": " + dump(json_of(kRenderFields, record.render)));
     file.write(",\n\"table\": " + dump(table_json(record.table)));
-    file.write(",\n\"balls\": " + dump(json_of(kBallFields, record.balls)) + ",\n");
-    write_tracks(record, file);
-    file.write("\"events\": [");
-    Lines lines(file, " ");
-    for (std::size_t i = 0; i < record.events.size(); ++i) {
-        lines.add(
-            dump(event_json(record, record.events[i], record.costs.empty() ? nullptr : &record.costs[i])));
-    }
-    file.write("]}\n");
+    file.write(",\n\"balls\": " + dump(json_of(kBallFields, record.balls)));
+    file.write(",\n\"tracks\": ");
+    write_lines(file, record.tracks, " ", [&](const BallTrack& track) { write_track(track, file); });
+    file.write(",\n\"events\": ");
+    write_lines(file, record.events, " ", [&](const Event& event) {
+        const EventCost* cost = record.costs.empty() ? nullptr : &record.costs[&event - record.events.data()];
+        file.write(dump(event_json(record, event, cost)));
+    });
+    file.write("}\n");
     file.commit();
 }
 

@@ -19,10 +19,6 @@ namespace {
 // difference make up to four roundings.
 constexpr double kTouchRounding = 0x1p-51;
 
-Vec2 planar(const BallStart& ball) {
-    return ball.position.head<2>();
-}
-
 /// How deep two things may overlap and still count as touching, at this distance from the origin.
 double touch_tolerance(const Vec2& p) {
     return std::max(kTouchTolerance, kTouchRounding * std::max(std::abs(p.x()), std::abs(p.y())));
@@ -33,38 +29,36 @@ void check_ids(const Section& top, const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
         const auto [first, fresh] = seen.emplace(ball.id, ball.where);
         if (fresh) continue;
-        top.fail(ball.where,
-                 fmt::format("ball id {} is already used in line {}; give each ball an id of its own",
-                             in_quotes(ball.id), first->second.line));
+        top.fail(ball.where, "ball id {} is already used in line {}; give each ball an id of its own",
+                 in_quotes(ball.id), first->second.line);
     }
 }
 
 void check_overlaps(const Section& top, const Scene& scene) {
     for (std::size_t i = 0; i < scene.ball.size(); ++i) {
-        const Vec2 p = planar(scene.ball[i]);
+        const Vec2 p = planar(scene.ball[i].position);
         const double R = scene.size_of(scene.ball[i]).R;
         for (std::size_t j = 0; j < i; ++j) {
             const double diameter = contact_distance(R, scene.size_of(scene.ball[j]).R);
             const double least = diameter - touch_tolerance(p);
             // The axes are compared first, because most pairs are far apart.
-            const Vec2 d = p - planar(scene.ball[j]);
+            const Vec2 d = p - planar(scene.ball[j].position);
             if (std::abs(d.x()) >= diameter || std::abs(d.y()) >= diameter) continue;
             const double distance = d.norm();
             if (distance >= least) continue;
-            top.fail(scene.ball[i].where, fmt::format("balls {} and {} overlap by {:.4g} m; move one of them",
-                                                      in_quotes(scene.ball[j].id),
-                                                      in_quotes(scene.ball[i].id), diameter - distance));
+            top.fail(scene.ball[i].where, "balls {} and {} overlap by {:.4g} m; move one of them",
+                     in_quotes(scene.ball[j].id), in_quotes(scene.ball[i].id), diameter - distance);
         }
     }
 }
 
 void check_reach(const Section& top, const Scene& scene) {
     const auto refuse = [&](const BallStart& ball, const char* kind, const std::string& id, double depth) {
-        top.fail(ball.where, fmt::format("ball {} reaches {:.4g} m into {} {}; move it away",
-                                         in_quotes(ball.id), depth, kind, id));
+        top.fail(ball.where, "ball {} reaches {:.4g} m into {} {}; move it away", in_quotes(ball.id), depth,
+                 kind, id);
     };
     for (const BallStart& ball : scene.ball) {
-        const Vec2 p = planar(ball);
+        const Vec2 p = planar(ball.position);
         const double touch = touch_tolerance(p), R = scene.size_of(ball).R;
         for (const Cushion& c : scene.table.cushions) {
             const double depth = R - distance_to_segment(p, c.from, c.to);
@@ -87,8 +81,8 @@ void check_noses(const Section& top, const Scene& scene) {
                 "the nose of {} {} is {} m high, not below the top of a ball ({} m); "
                 "use larger balls or a lower cushion",
                 kind, id, height, 2.0 * R);
-            if (ball.own) top.fail(ball.where, message);
-            top.fail(top.has("table") ? "table" : "balls", message);
+            if (ball.own) top.fail(ball.where, "{}", message);
+            top.fail(top.has("table") ? "table" : "balls", "{}", message);
         }
     };
     for (const Cushion& c : scene.table.cushions) check("cushion", c.id, c.height);
@@ -106,8 +100,8 @@ void check_sizes(const Section& top, const Scene& scene) {
         if (size == first) continue;
         const SourceLocation where = ball.own ? ball.where : scene.ball.front().where;
         const auto refuse = [&](const std::string& why) {
-            top.fail(where, fmt::format("balls {} and {} differ in size: {}",
-                                        in_quotes(scene.ball.front().id), in_quotes(ball.id), why));
+            top.fail(where, "balls {} and {} differ in size: {}", in_quotes(scene.ball.front().id),
+                     in_quotes(ball.id), why);
         };
         if (rough && size.R != first.R)
             refuse(
@@ -126,7 +120,7 @@ void check_sizes(const Section& top, const Scene& scene) {
     }
 }
 
-/// Every impact has to have a solution in its model.
+/// Refuses a scene in which an impact may have no solution in its model.
 void check_cushion_model(const Section& top, const Scene& scene) {
     const BallParams& p = scene.balls;
     const auto check = [&](const CushionModelInfo& model, const char* kind, const std::string& id,
@@ -135,11 +129,10 @@ void check_cushion_model(const Section& top, const Scene& scene) {
         for (const BallStart& ball : scene.ball) {
             const BallSize size = scene.size_of(ball);
             if (model.accepts({size.R, size.m, p.mu_s, p.e_c, p.f_c, height})) continue;
-            top.fail(
-                top.has("physics") ? "physics" : "balls",
-                fmt::format("with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the "
-                            "model {}; lower one of them or use another cushion model",
-                            p.f_c, p.mu_s, kind, id, model.name));
+            top.fail(top.has("physics") ? "physics" : "balls",
+                     "with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the "
+                     "model {}; lower one of them or use another cushion model",
+                     p.f_c, p.mu_s, kind, id, model.name);
         }
     };
     for (const Cushion& c : scene.table.cushions) check(*scene.physics.cushion, "cushion", c.id, c.height);
@@ -190,9 +183,8 @@ void check_rest(const Section& top, const Scene& scene) {
     const Motions m = possible_motions(scene);
     const auto refuse = [&](const char* section, const char* cause, const char* result) {
         top.fail(section,
-                 fmt::format(
-                     "with {} = 0 {} for ever and the run cannot end at rest; add [stop] with time or events",
-                     cause, result));
+                 "with {} = 0 {} for ever and the run cannot end at rest; add [stop] with time or events",
+                 cause, result);
     };
     if (scene.physics.gravity == 0.0 && (m.travel || m.twist))
         refuse("physics", "physics.gravity", "balls move");

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -85,6 +86,11 @@ Scene scene_from(const toml::table& file, const std::string& name) {
 }
 
 }  // namespace detail
+
+SceneError::SceneError(const std::string& file, SourceLocation where, const std::string& message)
+    : std::runtime_error(where.line > 0 ? fmt::format("{}:{}:{}: {}", file, where.line, where.column, message)
+                                        : fmt::format("{}: {}", file, message)),
+      message_(message) {}
 
 Scene parse_scene(std::string_view text, const std::string& name) {
     check_size(text, name);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/splitmix64.h"
@@ -11,67 +12,41 @@
 namespace carom {
 namespace {
 
-/// Balls per row, from the apex.
+/// Returns the number of balls in each row, from the apex.
 std::vector<int> rows_of(const Rack& rack) {
-    switch (rack.game) {
-        case RackGame::kEightBall:
-            return {1, 2, 3, 4, 5};
-        case RackGame::kNineBall:
-            return {1, 2, 3, 2, 1};
-        case RackGame::kSnooker:
-            return {1, 2, 3, 4, 5};
-        case RackGame::kTriangle: {
-            std::vector<int> rows;
-            for (int n = 1; n <= rack.rows; ++n) rows.push_back(n);
-            return rows;
-        }
-        case RackGame::kThreeCushion:
-            return {};
-        case RackGame::kLine:
-            break;
-    }
-    return std::vector<int>(static_cast<std::size_t>(rack.count), 1);
+    if (rack.game == RackGame::kThreeCushion) return {};
+    if (rack.game == RackGame::kNineBall) return {1, 2, 3, 2, 1};
+    if (rack.game == RackGame::kLine) return std::vector<int>(static_cast<std::size_t>(rack.count), 1);
+    std::vector<int> rows(rack.game == RackGame::kTriangle ? static_cast<std::size_t>(rack.rows) : 5);
+    std::iota(rows.begin(), rows.end(), 1);
+    return rows;
 }
 
-/// Fisher-Yates.
+/// Shuffles by the algorithm of Fisher and Yates.
 void shuffle(std::vector<int>& numbers, SplitMix64& random) {
     for (std::size_t i = numbers.size(); i > 1; --i) {
         std::swap(numbers[i - 1], numbers[random.below(static_cast<int>(i))]);
     }
 }
 
-/// World standardised rules: 8 in the middle of the third row, one solid and one stripe in the back corners,
-/// the rest at random.
+/// By the world standardised rules the 8 lies in the middle of the third row, one solid and one stripe in the back corners,
+/// and the rest at random.
 std::vector<int> eight_ball_numbers(SplitMix64& random) {
     const int solid = 1 + random.below(7);
     const int stripe = 9 + random.below(7);
     const bool solid_left = random.below(2) == 0;
-    std::vector<int> rest;
+    std::vector<int> numbers;
     for (int n = 1; n <= 15; ++n) {
-        if (n != 8 && n != solid && n != stripe) rest.push_back(n);
+        if (n != 8 && n != solid && n != stripe) numbers.push_back(n);
     }
-    shuffle(rest, random);
-    std::vector<int> out;
-    std::size_t next = 0;
-    for (int slot = 0; slot < 15; ++slot) {
-        switch (slot) {
-            case 4:
-                out.push_back(8);
-                break;
-            case 10:
-                out.push_back(solid_left ? solid : stripe);
-                break;
-            case 14:
-                out.push_back(solid_left ? stripe : solid);
-                break;
-            default:
-                out.push_back(rest[next++]);
-        }
-    }
-    return out;
+    shuffle(numbers, random);
+    numbers.insert(numbers.begin() + 4, 8);
+    numbers.insert(numbers.begin() + 10, solid_left ? solid : stripe);
+    numbers.push_back(solid_left ? stripe : solid);
+    return numbers;
 }
 
-/// 1 at the apex, 9 in the middle, the rest at random.
+/// The 1 lies at the apex, the 9 in the middle, and the rest at random.
 std::vector<int> nine_ball_numbers(SplitMix64& random) {
     std::vector<int> rest = {2, 3, 4, 5, 6, 7, 8};
     shuffle(rest, random);
@@ -81,16 +56,15 @@ std::vector<int> nine_ball_numbers(SplitMix64& random) {
 std::vector<int> numbers_of(const Rack& rack, SplitMix64& random) {
     if (rack.game == RackGame::kEightBall) return eight_ball_numbers(random);
     if (rack.game == RackGame::kNineBall) return nine_ball_numbers(random);
-    int count = 0;
-    for (const int row : rows_of(rack)) count += row;
-    std::vector<int> out;
-    for (int n = 1; n <= count; ++n) out.push_back(n);
+    const std::vector<int> rows = rows_of(rack);
+    std::vector<int> out(static_cast<std::size_t>(std::accumulate(rows.begin(), rows.end(), 0)));
+    std::iota(out.begin(), out.end(), 1);
     return out;
 }
 
-/// Balls with a spot of their own. Snooker: baulk line 737 mm from the cushion, radius of the D 292 mm, black
-/// spot 324 mm from the top cushion (rules of the WPBSA, section 1). Three-cushion: 182.5 mm between the two
-/// spots of the start position (rules of the UMB). Both recalled, not read again.
+/// Balls with a spot of their own. Snooker: the baulk line is 737 mm from the bottom cushion, the radius of the D is 292 mm,
+/// and the black spot is 324 mm from the top cushion (rules of the WPBSA, section 1). Three-cushion: white is 182.5 mm to the
+/// left of yellow, which is on the head spot (opening position of the rules of the UMB). Both are recalled, not read again.
 std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
     const Vec2 origin = table.corner;
     const double middle = table.width / 2.0, l = table.length;
@@ -109,7 +83,7 @@ std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
             {"pink", at(middle, 3.0 * l / 4.0)}, {"black", at(middle, l - 0.324 * scale)}};
 }
 
-/// Places without jitter, row by row, left to right.
+/// Returns the places without jitter, row by row from left to right.
 std::vector<Vec2> slots_of(const Rack& rack, const Vec2& apex, double R) {
     const double pitch = 2.0 * R + rack.gap;
     const double row_pitch = rack.game == RackGame::kLine ? pitch : pitch * (std::sqrt(3.0) / 2.0);
@@ -129,9 +103,9 @@ std::vector<Vec2> slots_of(const Rack& rack, const Vec2& apex, double R) {
     return out;
 }
 
-/// Metropolis sampling of hard discs: valid from the first step (the rack without jitter) to the last.
+/// Metropolis sampling of hard discs. Every step is a valid rack; the first one is the rack without jitter.
 void add_jitter(std::vector<Vec2>& places, const Rack& rack, double R, SplitMix64& random) {
-    // With a gap of 0 only the rim is free at first; a hundred rounds let every ball of a rack move.
+    // With a gap of 0 only the balls at the rim can move at first; after a hundred rounds every ball has moved.
     constexpr int kRounds = 100;
     const std::vector<Vec2> slots = places;
     const double contact = 4.0 * R * R;

@@ -18,10 +18,8 @@ struct RackedBall {
 /// @param R  ball radius [m]
 ///
 /// The apex stands on the foot spot (snooker: behind the pink, a diameter and a gap away), rows towards +y.
-/// Snooker's colours stand on their spots (WPBSA rules, section 1: baulk line 737 mm from the bottom cushion, D
-/// of radius 292 mm, blue in the middle, pink at three quarters, black 324 mm from the top cushion), scaled with
-/// the length where the table is not a snooker table. Three-cushion: red on the foot spot, yellow on the head
-/// spot, white 182.5 mm to the left of it (opening position of the UMB rules, recalled). Colours do not jitter.
+/// The colours of snooker and the balls of three-cushion stand on their spots, whose distances (rack.cpp) are scaled with
+/// the length of the table; they do not jitter.
 ///
 /// Without jitter the rack is the exact mirror image of itself about x = apex.x, bit for bit, and neighbours
 /// are 2R + gap apart to within rounding.

@@ -10,30 +10,11 @@ namespace carom::detail {
 namespace {
 
 const char* type_name(const toml::node& node) {
-    switch (node.type()) {
-        case toml::node_type::table:
-            return "a table";
-        case toml::node_type::array:
-            return "an array";
-        case toml::node_type::string:
-            return "a string";
-        case toml::node_type::integer:
-            return "an integer";
-        case toml::node_type::floating_point:
-            return "a number";
-        case toml::node_type::boolean:
-            return "a boolean";
-        default:
-            return "a date or time";
-    }
-}
-
-bool before(SourceLocation a, SourceLocation b) {
-    return a.line != b.line ? a.line < b.line : a.column < b.column;
-}
-
-SourceLocation place(const toml::source_region& region) {
-    return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+    // In the order of toml::node_type.
+    static constexpr const char* kNames[] = {"nothing",    "a table",  "an array", "a string",
+                                             "an integer", "a number", "a boolean"};
+    static_assert(static_cast<int>(toml::node_type::boolean) == 6);
+    return node.type() <= toml::node_type::boolean ? kNames[static_cast<int>(node.type())] : "a date or time";
 }
 
 std::string describe(const Interval& i) {
@@ -53,29 +34,26 @@ std::string listed(const std::vector<const char*>& names) {
 
 }  // namespace
 
-SourceLocation place(const toml::node& node) {
-    return place(node.source());
+SourceLocation place(const toml::source_region& region) {
+    return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
 Section::Section(const toml::table& table, const std::string& file, std::string path,
                  const std::vector<std::string_view>& keys)
-    : table_(table),
-      file_(file),
-      path_(std::move(path)),
-      where_(place(static_cast<const toml::node&>(table))) {
+    : table_(table), file_(file), path_(std::move(path)), where_(place(table.source())) {
     // toml++ sorts its keys; report the unknown one that comes first in the file.
     const toml::key* unknown = nullptr;
     for (auto&& [key, value] : table) {
         if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
-        if (!unknown || before(place(key.source()), place(unknown->source()))) unknown = &key;
+        if (!unknown || place(key.source()) < place(unknown->source())) unknown = &key;
     }
     if (!unknown) return;
     if (path_.empty()) {
-        fail(place(unknown->source()), fmt::format("unknown section or key {}; the sections are {}",
-                                                   in_quotes(unknown->str()), fmt::join(keys, ", ")));
+        fail(place(unknown->source()), "unknown section or key {}; the sections are {}",
+             in_quotes(unknown->str()), fmt::join(keys, ", "));
     }
-    fail(place(unknown->source()), fmt::format("unknown key {} in [{}]; the keys there are {}",
-                                               in_quotes(unknown->str()), path_, fmt::join(keys, ", ")));
+    fail(place(unknown->source()), "unknown key {} in [{}]; the keys there are {}", in_quotes(unknown->str()),
+         path_, fmt::join(keys, ", "));
 }
 
 std::string Section::full(std::string_view key) const {
@@ -84,65 +62,51 @@ std::string Section::full(std::string_view key) const {
 
 SourceLocation Section::where(std::string_view key) const {
     const toml::node* node = table_.get(key);
-    return node ? place(*node) : where_;
-}
-
-void Section::fail(SourceLocation where, const std::string& message) const {
-    throw SceneError(file_, where, message);
-}
-
-void Section::fail(std::string_view key, const std::string& message) const {
-    fail(where(key), message);
+    return node ? where(*node) : where_;
 }
 
 double Section::number(const toml::node& node, const std::string& what, const Interval& allowed) const {
-    if (!node.is_number())
-        fail(place(node), fmt::format("{} must be a number, not {}", what, type_name(node)));
+    if (!node.is_number()) fail(node, "{} must be a number, not {}", what, type_name(node));
     const double x = *node.value<double>();
-    if (x - x != 0.0) fail(place(node), fmt::format("{} must be a finite number", what));
+    if (x - x != 0.0) fail(node, "{} must be a finite number", what);
     const bool high_enough = allowed.low_open ? x > allowed.low : x >= allowed.low;
     const bool low_enough = allowed.high_open ? x < allowed.high : x <= allowed.high;
-    if (!high_enough || !low_enough) {
-        fail(place(node), fmt::format("{} = {} is out of range; it must be {}", what, x, describe(allowed)));
-    }
+    if (!high_enough || !low_enough)
+        fail(node, "{} = {} is out of range; it must be {}", what, x, describe(allowed));
     return x;
 }
 
 std::int64_t Section::integer(const toml::node& node, const Key& key) const {
     if (!node.is_integer()) {
         const char* got = node.is_floating_point() ? "a number with a decimal point" : type_name(node);
-        fail(place(node), fmt::format("{} must be an integer, not {}", full(key.key), got));
+        fail(node, "{} must be an integer, not {}", full(key.key), got);
     }
     const std::int64_t x = *node.value<std::int64_t>(), low = static_cast<std::int64_t>(key.range.low);
     const std::int64_t high =
         key.range.high < kAnyInteger ? static_cast<std::int64_t>(key.range.high) : INT64_MAX;
     if (x < low || x > high) {
-        fail(place(node), fmt::format("{} = {} is out of range; it must be at least {} and at most {}",
-                                      full(key.key), x, low, high));
+        fail(node, "{} = {} is out of range; it must be at least {} and at most {}", full(key.key), x, low,
+             high);
     }
     return x;
 }
 
 std::string Section::text(const toml::node& node, const Key& key) const {
     if (!node.is_string())
-        fail(place(node),
-             fmt::format("{} must be a string in quotes, not {}", full(key.key), type_name(node)));
+        fail(node, "{} must be a string in quotes, not {}", full(key.key), type_name(node));
     const std::string got = *node.value<std::string>();
     const std::vector<const char*> names = key.names();
     if (!names.empty() && std::find(names.begin(), names.end(), got) == names.end())
-        fail(place(node), fmt::format("unknown {} {}; use {}", full(key.key), in_quotes(got), listed(names)));
+        fail(node, "unknown {} {}; use {}", full(key.key), in_quotes(got), listed(names));
     return got;
 }
 
 std::vector<double> Section::numbers(const toml::node& node, const Key& key) const {
     const toml::array* array = node.as_array();
     const char* shape = key.options.shape;
-    if (!array)
-        fail(place(node),
-             fmt::format("{} must be an array {}, not {}", full(key.key), shape, type_name(node)));
+    if (!array) fail(node, "{} must be an array {}, not {}", full(key.key), shape, type_name(node));
     if (array->size() != key.count())
-        fail(place(node),
-             fmt::format("{} has {} values; write {} = {}", full(key.key), array->size(), key.key, shape));
+        fail(node, "{} has {} values; write {} = {}", full(key.key), array->size(), key.key, shape);
     std::vector<double> out;
     for (const toml::node& element : *array)
         out.push_back(number(element, fmt::format("{}[{}]", full(key.key), out.size()), key.range));
@@ -153,8 +117,8 @@ FieldValue Section::value(const Key& key) const {
     const toml::node* node = table_.get(key.key);
     if (!node) {
         if (!key.options.needed) return {};
-        fail(where_, fmt::format("[{}] needs {} = {}", path_, key.key,
-                                 key.kind == Key::Kind::kNumber ? "a number" : key.options.shape));
+        fail(where_, "[{}] needs {} = {}", path_, key.key,
+             key.kind == Key::Kind::kNumber ? "a number" : key.options.shape);
     }
     switch (key.kind) {
         case Key::Kind::kNumber:
@@ -170,16 +134,14 @@ FieldValue Section::value(const Key& key) const {
     const std::vector<double> list = numbers(*node, key);
     if (key.kind == Key::Kind::kIntegers &&
         std::any_of(list.begin(), list.end(), [](double x) { return x != std::floor(x); }))
-        fail(place(*node),
-             fmt::format("{} must be whole {}; drop the fraction", full(key.key), key.range.unit));
+        fail(*node, "{} must be whole {}; drop the fraction", full(key.key), key.range.unit);
     return list;
 }
 
 std::optional<bool> Section::boolean(std::string_view key) const {
     const toml::node* node = table_.get(key);
     if (!node) return std::nullopt;
-    if (!node->is_boolean())
-        fail(key, fmt::format("{} must be true or false, not {}", full(key), type_name(*node)));
+    if (!node->is_boolean()) fail(key, "{} must be true or false, not {}", full(key), type_name(*node));
     return *node->value<bool>();
 }
 
@@ -188,8 +150,7 @@ std::optional<Section> Section::section(const char* key, const std::vector<std::
     if (!node) return std::nullopt;
     if (!node->is_table()) {
         const char* hint = node->is_array_of_tables() ? " (single brackets, once)" : "";
-        fail(key, fmt::format("{} must be a section [{}]{}, not {}", full(key), full(key), hint,
-                              type_name(*node)));
+        fail(key, "{} must be a section [{}]{}, not {}", full(key), full(key), hint, type_name(*node));
     }
     return Section(*node->as_table(), file_, full(key), keys);
 }
@@ -199,16 +160,12 @@ std::optional<std::vector<const toml::table*>> Section::tables(std::string_view 
     if (!node) return std::nullopt;
     const std::string name = full(key);
     const toml::array* array = node->as_array();
-    if (!array) {
-        fail(key, fmt::format("{} is a list: write [[{}]] with double brackets, not {}", name, name,
-                              type_name(*node)));
-    }
+    if (!array)
+        fail(key, "{} is a list: write [[{}]] with double brackets, not {}", name, name, type_name(*node));
     std::vector<const toml::table*> out;
     for (const toml::node& element : *array) {
-        if (!element.is_table()) {
-            fail(place(element),
-                 fmt::format("{} must hold tables, not {}; write [[{}]]", name, type_name(element), name));
-        }
+        if (!element.is_table())
+            fail(element, "{} must hold tables, not {}; write [[{}]]", name, type_name(element), name);
         out.push_back(element.as_table());
     }
     return out;

@@ -1,12 +1,14 @@
 // A typed reader over toml++: every value is checked where it is read, and every error names its place in the file.
 #pragma once
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "carom/engine/printable.h"
@@ -16,7 +18,7 @@ namespace carom::detail {
 
 using carom::in_quotes;
 
-SourceLocation place(const toml::node& node);
+SourceLocation place(const toml::source_region& region);
 
 /// Reads one table of the file. `path` names it in messages ("cue", "table.cushion"); the file as a whole is "".
 class Section {
@@ -30,6 +32,8 @@ class Section {
     bool has(std::string_view key) const { return table_.contains(key); }
     /// Where a key's value stands, or the section if the key is absent.
     SourceLocation where(std::string_view key) const;
+    static SourceLocation where(const toml::node& node) { return place(node.source()); }
+    static SourceLocation where(SourceLocation known) { return known; }
 
     /// Takes over what the section says; where it says nothing, the object stays as it is.
     template <class T, std::size_t kRows>
@@ -54,8 +58,11 @@ class Section {
     /// The tables of an array of tables; nothing if the key is absent.
     std::optional<std::vector<const toml::table*>> tables(std::string_view key) const;
 
-    [[noreturn]] void fail(std::string_view key, const std::string& message) const;
-    [[noreturn]] void fail(SourceLocation where, const std::string& message) const;
+    /// Throws a SceneError at a key, a node or a place; the message and its values are as for fmt::format.
+    template <class At, class... Values>
+    [[noreturn]] void fail(const At& at, fmt::format_string<Values...> message, Values&&... values) const {
+        throw SceneError(file_, where(at), fmt::format(message, std::forward<Values>(values)...));
+    }
     /// "cue.speed"
     std::string full(std::string_view key) const;
 

@@ -26,16 +26,12 @@ constexpr double kMiscueOffset = 0.5;
 /// Ids go into CSV files and messages as they are.
 void check_id(const Section& section, const std::string& id) {
     if (id.empty()) section.fail("id", "a ball's id is empty; give it a name");
-    if (id.size() > kMaxIdLength) {
-        section.fail("id", fmt::format("the ball id {} is longer than {} bytes; shorten it", in_quotes(id),
-                                       kMaxIdLength));
-    }
+    if (id.size() > kMaxIdLength)
+        section.fail("id", "the ball id {} is longer than {} bytes; shorten it", in_quotes(id), kMaxIdLength);
     for (const char c : id) {
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"') {
-            section.fail(
-                "id",
-                fmt::format("the ball id {} holds a comma, a quote or a control character; leave it out",
-                            in_quotes(id)));
+            section.fail("id", "the ball id {} holds a comma, a quote or a control character; leave it out",
+                         in_quotes(id));
         }
     }
 }
@@ -76,11 +72,10 @@ void read_balls(const Section& top, Scene& scene) {
           std::pair{p.mu_b_more > 0.0 ? "mu_b_fit" : "mu_b", p.mu_b + p.mu_b_more}}) {
         if (value > kernel::kLargestFriction && scene.physics.ball_ball->reads_tolerance &&
             !scene.physics.substeps)
-            s->fail(s->where(key),
-                    fmt::format(
-                        "balls.{} = {}: the impact by tolerance takes frictions up to {}; lower it, or set "
-                        "physics.substeps = 1000",
-                        key, value, kernel::kLargestFriction));
+            s->fail(key,
+                    "balls.{} = {}: the impact by tolerance takes frictions up to {}; lower it, or set "
+                    "physics.substeps = 1000",
+                    key, value, kernel::kLargestFriction);
     }
 }
 
@@ -91,7 +86,7 @@ void read_ball_list(const Section& top, Scene& scene) {
     for (const toml::table* table : *tables) {
         const Section s(*table, top.file(), "ball", keys);
         if (scene.ball.size() == kMaxBalls)
-            s.fail(s.where(), fmt::format("more than {} balls; leave some out", kMaxBalls));
+            s.fail(s.where(), "more than {} balls; leave some out", kMaxBalls);
         scene.ball.push_back(read_ball(s, scene.balls.size()));
     }
 }
@@ -100,21 +95,18 @@ void read_rack(const Section& top, Scene& scene) {
     Rack rack;
     const auto s = top.read("rack", kRackFields, rack);
     if (!s) return;
-    if (s->has("count") && rack.game != RackGame::kLine) {
+    if (s->has("count") && rack.game != RackGame::kLine)
         s->fail("count", "rack.count belongs to the game line; leave it out or set game = \"line\"");
-    }
-    if (s->has("rows") && rack.game != RackGame::kTriangle) {
+    if (s->has("rows") && rack.game != RackGame::kTriangle)
         s->fail("rows", "rack.rows belongs to the game triangle; leave it out or set game = \"triangle\"");
-    }
     const bool spots = rack.game == RackGame::kSnooker || rack.game == RackGame::kThreeCushion;
     if (spots && !(scene.table.length > 0.0)) {
         s->fail("game",
                 "this layout puts balls on the spots of a table, and the cloth is endless; choose a table");
     }
     for (const RackedBall& ball : make_rack(rack, scene.table, scene.balls.R)) {
-        if (scene.ball.size() == kMaxBalls) {
-            s->fail(s->where(), fmt::format("more than {} balls; leave some out", kMaxBalls));
-        }
+        if (scene.ball.size() == kMaxBalls)
+            s->fail(s->where(), "more than {} balls; leave some out", kMaxBalls);
         BallStart start;
         start.id = ball.id;
         start.position = {ball.position.x(), ball.position.y(), scene.balls.R};
@@ -130,32 +122,27 @@ void read_cue(const Section& top, Scene& scene) {
     cue.where = s->where();
     const Vec2 offset(cue.side, cue.height);
     if (offset.squaredNorm() > kMiscueOffset * kMiscueOffset) {
-        s->fail(
-            "offset",
-            fmt::format(
+        s->fail("offset",
+
                 "cue.offset is {:.4g} ball radii from the centre, where the tip slips off; keep it within {}",
-                offset.norm(), kMiscueOffset));
+                offset.norm(), kMiscueOffset);
     }
     if (cue.end_mass > cue.mass) {
-        s->fail("end_mass",
-                fmt::format("cue.end_mass = {} is more than the whole cue, cue.mass = {}; make it smaller",
-                            cue.end_mass, cue.mass));
+        s->fail("end_mass", "cue.end_mass = {} is more than the whole cue, cue.mass = {}; make it smaller",
+                cue.end_mass, cue.mass);
     }
     const BallStart* struck = nullptr;
     for (const BallStart& ball : scene.ball) {
         if (ball.id == cue.ball) struck = &ball;
     }
     if (!struck) {
-        s->fail("ball",
-                fmt::format("cue.ball: there is no ball {}; add a [[ball]] with this id or name another",
-                            in_quotes(cue.ball)));
+        s->fail("ball", "cue.ball: there is no ball {}; add a [[ball]] with this id or name another",
+                in_quotes(cue.ball));
     }
     if (!struck->velocity.isZero(0.0) || !struck->spin.isZero(0.0)) {
-        s->fail(
-            struck->where,
-            fmt::format(
+        s->fail(struck->where,
                 "ball {} has a velocity or spin of its own and is struck by the cue; remove one of the two",
-                in_quotes(struck->id)));
+                in_quotes(struck->id));
     }
     scene.cue = cue;
 }

@@ -9,6 +9,8 @@
 namespace carom::detail {
 
 void read_balls(const Section& top, Scene& scene);
+/// Gives the parts of a table their ids: "c1", "c2", ..., "j1", ..., "p1", ...
+void number_parts(Table& table);
 /// Needs scene.balls (default nose height).
 void read_table(const Section& top, Scene& scene);
 /// Written balls. Needs scene.balls.

@@ -14,21 +14,19 @@ namespace {
 /// Nose height over ball radius of pool tables (physics.md: 1.28 R), the default of a custom outline.
 constexpr double kNoseShare = 1.28;
 
-/// Reads every item of a list into a part of the table, and calls `check(section, part)`; their ids are a letter and a
-/// number from 1.
+/// Reads every item of a list into a part of the table, and calls `check(section, part)`.
 template <class Part, std::size_t kRows, class Check>
-void read_parts(const Section& outline, const char* key, char letter, const Field<Part> (&fields)[kRows],
+void read_parts(const Section& outline, const char* key, const Field<Part> (&fields)[kRows],
                 const Part& standard, std::vector<Part>& parts, Check&& check) {
     const auto tables = outline.tables(key);
     if (!tables) return;
     if (tables->size() > kMaxTableParts)
-        outline.fail(key, fmt::format("{} has {} entries; at most {} are allowed", outline.full(key),
-                                      tables->size(), kMaxTableParts));
+        outline.fail(key, "{} has {} entries; at most {} are allowed", outline.full(key), tables->size(),
+                     kMaxTableParts);
     const auto keys = keys_of(fields, Files::kScene);
     for (const toml::table* table : *tables) {
         const Section s(*table, outline.file(), outline.full(key), keys);
         Part& part = parts.emplace_back(standard);
-        part.id = fmt::format("{}{}", letter, parts.size());
         s.read(fields, part);
         check(s, part);
     }
@@ -58,6 +56,15 @@ void set_surface(Table& table) {
 
 }  // namespace
 
+void number_parts(Table& table) {
+    const auto number = [](char letter, auto& parts) {
+        for (std::size_t i = 0; i < parts.size(); ++i) parts[i].id = fmt::format("{}{}", letter, i + 1);
+    };
+    number('c', table.cushions);
+    number('j', table.jaws);
+    number('p', table.pockets);
+}
+
 void read_table(const Section& top, Scene& scene) {
     std::vector<std::string_view> keys = keys_of(kTableFields, Files::kScene);
     keys.insert(keys.end(), {"cushion", "jaw", "pocket"});
@@ -77,15 +84,16 @@ void read_table(const Section& top, Scene& scene) {
     }
     const double height = kNoseShare * scene.balls.R;
     const auto any = [](const Section&, const auto&) {};
-    read_parts(*s, "cushion", 'c', kCushionFields, Cushion{"", {}, {}, height}, scene.table.cushions,
+    read_parts(*s, "cushion", kCushionFields, Cushion{"", {}, {}, height}, scene.table.cushions,
                [](const Section& section, const Cushion& c) {
                    if (c.from == c.to)
                        section.fail("to",
                                     "a cushion ends where it begins; move one end, or use a "
                                     "[[table.jaw]] of radius 0 for a post");
                });
-    read_parts(*s, "jaw", 'j', kJawFields, Jaw{"", {}, 0.0, height}, scene.table.jaws, any);
-    read_parts(*s, "pocket", 'p', kPocketFields, Pocket{"", {}, 0.0, kPocketDepth}, scene.table.pockets, any);
+    read_parts(*s, "jaw", kJawFields, Jaw{"", {}, 0.0, height}, scene.table.jaws, any);
+    read_parts(*s, "pocket", kPocketFields, Pocket{"", {}, 0.0, kPocketDepth}, scene.table.pockets, any);
+    number_parts(scene.table);
     set_surface(scene.table);
 }
 

@@ -1,13 +1,16 @@
 // The tables that come with the program.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
+#include <string>
 #include <string_view>
-#include <utility>
+#include <vector>
 
 #include "carom/engine/math.h"
 #include "carom/engine/scene.h"
 #include "carom/engine/tolerances.h"
+#include "scene/sections.h"
 
 namespace carom {
 namespace {
@@ -35,23 +38,22 @@ struct PocketTable {
 /// instead of tan(angle) times the depth, 5e-5 m off the tangent, and that is kept so that the two tables are
 /// the same one.
 PocketTable seven_foot() {
-    PocketTable t{};
-    t.length = 1.9812;
-    t.width = 0.9906;
-    t.cushion_width = 0.0508;
-    t.nose_height = 0.64 * 2.0 * 0.028575;
-    t.corner_mouth = 0.118;
-    t.corner_angle = 5.3;
-    t.corner_depth = 0.0417;
-    t.corner_radius = 0.062;
-    t.corner_jaw_radius = 0.02095;
-    t.side_mouth = 0.137;
-    t.side_angle = 7.14;
-    t.side_depth = 0.0685;
-    t.side_radius = 0.0645;
-    t.side_jaw_radius = 0.00795;
-    t.side_run = sin_cos_deg(t.side_angle).sin;
-    return t;
+    constexpr double kSideAngle = 7.14;
+    return {.length = 1.9812,
+            .width = 0.9906,
+            .cushion_width = 0.0508,
+            .nose_height = 0.64 * 2.0 * 0.028575,
+            .corner_mouth = 0.118,
+            .corner_angle = 5.3,
+            .corner_depth = 0.0417,
+            .corner_radius = 0.062,
+            .corner_jaw_radius = 0.02095,
+            .side_mouth = 0.137,
+            .side_angle = kSideAngle,
+            .side_depth = 0.0685,
+            .side_radius = 0.0645,
+            .side_jaw_radius = 0.00795,
+            .side_run = sin_cos_deg(kSideAngle).sin};
 }
 
 /// Nine-foot table. Playing surface 100 x 50 in; the mouths are the middle of what the WPA equipment
@@ -88,148 +90,111 @@ PocketTable eight_foot() {
 /// (recalled), and jaw radii, depths and pocket radii are chosen to go with them: large round jaws, and a
 /// ball falls where its centre passes the corner, or the rail line at the side.
 PocketTable snooker_table() {
-    PocketTable t{};
-    t.length = 3.569;
-    t.width = 1.778;
-    t.cushion_width = 0.0508;
-    t.nose_height = 1.4 * 0.02625;
-    t.corner_mouth = 0.089;
-    t.corner_angle = 0.0;
-    t.corner_depth = 0.055;
-    t.corner_radius = 0.050;
-    t.corner_jaw_radius = 0.100;
-    t.side_mouth = 0.105;
-    t.side_angle = 10.0;
-    t.side_depth = 0.055;
-    t.side_radius = 0.050;
-    t.side_jaw_radius = 0.040;
-    t.side_run = tan_deg(t.side_angle);
-    return t;
+    constexpr double kSideAngle = 10.0;
+    return {.length = 3.569,
+            .width = 1.778,
+            .cushion_width = 0.0508,
+            .nose_height = 1.4 * 0.02625,
+            .corner_mouth = 0.089,
+            .corner_angle = 0.0,
+            .corner_depth = 0.055,
+            .corner_radius = 0.050,
+            .corner_jaw_radius = 0.100,
+            .side_mouth = 0.105,
+            .side_angle = kSideAngle,
+            .side_depth = 0.055,
+            .side_radius = 0.050,
+            .side_jaw_radius = 0.040,
+            .side_run = tan_deg(kSideAngle)};
 }
 
-/// The parts of one quarter of the table, in the frame of its corner: x and y from the corner into the table,
-/// the pocket at the origin. The other quarters are its mirror images.
-struct Quarter {
-    /// On the short rail: jaw centre, facing at the nose, facing at the back
-    Vec2 short_jaw, short_tip, short_back;
-    Vec2 long_jaw, long_tip, long_back;  ///< the same on the long rail
-    Vec2 side_jaw, side_tip, side_back;  ///< on the long rail, at the side pocket
+/// A jaw and the straight facing beside it, in the frame of the corner: x and y from the corner into the table.
+struct JawAndFacing {
+    Vec2 jaw;        ///< centre of the circle
+    Vec2 tip, back;  ///< ends of the facing, at the nose and behind it
+    /// The same on the other rail of the corner.
+    JawAndFacing swapped() const { return {{jaw.y(), jaw.x()}, {tip.y(), tip.x()}, {back.y(), back.x()}}; }
 };
 
-Quarter make_quarter(const PocketTable& t) {
-    const double half = sin_cos_deg(45.0).cos;
-    const double angle = 45.0 + t.corner_angle;
+/// At the corner pocket, on the short rail. The jaw's circle touches the nose line and the facing.
+JawAndFacing corner_jaw(const PocketTable& t) {
+    const double angle = 45.0 + t.corner_angle, r = t.corner_jaw_radius;
+    const double mouth = t.corner_mouth * sin_cos_deg(45.0).cos;
+    const double start = mouth + r / tan_deg((90.0 + angle) / 2.0);
     const SinCos c = sin_cos_deg(angle);
-    const SinCos s = sin_cos_deg(t.side_angle);
-    const double mouth = t.corner_mouth * half;
-    // A jaw circle touches the nose line and the facing.
-    const double start = mouth + t.corner_jaw_radius / tan_deg((90.0 + angle) / 2.0);
-    const double back = mouth - t.cushion_width * tan_deg(angle);
-    const double r = t.corner_jaw_radius;
-    Quarter q;
-    q.short_jaw = {start, -r};
-    q.short_tip = {start - r * c.cos, -r + r * c.sin};
-    q.short_back = {back, -t.cushion_width};
-    q.long_jaw = {q.short_jaw.y(), q.short_jaw.x()};
-    q.long_tip = {q.short_tip.y(), q.short_tip.x()};
-    q.long_back = {q.short_back.y(), q.short_back.x()};
-    const double rs = t.side_jaw_radius;
-    const double end = (t.length - t.side_mouth) / 2.0;
-    q.side_jaw = {-rs, end - rs / tan_deg((90.0 + t.side_angle) / 2.0)};
-    q.side_tip = {-rs + rs * s.sin, q.side_jaw.y() + rs * s.cos};
-    q.side_back = {-t.cushion_width, end + t.cushion_width * t.side_run};
-    return q;
+    return {{start, -r},
+            {start - r * c.cos, -r + r * c.sin},
+            {mouth - t.cushion_width * tan_deg(angle), -t.cushion_width}};
 }
 
-class TableBuilder {
-  public:
-    TableBuilder(const char* preset, double width, double length, double nose) : nose_(nose) {
-        table_.preset = preset;
-        table_.width = width;
-        table_.length = length;
-    }
-    void cushion(const char* name, const Vec2& from, const Vec2& to) {
-        table_.cushions.push_back({fmt::format("c{}", table_.cushions.size() + 1), from, to, nose_, name});
-    }
-    void jaw(const char* name, const Vec2& center, double radius) {
-        table_.jaws.push_back({fmt::format("j{}", table_.jaws.size() + 1), center, radius, nose_, name});
-    }
-    void pocket(const char* name, const Vec2& center, double radius) {
-        table_.pockets.push_back(
-            {fmt::format("p{}", table_.pockets.size() + 1), center, radius, kPocketDepth, name});
-    }
-    Table take() { return std::move(table_); }
+/// At the side pocket, on the long rail.
+JawAndFacing side_jaw(const PocketTable& t) {
+    const double end = (t.length - t.side_mouth) / 2.0, r = t.side_jaw_radius;
+    const double y = end - r / tan_deg((90.0 + t.side_angle) / 2.0);
+    const SinCos s = sin_cos_deg(t.side_angle);
+    return {{-r, y}, {-r + r * s.sin, y + r * s.cos}, {-t.cushion_width, end + t.cushion_width * t.side_run}};
+}
 
-  private:
-    Table table_;
-    double nose_;
-};
-
-/// Clockwise from the corner at the origin: head-left corner, left rail, foot rail, right rail, head rail.
+/// Clockwise from the corner at the origin: head-left corner, left rail, foot rail, right rail, head rail. Each quarter of
+/// the table is the mirror image of the one before it.
 Table build(const char* preset, const PocketTable& t) {
-    const Quarter q = make_quarter(t);
-    const double w = t.width, l = t.length;
-    const auto hl = [](const Vec2& p) { return p; };
-    const auto fl = [l](const Vec2& p) { return Vec2(p.x(), l - p.y()); };
-    const auto fr = [w, l](const Vec2& p) { return Vec2(w - p.x(), l - p.y()); };
-    const auto hr = [w](const Vec2& p) { return Vec2(w - p.x(), p.y()); };
-    const double start = q.long_jaw.y(), end = q.side_jaw.y();
-    const Vec2 long_start(0.0, start), long_end(0.0, end), short_start(start, 0.0);
-
-    TableBuilder b(preset, w, l, t.nose_height);
-    b.cushion("head-left corner, facing of the head rail", hl(q.short_back), hl(q.short_tip));
-    b.cushion("head-left corner, facing of the left rail", hl(q.long_back), hl(q.long_tip));
-    b.cushion("left rail, head half", hl(long_start), hl(long_end));
-    b.cushion("left side pocket, facing of the head half", hl(q.side_back), hl(q.side_tip));
-    b.cushion("left side pocket, facing of the foot half", fl(q.side_back), fl(q.side_tip));
-    b.cushion("left rail, foot half", fl(long_end), fl(long_start));
-    b.cushion("foot-left corner, facing of the left rail", fl(q.long_back), fl(q.long_tip));
-    b.cushion("foot-left corner, facing of the foot rail", fl(q.short_back), fl(q.short_tip));
-    b.cushion("foot rail", fl(short_start), fr(short_start));
-    b.cushion("foot-right corner, facing of the foot rail", fr(q.short_back), fr(q.short_tip));
-    b.cushion("foot-right corner, facing of the right rail", fr(q.long_back), fr(q.long_tip));
-    b.cushion("right rail, foot half", fr(long_start), fr(long_end));
-    b.cushion("right side pocket, facing of the foot half", fr(q.side_back), fr(q.side_tip));
-    b.cushion("right side pocket, facing of the head half", hr(q.side_back), hr(q.side_tip));
-    b.cushion("right rail, head half", hr(long_end), hr(long_start));
-    b.cushion("head-right corner, facing of the right rail", hr(q.long_back), hr(q.long_tip));
-    b.cushion("head-right corner, facing of the head rail", hr(q.short_back), hr(q.short_tip));
-    b.cushion("head rail", hr(short_start), hl(short_start));
-
-    const double rc = t.corner_jaw_radius, rs = t.side_jaw_radius;
-    b.jaw("head-left corner, jaw of the head rail", hl(q.short_jaw), rc);
-    b.jaw("head-left corner, jaw of the left rail", hl(q.long_jaw), rc);
-    b.jaw("left side pocket, jaw of the head half", hl(q.side_jaw), rs);
-    b.jaw("left side pocket, jaw of the foot half", fl(q.side_jaw), rs);
-    b.jaw("foot-left corner, jaw of the left rail", fl(q.long_jaw), rc);
-    b.jaw("foot-left corner, jaw of the foot rail", fl(q.short_jaw), rc);
-    b.jaw("foot-right corner, jaw of the foot rail", fr(q.short_jaw), rc);
-    b.jaw("foot-right corner, jaw of the right rail", fr(q.long_jaw), rc);
-    b.jaw("right side pocket, jaw of the foot half", fr(q.side_jaw), rs);
-    b.jaw("right side pocket, jaw of the head half", hr(q.side_jaw), rs);
-    b.jaw("head-right corner, jaw of the right rail", hr(q.long_jaw), rc);
-    b.jaw("head-right corner, jaw of the head rail", hr(q.short_jaw), rc);
-
+    const JawAndFacing short_rail = corner_jaw(t), long_rail = short_rail.swapped(), side = side_jaw(t);
+    const double w = t.width, l = t.length, h = t.nose_height;
+    const double start = long_rail.jaw.y(), end = side.jaw.y();  // of the straight nose on the long rail
     const double diagonal = t.corner_depth * sin_cos_deg(45.0).cos;
-    const Vec2 corner(-diagonal, -diagonal), side(-t.side_depth, l / 2.0);
-    b.pocket("head-left corner pocket", hl(corner), t.corner_radius);
-    b.pocket("left side pocket", hl(side), t.side_radius);
-    b.pocket("foot-left corner pocket", fl(corner), t.corner_radius);
-    b.pocket("foot-right corner pocket", fr(corner), t.corner_radius);
-    b.pocket("right side pocket", hr(side), t.side_radius);
-    b.pocket("head-right corner pocket", hr(corner), t.corner_radius);
-    return b.take();
+    Table table;
+    table.preset = preset;
+    table.width = w;
+    table.length = l;
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        const bool foot = quarter == 1 || quarter == 2, right = quarter >= 2, to_corner = quarter % 2 == 1;
+        const auto at = [&](const Vec2& p) {
+            return Vec2(right ? w - p.x() : p.x(), foot ? l - p.y() : p.y());
+        };
+        const std::string across = foot ? "foot" : "head", along = right ? "right" : "left";
+        const std::string corner = across + "-" + along + " corner", middle = along + " side pocket";
+        std::vector<Cushion> cushions;
+        std::vector<Jaw> jaws;
+        const auto add = [&](const std::string& place, const std::string& of, const JawAndFacing& part,
+                             double r) {
+            cushions.push_back({"", at(part.back), at(part.tip), h, place + ", facing of the " + of});
+            jaws.push_back({"", at(part.jaw), r, h, place + ", jaw of the " + of});
+        };
+        add(corner, across + " rail", short_rail, t.corner_jaw_radius);
+        add(corner, along + " rail", long_rail, t.corner_jaw_radius);
+        const Vec2 from = at({0.0, to_corner ? end : start}), to = at({0.0, to_corner ? start : end});
+        cushions.push_back({"", from, to, h, along + " rail, " + across + " half"});
+        add(middle, across + " half", side, t.side_jaw_radius);
+        table.pockets.push_back(
+            {"", at({-diagonal, -diagonal}), t.corner_radius, kPocketDepth, corner + " pocket"});
+        if (to_corner) {
+            std::reverse(cushions.begin(), cushions.end());
+            std::reverse(jaws.begin(), jaws.end());
+            const double y = foot ? l : 0.0, x = right ? w - start : start;
+            cushions.push_back({"", {x, y}, {right ? start : w - start, y}, h, across + " rail"});
+        } else {
+            table.pockets.push_back({"", at({-t.side_depth, l / 2.0}), t.side_radius, kPocketDepth, middle});
+        }
+        table.cushions.insert(table.cushions.end(), cushions.begin(), cushions.end());
+        table.jaws.insert(table.jaws.end(), jaws.begin(), jaws.end());
+    }
+    detail::number_parts(table);
+    return table;
 }
 
 /// Carom table, 2.84 x 1.42 m between nose lines, nose 37 mm above the cloth (UMB rules), no pockets.
 Table carom_table() {
-    const double w = 1.42, l = 2.84;
-    TableBuilder b("carom", w, l, 0.037);
-    b.cushion("left rail", {0.0, 0.0}, {0.0, l});
-    b.cushion("foot rail", {0.0, l}, {w, l});
-    b.cushion("right rail", {w, l}, {w, 0.0});
-    b.cushion("head rail", {w, 0.0}, {0.0, 0.0});
-    return b.take();
+    const double w = 1.42, l = 2.84, h = 0.037;
+    Table table;
+    table.preset = "carom";
+    table.width = w;
+    table.length = l;
+    table.cushions = {{"", {0.0, 0.0}, {0.0, l}, h, "left rail"},
+                      {"", {0.0, l}, {w, l}, h, "foot rail"},
+                      {"", {w, l}, {w, 0.0}, h, "right rail"},
+                      {"", {w, 0.0}, {0.0, 0.0}, h, "head rail"}};
+    detail::number_parts(table);
+    return table;
 }
 
 }  // namespace
@@ -248,29 +213,26 @@ Table make_table(std::string_view preset) {
 }
 
 BallParams make_ball_params(std::string_view preset) {
-    BallParams p{};
-    // Pool: sources and measured ranges in docs/physics.md; the frictions and restitutions serve all three presets.
-    p.R = 0.028575;
-    p.m = 0.170097;
-    p.mu_s = 0.2;
-    p.mu_r = 0.01;
-    p.mu_sp = 0.0127;
-    p.mu_b = 0.05;
-    p.e_b = 0.95;
-    p.e_c = 0.85;
-    p.f_c = 0.2;
-    if (preset == "pool") return p;
+    // Pool: sources and measured ranges in docs/physics.md. The frictions and restitutions serve all three presets.
+    BallParams p{.R = 0.028575,
+                 .m = 0.170097,
+                 .mu_s = 0.2,
+                 .mu_r = 0.01,
+                 .mu_sp = 0.0127,
+                 .mu_b = 0.05,
+                 .e_b = 0.95,
+                 .e_c = 0.85,
+                 .f_c = 0.2};
     if (preset == "snooker") {
         p.R = 0.02625;
         p.m = 0.140;
-        return p;
-    }
-    if (preset == "carom") {
+    } else if (preset == "carom") {
         p.R = 0.03075;
         p.m = 0.21;
-        return p;
+    } else if (preset != "pool") {
+        throw std::invalid_argument(fmt::format("unknown ball preset \"{}\"", preset));
     }
-    throw std::invalid_argument(fmt::format("unknown ball preset \"{}\"", preset));
+    return p;
 }
 
 }  // namespace carom

@@ -76,25 +76,15 @@ class DepthScan {
 
     /// Goes behind the string that begins here. One that is not closed in its line is a mistake.
     void skip_string(char quote) {
-        const std::size_t opening = run_of(quote);
-        const bool many_lines = opening >= 3;
-        if (opening == 2) {  // an empty string
-            at_ += 2;
-            return;
-        }
+        const bool many_lines = run_of(quote) >= 3;
         at_ += many_lines ? 3 : 1;
         while (at_ < text_.size()) {
             const char c = text_[at_];
             if (c == '\n' && !many_lines) return;
-            if (c == quote) {
+            if (c == quote && (!many_lines || run_of(quote) >= 3)) {
                 // Up to two quotation marks may stand in front of the closing three.
-                const std::size_t closing = run_of(quote);
-                if (!many_lines || closing >= 3) {
-                    at_ += many_lines ? std::min<std::size_t>(closing, 5) : 1;
-                    return;
-                }
-                at_ += closing;
-                continue;
+                at_ += many_lines ? std::min<std::size_t>(run_of(quote), 5) : 1;
+                return;
             }
             at_ += c == '\\' && quote == '"' ? 2 : 1;
         }

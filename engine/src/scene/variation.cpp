@@ -17,6 +17,7 @@ namespace {
 
 using detail::Distribution;
 using detail::Drawn;
+using detail::fail;
 using detail::in_quotes;
 
 /// One step of a path: into a table by its name, or, where the name is empty, into an array by its index.
@@ -31,10 +32,6 @@ struct Rule {
     std::vector<Step> path;
     Distribution distribution;
 };
-
-[[noreturn]] void fail(const std::string& message) {
-    throw std::invalid_argument(message);
-}
 
 toml::node* follow(toml::node& from, const Step& step) {
     if (!step.name.empty()) {
@@ -103,22 +100,20 @@ std::size_t take_ball(toml::table& file, std::string_view& key) {
         if (take(key, id)) return i;
         ids += (ids.empty() ? "" : ", ") + id;
     }
-    fail(fmt::format("it names no [[ball]] of the scene; write ball.ID.position.x with one of these ids: {}",
-                     ids.empty() ? "none is written" : ids));
+    fail("it names no [[ball]] of the scene; write ball.ID.position.x with one of these ids: {}",
+         ids.empty() ? "none is written" : ids);
 }
 
-/// Takes the name of a part of the table ("c2") from the front of a key, and returns its place in the list.
-std::size_t take_part(std::string_view& key, char letter) {
+/// Takes the name of a part of the table from the front of a key ("c2" in the list "cushion"), and returns its place in the
+/// list.
+std::size_t take_part(std::string_view& key, const std::string& list) {
+    const char letter = list.front();
     std::size_t number = 0;
     const char* const end = key.data() + key.size();
     const bool lettered = !key.empty() && key[0] == letter;
     const auto [rest, error] = std::from_chars(key.data() + (lettered ? 1 : 0), end, number);
     if (!lettered || error != std::errc() || rest == end || *rest != '.' || number < 1)
-        fail(fmt::format("name the part by its number, as in table.{}.{}1.radius",
-                         letter == 'c'   ? "cushion"
-                         : letter == 'j' ? "jaw"
-                                         : "pocket",
-                         letter));
+        fail("name the part by its number, as in table.{}.{}1.radius", list, letter);
     key.remove_prefix(static_cast<std::size_t>(rest + 1 - key.data()));
     return number - 1;
 }
@@ -134,8 +129,7 @@ std::size_t element_index(std::string_view name) {
     std::size_t index = 0;
     const auto [rest, error] = std::from_chars(name.data(), name.data() + name.size(), index);
     if (error != std::errc() || rest != name.data() + name.size())
-        fail(fmt::format("{} is no element of an array; use x, y, z, side, height or its number from 0",
-                         in_quotes(name)));
+        fail("{} is no element of an array; use x, y, z, side, height or its number from 0", in_quotes(name));
     return index;
 }
 
@@ -149,15 +143,15 @@ std::vector<Step> find_section(toml::table& file, std::string_view& key) {
     if (!file.contains(section)) {
         // These two would put balls on the table, or strike one.
         if (section == "rack" || section == "cue")
-            fail(fmt::format("the scene has no [{}]; write the section, then vary what is in it", section));
+            fail("the scene has no [{}]; write the section, then vary what is in it", section);
         file.insert(section, toml::table());
     }
     std::vector<Step> path = {{section}};
     if (section != "table") return path;
-    for (const auto& [list, letter] : {std::pair{"cushion", 'c'}, {"jaw", 'j'}, {"pocket", 'p'}}) {
+    for (const std::string list : {"cushion", "jaw", "pocket"}) {
         if (!take(key, list)) continue;
         path.push_back({list});
-        path.push_back({"", take_part(key, letter)});
+        path.push_back({"", take_part(key, list)});
         break;
     }
     return path;
@@ -188,7 +182,7 @@ Rule parse_rule(toml::table& file, const std::string& text) {
     rule.key = text.substr(0, equals);
     rule.path = find_path(file, rule.key);
     rule.distribution =
-        Distribution::parse(std::string_view(text).substr(equals + 1), follow(file, rule.path));
+        detail::parse_distribution(std::string_view(text).substr(equals + 1), follow(file, rule.path));
     return rule;
 }
 
@@ -215,7 +209,7 @@ struct Variation::Parts {
 };
 
 Variation::Variation(const std::string& path, const std::vector<std::string>& rules, std::uint64_t seed) {
-    auto parts = std::make_unique<Parts>();
+    const auto parts = std::make_shared<Parts>();
     parts->path = path;
     parts->seed = seed;
     parts->file = detail::read_toml(path);
@@ -229,7 +223,7 @@ Variation::Variation(const std::string& path, const std::vector<std::string>& ru
         try {
             Rule rule = parse_rule(parts->file, text);
             for (const Rule& other : parts->rules)
-                if (overlap(rule, other)) fail(fmt::format("{} varies this value already", other.key));
+                if (overlap(rule, other)) fail("{} varies this value already", other.key);
             parts->keys.push_back(rule.key);
             parts->rules.push_back(std::move(rule));
         } catch (const std::invalid_argument& error) {
@@ -239,17 +233,13 @@ Variation::Variation(const std::string& path, const std::vector<std::string>& ru
         print.add(text);
     }
     parts->fingerprint = print.value();
-    parts_ = std::move(parts);
+    parts_ = parts;
     // A mistyped key or a range without valid values spoils every shot: it is reported here, once.
     for (int i = 0; i < kVariationTrials; ++i)
         if (shot(static_cast<std::uint64_t>(i)).scene) return;
     throw VariationError(fmt::format("none of the first {} shots is a valid scene; shot 0: {}",
                                      kVariationTrials, shot(0).error));
 }
-
-Variation::~Variation() = default;
-Variation::Variation(Variation&&) noexcept = default;
-Variation& Variation::operator=(Variation&&) noexcept = default;
 
 const Scene& Variation::base() const {
     return parts_->base;
@@ -272,7 +262,7 @@ VariedShot Variation::shot(std::uint64_t index) const {
         hash.add(index);
         hash.add(rule.key);
         SplitMix64 random(hash.value());
-        const Drawn value = rule.distribution.draw(random);
+        const Drawn value = rule.distribution(random);
         shot.values.push_back(text_of(value));
         put(file, rule.path, value);
     }

@@ -30,8 +30,7 @@ struct BallBallModelInfo {
     const char* name;
     const char* source;
     BallBallFunction collide;
-    bool reads_spin = false;         ///< the spins before matter, and the spins change
-    bool reads_friction = false;     ///< mu_b matters
+    bool reads_friction = false;     ///< mu_b and the spins matter, and the spins change
     bool reads_restitution = false;  ///< e_b matters
     bool reads_cloth = false;        ///< mu_s and the sign of the cloth slip matter
     bool reads_tolerance = false;    ///< the settings matter: an integration, no closed form

@@ -32,10 +32,8 @@ struct CushionModelInfo {
     const char* name;
     const char* source;
     CushionFunction resolve;
-    bool reads_spin = false;      ///< the spin before matters, and the spin changes
-    bool reads_friction = false;  ///< f_c matters
+    bool reads_friction = false;  ///< f_c, the height of the nose and the spin matter, and the spin changes
     bool reads_cloth = false;     ///< mu_s matters
-    bool reads_height = false;    ///< the height of the nose matters
     /// Without friction, and with the nose at the height of the centre, the result has the bits of `smooth`.
     bool reflects_when_level = false;
     /// Whether the model has a solution for all velocities; null: for every contact. In mathavan_2010 a ball can jam.

@@ -99,26 +99,27 @@ auto name(E e) -> typename decltype(names_of(e))::value_type {
 namespace detail {
 
 template <class V>
-struct OptionalOf : std::false_type {
-    using type = V;
-};
+constexpr bool kIsOptional = false;
 template <class V>
-struct OptionalOf<std::optional<V>> : std::true_type {
-    using type = V;
-};
+constexpr bool kIsOptional<std::optional<V>> = true;
+template <class V>
+constexpr bool kIsChoice = std::is_enum_v<V> || std::is_pointer_v<V>;
 
+template <class Member>
+struct MemberOf;
 template <class T, class V>
-T class_of(V T::*);
-template <class T, class V>
-V value_of(V T::*);
+struct MemberOf<V T::*> {
+    using Class = T;
+    using Value = V;
+};
 template <auto kMember>
-using ClassOf = decltype(class_of(kMember));
+using ClassOf = typename MemberOf<decltype(kMember)>::Class;
 template <auto kMember>
-using ValueOf = decltype(value_of(kMember));
+using ValueOf = typename MemberOf<decltype(kMember)>::Value;
 
 template <class V>
 constexpr Key::Kind kind_of() {
-    if constexpr (OptionalOf<V>::value) return kind_of<typename OptionalOf<V>::type>();
+    if constexpr (kIsOptional<V>) return kind_of<typename V::value_type>();
     if constexpr (std::is_floating_point_v<V>) return Key::Kind::kNumber;
     if constexpr (std::is_integral_v<V>) return Key::Kind::kInteger;
     if constexpr (requires(V v) { v.data() + v.rows(); }) return Key::Kind::kNumbers;
@@ -127,7 +128,7 @@ constexpr Key::Kind kind_of() {
 
 template <class V>
 FieldValue get(const V& v) {
-    if constexpr (OptionalOf<V>::value)
+    if constexpr (kIsOptional<V>)
         return v ? get(*v) : FieldValue();
     else if constexpr (std::is_pointer_v<V>)
         return v ? FieldValue(std::string(name(v))) : FieldValue();
@@ -153,9 +154,9 @@ std::vector<const char*> choice_names() {
 
 template <class V>
 void put(V& v, const FieldValue& value) {
-    if constexpr (OptionalOf<V>::value) {
+    if constexpr (kIsOptional<V>) {
         put(v.emplace(), value);
-    } else if constexpr (std::is_pointer_v<V> || std::is_enum_v<V>) {
+    } else if constexpr (kIsChoice<V>) {
         const std::vector<const char*> names = choice_names<V>();
         const auto at = std::find(names.begin(), names.end(), std::get<std::string>(value)) - names.begin();
         if constexpr (std::is_enum_v<V>)
@@ -172,13 +173,6 @@ void put(V& v, const FieldValue& value) {
     }
 }
 
-template <class V>
-constexpr auto choices_of() -> std::vector<const char*> (*)() {
-    using Value = typename OptionalOf<V>::type;
-    if constexpr (std::is_pointer_v<Value> || std::is_enum_v<Value>) return choice_names<Value>;
-    return nullptr;
-}
-
 }  // namespace detail
 
 /// A row of one member: a number, an integer, a text, a vector, or a choice. A choice is an enumeration, whose names
@@ -188,8 +182,10 @@ constexpr Field<detail::ClassOf<kMember>> field(const char* key, const Interval&
                                                 const KeyOptions& options = {}) {
     using T = detail::ClassOf<kMember>;
     using V = detail::ValueOf<kMember>;
-    const bool optional = detail::OptionalOf<V>::value || std::is_pointer_v<V>;
-    return {{key, detail::kind_of<V>(), range, meaning, options, optional, 1, detail::choices_of<V>()},
+    const bool optional = detail::kIsOptional<V> || std::is_pointer_v<V>;
+    std::vector<const char*> (*choices)() = nullptr;
+    if constexpr (detail::kIsChoice<V>) choices = detail::choice_names<V>;
+    return {{key, detail::kind_of<V>(), range, meaning, options, optional, 1, choices},
             [](const T& object) { return detail::get(object.*kMember); },
             [](T& object, const FieldValue& value) { detail::put(object.*kMember, value); }};
 }

@@ -1,6 +1,7 @@
 // Plan: what must be computed for a scene. Constant during a run; the loop reads nothing else.
 #pragma once
 
+#include <array>
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
@@ -49,7 +50,9 @@ std::span<const EffectInfo> effect_table();
 /// How detection looks for what a ball can meet: through all boxes, or in a tree of them (Box2D's). The
 /// events are the same to the last bit; docs/speed.md has the measured crossing.
 enum class Search : std::uint8_t { kDirect, kTree };
-const char* name(Search search);
+constexpr auto names_of(Search) {
+    return std::array{"direct", "tree"};
+}
 
 struct Plan {
     Scene scene;                  ///< ids, table and settings as read

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -19,8 +20,9 @@
 namespace carom {
 
 enum class MotionState : std::uint8_t { kStationary, kSpinning, kSliding, kRolling, kPocketed };
-inline constexpr int kMotionStates = 5;
-const char* name(MotionState state);
+constexpr auto names_of(MotionState) {
+    return std::array{"stationary", "spinning", "sliding", "rolling", "pocketed"};
+}
 
 /// One ball between two events that touch it. Times inside are relative to `start`.
 struct Segment {
@@ -133,8 +135,9 @@ struct EventCost {
 /// kEndless: balls move that nothing stops, nothing more happens to them, and there was no time to stop at;
 /// the record ends at its last event.
 enum class StopReason : std::uint8_t { kAtRest, kTime, kEvents, kEndless };
-inline constexpr int kStopReasons = 4;
-const char* name(StopReason reason);
+constexpr auto names_of(StopReason) {
+    return std::array{"at rest", "stop time", "number of events", "endless motion"};
+}
 
 /// State of one ball at a time.
 struct BallState {
@@ -155,7 +158,6 @@ struct BallTrack {
 
 class Record {
   public:
-    Record();
     bool operator==(const Record&) const = default;
 
     Table table;
@@ -196,11 +198,13 @@ class Record {
     /// What is no part of what happened: any two of these are equal.
     struct Aside {
         Aside();
-        Aside(const Aside& other);  // a copy may be changed, so that it works out its orientations anew
-        Aside& operator=(const Aside& other);
+        Aside(const Aside&) : Aside() {}  // A copy may be changed, so it works out its orientations anew.
         Aside(Aside&&) noexcept = default;
-        Aside& operator=(Aside&&) noexcept = default;
         ~Aside() = default;
+        Aside& operator=(Aside other) noexcept {
+            orientations = std::move(other.orientations);
+            return *this;
+        }
         bool operator==(const Aside&) const { return true; }
         std::shared_ptr<Orientations> orientations;  // made on first use, by any thread
     };

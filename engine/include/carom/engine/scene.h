@@ -1,7 +1,9 @@
 // Scene: what a scene file says, validated, with every default written out.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -23,7 +25,7 @@ namespace carom {
 struct SourceLocation {
     int line = 0;
     int column = 0;
-    bool operator==(const SourceLocation&) const = default;
+    auto operator<=>(const SourceLocation&) const = default;
 };
 
 /// Bad input. what() is "file:line:col: what is wrong and what to do".
@@ -93,8 +95,7 @@ inline constexpr Field<BallParams> kBallFields[] = {
       Key::Kind::kNumbers,
       kFriction,
       "ball-ball friction a + b exp(-c u) at the slip u in m/s before the impact; `[0.009951, 0.108, 1.088]` "
-      "is the "
-      "fit of Alciatore's TP A.14",
+      "is the fit of Alciatore's TP A.14",
       {.shape = "[a, b, c] for a + b exp(-c u)", .files = Files::kScene, .instead_of = "mu_b"},
       true,
       0,
@@ -310,7 +311,10 @@ struct Scene {
     RenderSettings render;
     BallSize size_of(const BallStart& start) const { return start.own.value_or(balls.size()); }
     /// Whether all balls have one radius and mass.
-    bool alike() const;
+    bool alike() const {
+        return std::all_of(ball.begin(), ball.end(),
+                           [&](const BallStart& b) { return size_of(b) == size_of(ball.front()); });
+    }
     bool operator==(const Scene&) const = default;
 };
 inline constexpr const char* kBallPresets[] = {"pool", "snooker", "carom"};

@@ -44,9 +44,6 @@ class Variation {
     /// @throws SceneError for a bad file, VariationError for a bad rule, and when none of the first shots
     /// makes a valid scene
     Variation(const std::string& path, const std::vector<std::string>& rules, std::uint64_t seed);
-    ~Variation();
-    Variation(Variation&&) noexcept;
-    Variation& operator=(Variation&&) noexcept;
 
     const Scene& base() const;  ///< the file as it is
     const std::vector<std::string>& keys() const;
@@ -60,7 +57,7 @@ class Variation {
 
   private:
     struct Parts;
-    std::unique_ptr<const Parts> parts_;
+    std::shared_ptr<const Parts> parts_;
 };
 
 }  // namespace carom

@@ -3,19 +3,12 @@
 #include "carom/kernel/closed_forms.h"
 
 namespace carom {
-namespace {
-
-void elastic(const BallBallSettings&, const kernel::Ball& ball1, const kernel::Ball& ball2,
-             const kernel::ImpactParams& params, kernel::ImpactResult& result) {
-    kernel::collide_elastic(ball1, ball2, params, result);
-}
-
-}  // namespace
-
 extern constinit const BallBallModelInfo kElastic = {
     .name = "elastic",
     .source = "exchange of the normal velocities",
-    .collide = elastic,
+    .collide = [](const BallBallSettings&, const kernel::Ball& ball1, const kernel::Ball& ball2,
+                  const kernel::ImpactParams& params,
+                  kernel::ImpactResult& result) { kernel::collide_elastic(ball1, ball2, params, result); },
     .rough_masses = true,
 };
 

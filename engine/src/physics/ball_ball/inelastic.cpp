@@ -3,20 +3,12 @@
 #include "carom/kernel/closed_forms.h"
 
 namespace carom {
-namespace {
-
-void inelastic(const BallBallSettings&, const kernel::Ball& ball1, const kernel::Ball& ball2,
-               const kernel::ImpactParams& params, kernel::ImpactResult& result) {
-    kernel::collide_inelastic(ball1, ball2, params, result);
-}
-
-}  // namespace
-
 extern constinit const BallBallModelInfo kInelastic = {
     .name = "inelastic",
     .source = "D. Alciatore, Technical Proof A.14",
-    .collide = inelastic,
-    .reads_spin = true,
+    .collide = [](const BallBallSettings&, const kernel::Ball& ball1, const kernel::Ball& ball2,
+                  const kernel::ImpactParams& params,
+                  kernel::ImpactResult& result) { kernel::collide_inelastic(ball1, ball2, params, result); },
     .reads_friction = true,
     .reads_restitution = true,
     .rough_masses = true,

@@ -18,7 +18,6 @@ constinit const BallBallModelInfo kMathavan = {
     .name = "mathavan",
     .source = "Mathavan, Jackson, Parkin, Sports Engineering 17 (2014)",
     .collide = mathavan,
-    .reads_spin = true,
     .reads_friction = true,
     .reads_restitution = true,
     .reads_cloth = true,

@@ -40,9 +40,7 @@ constinit const CushionModelInfo kHan2005 = {
     .name = "han_2005",
     .source = "Han, J. Mech. Sci. Tech. 19 (2005)",
     .resolve = detail::cushion_han_2005,
-    .reads_spin = true,
     .reads_friction = true,
-    .reads_height = true,
     .reflects_when_level = true,
 };
 

@@ -22,9 +22,7 @@ extern constinit const CushionModelInfo kImpulse = {
     .name = "impulse",
     .source = "one Coulomb impulse along the inclined normal",
     .resolve = detail::cushion_impulse,
-    .reads_spin = true,
     .reads_friction = true,
-    .reads_height = true,
     .reflects_when_level = true,
 };
 

@@ -363,10 +363,8 @@ extern constinit const CushionModelInfo kMathavan2010 = {
     .name = "mathavan_2010",
     .source = "Mathavan, Jackson, Parkin, Proc. IMechE C 224 (2010)",
     .resolve = detail::cushion_mathavan_2010,
-    .reads_spin = true,
     .reads_friction = true,
     .reads_cloth = true,
-    .reads_height = true,
     .accepts = detail::mathavan_2010_ends,
 };
 

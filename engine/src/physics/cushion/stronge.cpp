@@ -127,9 +127,7 @@ extern constinit const CushionModelInfo kStronge = {
     .name = "stronge",
     .source = "Stronge, Impact Mechanics, compliant contact",
     .resolve = detail::cushion_stronge,
-    .reads_spin = true,
     .reads_friction = true,
-    .reads_height = true,
     .reflects_when_level = true,
 };
 
