@@ -3,7 +3,6 @@
 // alone, so that one long impact does not delay the rest.
 #pragma once
 
-#include "ladder/batch_arrays.h"
 #include "ladder/lanes.h"
 #include "loop_marks.h"
 
@@ -41,15 +40,8 @@ class BatchMarch {
 
     void fill(long index) {
         LaneRecord r{};
-        load_impact(batch, index, r.ball1, r.ball2, r.params);
-        ImpactResult out;
-        if (n < 1) copy_input(r.ball1, r.ball2, ImpactStatus::kBadParameter, out);
-        if (n < 1 || enter_frame(r.ball1, r.ball2, r.params, r.frame, r.state, out) != ImpactStatus::kOk) {
-            store_result(result, index, out);
-            return;
-        }
+        if (!enter_impact(batch, index, n, r, result)) return;
         r.k = reduced_constants<kSign>(r.state, r.params, n);
-        r.index = index;
         r.active = r.compressing = true;
         r.start = reduce<kSign>(r.state, r.params.R);
         const double c = square_root(r.start.x * r.start.x + r.start.z * r.start.z);
@@ -149,9 +141,7 @@ class BatchMarch {
     void take_out(Group& g, int i, const Reduced& end, long steps) {
         LaneRecord& r = g.records[i];
         expand(r.state, sums_between<kSign>(r.start, end, static_cast<double>(steps) * r.k.h), r.params.R);
-        ImpactResult out;
-        leave_frame(r.ball1, r.ball2, r.frame, r.state, steps, out);
-        store_result(result, r.index, out);
+        leave_impact(r, steps, result);
         r.active = false;
         Lanes<W>& s = lanes_of(g, i);
         V* const constants[5] = {&s.h, &s.h2, &s.mu_h, &s.mu_hs, &s.mu_other};
@@ -166,18 +156,15 @@ class BatchMarch {
         stop.W = r.k.h * (r.compressing ? -work_sum(g, i) : r.W + (work_sum(g, i) - r.V_cross));
         stop.W_f = r.k.h * r.W_f;
         reduced_steps<kSign>(state, stop, done, r.k.limit - done, r.k);
-        if (!stop.goes_on(state.v_n)) {
+        if (stop.goes_on(state.v_n))
+            leave_impact(r, -1, result);
+        else
             take_out(g, i, state, done);
-            return;
-        }
-        ImpactResult out;
-        copy_input(r.ball1, r.ball2, ImpactStatus::kStepLimit, out);
-        store_result(result, r.index, out);
     }
 };
 
 template <int W, int U, class Roots, class Arithmetic>
-void batch_march(const ImpactBatch& batch, int n, const ImpactBatchResult& result) {
+void batch_march(const ImpactBatch& batch, int n, const ImpactBatchResult& result) noexcept {
     if (batch.params.cloth_slip == ClothSlip::kAsPublished)
         BatchMarch<W, U, Roots, Arithmetic, +1>(batch, n, result).run();
     else

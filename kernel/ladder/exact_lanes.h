@@ -18,7 +18,7 @@ class ExactLanes {
     template <int kSign>
     static void march(FrameState* const* states, const ImpactParams* params, int count, int n, long* steps) {
         // Idle lanes repeat the last state.
-        double rows[kRows][8], start[11][8];
+        double rows[kRows][8], start[10][8];
         for (int i = 0; i < 8; ++i) {
             const int j = i < count ? i : count - 1;
             const FrameState& s = *states[j];
@@ -35,17 +35,15 @@ class ExactLanes {
                                        cloth_slip_floor(s, p.R, kSign),
                                        1.0 + p.e_b * p.e_b};
             for (int k = 0; k < kRows; ++k) rows[k][i] = row[k];
-            const double values[11] = {s.v1x, s.v1y, s.w1x, s.w1y, s.w1z,        s.v2x,
-                                       s.v2y, s.w2x, s.w2y, s.w2z, s.v2y - s.v1y};
-            for (int k = 0; k < 11; ++k) start[k][i] = values[k];
+            const double values[10] = {s.v1x, s.v1y, s.w1x, s.w1y, s.w1z, s.v2x, s.v2y, s.w2x, s.w2y, s.w2z};
+            for (int k = 0; k < 10; ++k) start[k][i] = values[k];
         }
-        Lanes s{load<8>(start[0]),  load<8>(start[1]),
-                load<8>(start[2]),  load<8>(start[3]),
-                load<8>(start[4]),  load<8>(start[5]),
-                load<8>(start[6]),  load<8>(start[7]),
-                load<8>(start[8]),  load<8>(start[9]),
-                load<8>(start[10]), broadcast<8>(0.0),
-                broadcast<8>(0.0),  broadcast<8>(0.0) < broadcast<8>(1.0)};
+        Lanes s{};
+        Eight* const values[10] = {&s.v1x, &s.v1y, &s.w1x, &s.w1y, &s.w1z,
+                                   &s.v2x, &s.v2y, &s.w2x, &s.w2y, &s.w2z};
+        for (int k = 0; k < 10; ++k) *values[k] = load<8>(start[k]);
+        s.v_n = s.v2y - s.v1y;
+        s.compressing = broadcast<8>(0.0) < broadcast<8>(1.0);
         Constants c;
         for (int k = 0; k < kRows; ++k) c.row[k] = load<8>(rows[k]);
         int waiting = (1 << count) - 1;
@@ -57,8 +55,6 @@ class ExactLanes {
             if (ended == 0) [[likely]]
                 continue;
             double end[10][8];
-            const Eight* const values[10] = {&s.v1x, &s.v1y, &s.w1x, &s.w1y, &s.w1z,
-                                             &s.v2x, &s.v2y, &s.w2x, &s.w2y, &s.w2z};
             for (int k = 0; k < 10; ++k) store(end[k], *values[k]);
             for (int i = 0; i < count; ++i) {
                 if ((ended >> i & 1) == 0) continue;

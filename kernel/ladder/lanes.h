@@ -4,6 +4,7 @@
 // Lanes share nothing: each result depends on its own impact alone.
 #pragma once
 
+#include "ladder/batch_arrays.h"
 #include "ladder/reduced.h"
 #include "simd.h"
 
@@ -154,16 +155,11 @@ struct LaneCarriedRoots {
 };
 
 // What a lane needs beside its vectors.
-struct LaneRecord {
-    Ball ball1, ball2;
-    ImpactParams params;
-    Frame frame;
-    FrameState state;
+struct LaneRecord : BatchImpact {
     Reduced start;
     ReducedConstants k;
     // In units of W/h: the sum of (v(m) + v(m+1)) / 2 at the end of compression, the work, and the work to reach.
     double V_cross, W, W_f;
-    long steps, index;
     bool active, compressing;
 };
 

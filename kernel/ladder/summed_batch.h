@@ -39,48 +39,24 @@ class SummedBatch {
     }
 
   private:
-    struct Waiting {
-        Ball ball1, ball2;
-        ImpactParams params;
-        Frame frame;
-        FrameState state;
-        long index;
-    };
     const ImpactBatch& batch;
     const int n;
     const ImpactBatchResult& result;
-    Waiting waiting[8];
+    BatchImpact waiting[8];
     int count = 0;
 
     void take(long i) {
-        Waiting& in = waiting[count];
-        load_impact(batch, i, in.ball1, in.ball2, in.params);
-        in.index = i;
-        ImpactResult out;
-        if (n < 1) copy_input(in.ball1, in.ball2, ImpactStatus::kBadParameter, out);
-        if (n < 1 ||
-            enter_frame(in.ball1, in.ball2, in.params, in.frame, in.state, out) != ImpactStatus::kOk) {
-            store_result(result, i, out);
-            return;
-        }
+        BatchImpact& in = waiting[count];
+        if (!enter_impact(batch, i, n, in, result)) return;
         if (!rounding_decides(in.state, in.params.R)) {
             bool chatters = false;
             const long steps = Summed::march<kSign>(in.state, in.params, n, kChatter, chatters);
             if (!chatters) {
-                store(in, steps);
+                leave_impact(in, steps, result);
                 return;
             }
         }
         if (++count == 8) march_waiting();
-    }
-
-    void store(const Waiting& in, long steps) {
-        ImpactResult out;
-        if (steps < 0)
-            copy_input(in.ball1, in.ball2, ImpactStatus::kStepLimit, out);
-        else
-            leave_frame(in.ball1, in.ball2, in.frame, in.state, steps, out);
-        store_result(result, in.index, out);
     }
 
     void march_waiting() {
@@ -94,7 +70,7 @@ class SummedBatch {
         // One lane alone is slower than no lanes.
         if (count == 1) steps[0] = march_loop<kSign>(*states[0], params[0], n);
         if (count > 1) ExactLanes::march<kSign>(states, params, count, n, steps);
-        for (int i = 0; i < count; ++i) store(waiting[i], steps[i]);
+        for (int i = 0; i < count; ++i) leave_impact(waiting[i], steps[i], result);
         count = 0;
     }
 };

@@ -10,7 +10,8 @@ namespace {
 // March::loop<kSign>(state, params, n) marches a state in the contact frame; kSign is the sign of the cloth slip. It
 // returns the number of steps, or -1 if the march did not end within its bound on steps.
 template <class March>
-void drive(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n, ImpactResult& result) {
+void drive(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
+           ImpactResult& result) noexcept {
     if (n < 1) {
         copy_input(ball1, ball2, ImpactStatus::kBadParameter, result);
         return;
