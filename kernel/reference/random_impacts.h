@@ -1,8 +1,8 @@
 // Seeded random impacts between equal balls, for the tests, the benchmark and the accuracy report.
 //
-// The impacts are a mixture of six kinds: both balls sliding, ball 2 at rest, ball 1 rolling, both rolling, glancing,
-// strong spin (up to 200 rad/s). The ranges are 0.01..0.12 for mu_b, 0.1..0.4 for mu_s of each ball, 0.8..1 for e_b,
-// and about 0.05..8 m/s for the approach speed.
+// The impacts are a mixture of six kinds: ball 1 slides into a resting ball, it rolls into a resting ball, both balls
+// roll, both have strong spin (up to 200 rad/s), ball 1 only glances a resting ball, both slide. The ranges are
+// 0.01..0.12 for mu_b, 0.1..0.4 for mu_s of each ball, 0.8..1 for e_b, and about 0.05..8 m/s for the approach speed.
 #pragma once
 
 #include <cmath>
@@ -50,7 +50,8 @@ inline Impact random_impact(Generator& rng) {
     p.mu_s2 = rng.uniform(0.1, 0.4);
     p.mu_b = rng.uniform(0.01, 0.12);
     p.e_b = rng.uniform(0.8, 1.0);
-    const int kind = static_cast<int>(rng.next() % 6);
+    enum { kAtRest, kRolling, kBothRolling, kStrongSpin, kGlancing, kBothSliding, kKinds };
+    const int kind = static_cast<int>(rng.next() % kKinds);
     const double angle = rng.uniform(0.0, 6.283185307179586);
     const double nx = std::cos(angle), ny = std::sin(angle);  // from ball 1 to ball 2
     kernel::Ball &b1 = impact.ball1, &b2 = impact.ball2;
@@ -63,7 +64,7 @@ inline Impact random_impact(Generator& rng) {
     // The cut angle, from the line of centres to the direction of ball 1. In a glancing impact the approach speed is
     // 1e-3..0.1 of the speed.
     const double cut =
-        kind == 4 ? std::acos(std::pow(10.0, rng.uniform(-3.0, -1.0))) : rng.uniform(-1.4, 1.4);
+        kind == kGlancing ? std::acos(std::pow(10.0, rng.uniform(-3.0, -1.0))) : rng.uniform(-1.4, 1.4);
     const double c = std::cos(cut), s = std::sin(cut);
     b1.v[0] = speed * (c * nx - s * ny);
     b1.v[1] = speed * (c * ny + s * nx);
@@ -75,40 +76,23 @@ inline Impact random_impact(Generator& rng) {
         b.w[1] = b.v[0] / p.R;
         b.w[2] = rng.uniform(-30.0, 30.0);
     };
-    switch (kind) {
-        case 0:
-            spin(b1, 60.0);
-            break;  // sliding into a resting ball
-        case 1:
-            roll(b1);
-            break;  // rolling into a resting ball
-        case 2:
-            roll(b1);
-            b2.v[0] = rng.uniform(-0.5, 0.5) * speed;
-            b2.v[1] = rng.uniform(-0.5, 0.5) * speed;
-            roll(b2);
-            break;  // both rolling
-        case 3:
-            spin(b1, 200.0);
-            spin(b2, 200.0);
-            break;  // strong spin
-        case 4:
-            spin(b1, 60.0);
-            break;  // glancing
-        default:
-            spin(b1, 60.0);
-            spin(b2, 60.0);
-            b2.v[0] = rng.uniform(-0.5, 0.5) * speed;
-            b2.v[1] = rng.uniform(-0.5, 0.5) * speed;
-            break;  // both sliding
+    if (kind == kRolling || kind == kBothRolling)
+        roll(b1);
+    else
+        spin(b1, kind == kStrongSpin ? 200.0 : 60.0);
+    if (kind == kStrongSpin || kind == kBothSliding) spin(b2, kind == kStrongSpin ? 200.0 : 60.0);
+    if (kind == kBothRolling || kind == kBothSliding) {
+        b2.v[0] = rng.uniform(-0.5, 0.5) * speed;
+        b2.v[1] = rng.uniform(-0.5, 0.5) * speed;
     }
+    if (kind == kBothRolling) roll(b2);
     const double approach = (b1.v[0] - b2.v[0]) * nx + (b1.v[1] - b2.v[1]) * ny;
     if (approach < 0.0) {  // turn the velocities, so that the balls approach
         for (int k = 0; k < 2; ++k) {
             b1.v[k] = -b1.v[k];
             b2.v[k] = -b2.v[k];
         }
-        if (kind == 1 || kind == 2) {
+        if (kind == kRolling || kind == kBothRolling) {
             for (int k = 0; k < 2; ++k) {
                 b1.w[k] = -b1.w[k];
                 b2.w[k] = -b2.w[k];

@@ -90,38 +90,18 @@ ContactPhaseFunction contact_phase_function(Isa isa) noexcept {
 }
 
 const char* describe(ImpactStatus status) noexcept {
-    switch (status) {
-        case ImpactStatus::kOk:
-        case ImpactStatus::kNotApproaching:
-            return "";
-        case ImpactStatus::kBadState:
-            return "a state is not finite, or the centres coincide or are not at one height";
-        case ImpactStatus::kBadParameter:
-            return "a parameter is out of range: R, m > 0, frictions >= 0, 0 <= e_b <= 1, substeps >= 1";
-        case ImpactStatus::kStepLimit:
-            return "the march did not end within its bound on steps";
-    }
-    return "unknown status";
+    constexpr const char* kTexts[] = {
+        "", "", "a state is not finite, or the centres coincide or are not at one height",
+        "a parameter is out of range: R, m > 0, frictions >= 0, 0 <= e_b <= 1, substeps >= 1",
+        "the march did not end within its bound on steps"};
+    return kTexts[static_cast<int>(status)];
 }
 
 const char* name(ToleranceMethod method) noexcept {
-    switch (method) {
-        case ToleranceMethod::kNone:
-            return "";
-        case ToleranceMethod::kClosedFrictionless:
-            return "closed_frictionless";
-        case ToleranceMethod::kClosedGearing:
-            return "closed_gearing";
-        case ToleranceMethod::kClosedStick:
-            return "closed_stick";
-        case ToleranceMethod::kCollocation4:
-            return "collocation_4";
-        case ToleranceMethod::kCollocation8:
-            return "collocation_8";
-        case ToleranceMethod::kAdaptive:
-            return "adaptive";
-    }
-    return "unknown";
+    constexpr const char* kNames[] = {
+        "",        "closed_frictionless", "closed_gearing", "closed_stick", "collocation_4", "collocation_8",
+        "adaptive"};
+    return kNames[static_cast<int>(method)];
 }
 
 }  // namespace carom::kernel

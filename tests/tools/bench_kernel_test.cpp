@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "bench/timed_kernel.h"
 #include "ladder/ladder.h"
 
 namespace carom::tools {
@@ -24,10 +25,8 @@ class BenchKernel : public testing::Test {
 };
 
 std::multiset<Form> forms(const std::vector<std::string>& only) {
-    BenchKernelArgs options;
-    options.only = only;
     std::multiset<Form> all;
-    for (const KernelRow& row : kernel_rows(options)) all.insert({row.name, row.kind, row.isa});
+    for (const TimedKernel& s : timed_kernels(only)) all.insert({s.row.name, s.row.kind, s.row.isa});
     return all;
 }
 
@@ -67,7 +66,7 @@ TEST_F(BenchKernel, TimesWhatIsAskedFor) {
 
 TEST_F(BenchKernel, ThePrintedFormsHaveTheirNames) {
     KernelBench bench;
-    bench.rows = kernel_rows({});
+    for (const TimedKernel& s : timed_kernels({})) bench.rows.push_back(s.row);
     for (KernelRow& row : bench.rows) bench.growth.push_back({row.name, row.isa, 100, 1.0, 2.0});
     const auto json = nlohmann::json::parse(kernel_bench_json(bench));
     const std::string text = kernel_bench_text(bench);

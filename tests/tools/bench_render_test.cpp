@@ -9,7 +9,7 @@ namespace carom::tools {
 namespace {
 
 TEST(BenchRender, NeedThreeFrames) {
-    EXPECT_THROW(bench_render(Record(), 2), render::RenderError);
+    EXPECT_THROW(bench_render(Record(), 2, render::Backend::kOsmesa), render::RenderError);
 }
 
 }  // namespace

@@ -75,28 +75,24 @@ void man_command(std::string& out, const Options& command, const std::string& pa
 }
 
 std::string man_page(const Options& program) {
-    std::string out = ".TH CAROM 1 \"\" \"carom " + program.version + "\" \"User Commands\"\n";
-    out +=
-        ".SH NAME\ncarom \\- event\\-based billiards simulator\n.SH SYNOPSIS\n\\fBcarom\\fR \\fICOMMAND\\fR "
-        "[options]\n";
-    out +=
-        ".SH DESCRIPTION\nReads a scene (TOML): a table, its balls, perhaps a shot. Simulates it from event "
-        "to event, draws "
-        "what happened without a display, and says what every frame cost.\n";
-    out += ".SH COMMANDS\n";
-    for (const Options& command : program.commands) man_command(out, command, program.name);
-    out +=
-        ".SH ENVIRONMENT\n.TP\n\\fBCAROM_ISA\\fR\nscalar, v3 or v4 forces the instruction set; all give the "
-        "same bits. Left "
-        "out, the widest one that the processor has.\n";
-    out +=
-        ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\nfailed while running\n.TP\n2\nbad usage or bad "
-        "scene\n.TP\n130\ninterrupted\n";
-    out +=
-        ".SH EXAMPLES\n.EX\ncarom simulate scenes/hello.toml\ncarom render scenes/eight_ball_break.toml "
-        "\\-\\-to 2 \\-o "
-        "frames/%05d.png\n.EE\n";
-    return out;
+    std::string commands;
+    for (const Options& command : program.commands) man_command(commands, command, program.name);
+    return ".TH CAROM 1 \"\" \"carom " + program.version +
+           "\" \"User Commands\"\n"
+           ".SH NAME\ncarom \\- event\\-based billiards simulator\n"
+           ".SH SYNOPSIS\n\\fBcarom\\fR \\fICOMMAND\\fR [options]\n"
+           ".SH DESCRIPTION\nReads a scene (TOML): a table, its balls, perhaps a shot. Simulates it from "
+           "event "
+           "to event, draws what happened without a display, and says what every frame cost.\n"
+           ".SH COMMANDS\n" +
+           commands +
+           ".SH ENVIRONMENT\n.TP\n\\fBCAROM_ISA\\fR\nscalar, v3 or v4 forces the instruction set; all give "
+           "the "
+           "same bits. Left out, the widest one that the processor has.\n"
+           ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\nfailed while running\n.TP\n2\nbad usage or bad scene\n"
+           ".TP\n130\ninterrupted\n"
+           ".SH EXAMPLES\n.EX\ncarom simulate scenes/hello.toml\n"
+           "carom render scenes/eight_ball_break.toml \\-\\-to 2 \\-o frames/%05d.png\n.EE\n";
 }
 
 // ---- bash ------------------------------------------------------------------------------------------------

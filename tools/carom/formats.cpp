@@ -166,40 +166,32 @@ std::string meaning_text(const Key& key) {
                : key.meaning;
 }
 
-/// The rows of a table, a line each.
-template <class T, std::size_t kRows>
-std::string lines_of(const Field<T> (&fields)[kRows], const T& standard) {
-    std::string text;
-    for (const Field<T>& f : fields) {
-        if (f.in(Files::kScene))
-            text += fmt::format("| {} | {} | {} | {} |\n", code(f.key), default_text(f, f.value(standard)),
-                                values_text(f), meaning_text(f));
-    }
-    return text;
+std::string line_of(const Key& key, const std::string& standard) {
+    return fmt::format("| {} | {} | {} | {} |\n", code(key.key), standard, values_text(key),
+                       meaning_text(key));
 }
 
-/// The same with the name of a list in front of its first line.
+/// The rows of a table, a line each; of the parts of a list, the first one with the name of the list in front.
 template <class T, std::size_t kRows>
-std::string lines_of(const char* list, const Field<T> (&fields)[kRows]) {
+std::string lines_of(const Field<T> (&fields)[kRows], const T& standard, const char* list = nullptr) {
     std::string text;
     for (const Field<T>& f : fields) {
         if (!f.in(Files::kScene)) continue;
-        text += fmt::format("| {} | {} | {} | {} | {} |\n", list, code(f.key), default_text(f, {}),
-                            values_text(f), meaning_text(f));
-        list = "";
+        if (list) text += fmt::format("| {} ", text.empty() ? list : "");
+        text += line_of(f, default_text(f, list ? FieldValue() : f.value(standard)));
     }
     return text;
 }
 
 std::string balls_lines() {
-    std::string text = fmt::format("| `preset` | `\"{}\"` | `\"{}\"` | `\"{}\"` | | {} |\n", kBallPresets[0],
-                                   kBallPresets[1], kBallPresets[2], kBallPresetFields[0].meaning);
+    std::string text = fmt::format("| `preset` | `\"{}\"` | | {} |\n", fmt::join(kBallPresets, "\"` | `\""),
+                                   kBallPresetFields[0].meaning);
     for (const Field<BallParams>& f : kBallFields) {
         if (!f.in(Files::kScene)) continue;
-        text += "| " + code(f.key);
+        std::vector<std::string> standards;
         for (const char* preset : kBallPresets)
-            text += " | " + default_text(f, f.value(make_ball_params(preset)));
-        text += fmt::format(" | {} | {} |\n", values_text(f), meaning_text(f));
+            standards.push_back(default_text(f, f.value(make_ball_params(preset))));
+        text += line_of(f, fmt::format("{}", fmt::join(standards, " | ")));
     }
     return text;
 }
@@ -277,8 +269,9 @@ std::string scene_format() {
     constexpr const char* kHeader = "| key | default | values | meaning |";
     return block("table", kHeader, lines_of(kTableFields, make_table(kStandardTable))) +
            block("outline", "| list | key | default | values | meaning |",
-                 lines_of("`[[table.cushion]]`", kCushionFields) + lines_of("`[[table.jaw]]`", kJawFields) +
-                     lines_of("`[[table.pocket]]`", kPocketFields)) +
+                 lines_of(kCushionFields, {}, "`[[table.cushion]]`") +
+                     lines_of(kJawFields, {}, "`[[table.jaw]]`") +
+                     lines_of(kPocketFields, {}, "`[[table.pocket]]`")) +
            block("balls", "| key | pool (default) | snooker | carom | values | meaning |", balls_lines()) +
            block("ball", kHeader,
                  lines_of(kBallStartFields, BallStart{}) + lines_of(kSizeFields, BallSize{})) +

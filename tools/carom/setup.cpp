@@ -15,6 +15,15 @@ namespace {
 constexpr double kMostFrames = 1e7;
 constexpr double kFastestFps = 1e6;
 
+/// "16x9", both 1 to kMaxImageSize.
+std::optional<FrameSize> two_numbers(const std::string& text) {
+    const auto sides = numbers_in<int, 2>(text, 'x');
+    if (!sides) return std::nullopt;
+    for (const int side : *sides)
+        if (side < 1 || side > kMaxImageSize) return std::nullopt;
+    return FrameSize{(*sides)[0], (*sides)[1]};
+}
+
 }  // namespace
 
 void add_gl(Options& command, std::string& gl) {
@@ -73,19 +82,6 @@ Record simulate_plan(const Plan& plan, SimulateOptions options) {
     throw_if_interrupted();
     return record;
 }
-
-namespace {
-
-/// "16x9", both 1 to kMaxImageSize.
-std::optional<FrameSize> two_numbers(const std::string& text) {
-    const auto sides = numbers_in<int, 2>(text, 'x');
-    if (!sides) return std::nullopt;
-    for (const int side : *sides)
-        if (side < 1 || side > kMaxImageSize) return std::nullopt;
-    return FrameSize{(*sides)[0], (*sides)[1]};
-}
-
-}  // namespace
 
 FrameSize parse_size(const std::string& text) {
     if (const auto size = two_numbers(text)) return *size;

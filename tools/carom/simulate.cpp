@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 
-#include "base/output_file.h"
 #include "carom/engine/verify.h"
 #include "console.h"
 #include "options.h"
@@ -151,16 +150,8 @@ void check_args(const SimulateArgs& args) {
 
 void write_files(const SimulateArgs& args, const Record& record) {
     if (!args.record.empty()) write_record(record, args.record);
-    if (!args.events.empty()) {
-        OutputFile file(args.events);
-        write_events_csv(record, file);
-        file.commit();
-    }
-    if (!args.samples.empty()) {
-        OutputFile file(args.samples);
-        write_samples_csv(record, *args.sample_dt, file);
-        file.commit();
-    }
+    if (!args.events.empty()) write_events_csv(record, args.events);
+    if (!args.samples.empty()) write_samples_csv(record, *args.sample_dt, args.samples);
 }
 
 /// Names the first law that the run broke, if any.

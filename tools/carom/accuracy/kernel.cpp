@@ -6,16 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <functional>
 #include <memory>
 #include <stdexcept>
 
 #include "bench/clock.h"
 #include "bench/rounds.h"
+#include "bench/timed_kernel.h"
 #include "carom/kernel/closed_forms.h"
 #include "carom/kernel/tolerance.h"
 #include "console.h"
-#include "ladder/ladder.h"
 #include "reference/batch_arrays.h"
 #include "reference/solver.h"
 #include "report/plot.h"
@@ -26,19 +25,18 @@ namespace carom::tools {
 namespace {
 
 using namespace kernel;
-using reference::BatchArrays;
-using reference::Impact;
 
 /// Least processor time of one sample [ns]: much more than reading the clock takes.
 constexpr double kSample = 2e6;
 
 /// One method at one setting, for impacts one by one or as arrays.
-struct Subject {
+struct Subject : KernelCall {
+    Subject(KernelCall call, int substeps) : KernelCall(std::move(call)), n(substeps) { row.kind = kind(); }
+
     KernelAccuracyRow row;
-    std::function<void(const Impact&, ImpactResult&)> one;
-    std::function<void(const BatchArrays&)> many;
-    std::size_t timed =
-        1;  ///< number of impacts in a sample, which are the first ones: a march takes the same time for all
+    int n;  ///< of a march
+    /// Number of impacts in a sample, which are the first ones: a march takes the same time for all.
+    std::size_t timed = 1;
     int calls = 1;
     std::unique_ptr<BatchArrays> arrays;
 
@@ -47,9 +45,9 @@ struct Subject {
         const double start = thread_ns();
         for (int c = 0; c < calls; ++c) {
             if (one)
-                for (std::size_t i = 0; i < timed; ++i) one(impacts[i], out);
+                for (std::size_t i = 0; i < timed; ++i) one(impacts[i], n, out);
             else
-                many(*arrays);
+                many(*arrays, n);
         }
         return (thread_ns() - start) / (static_cast<double>(timed) * calls);
     }
@@ -69,10 +67,10 @@ struct Subject {
     std::vector<ImpactResult> results(const std::vector<Impact>& impacts) const {
         std::vector<ImpactResult> list(impacts.size());
         if (one) {
-            for (std::size_t i = 0; i < impacts.size(); ++i) one(impacts[i], list[i]);
+            for (std::size_t i = 0; i < impacts.size(); ++i) one(impacts[i], n, list[i]);
         } else {
             const BatchArrays all(impacts, ClothSlip::kConsistent);
-            many(all);
+            many(all, n);
             for (std::size_t i = 0; i < impacts.size(); ++i) list[i] = all.get(i);
         }
         return list;
@@ -87,18 +85,10 @@ struct Subject {
 };
 
 Subject march(const Rung& rung, const std::string& name, long n) {
-    Subject s;
+    Subject s(call_of(rung), static_cast<int>(n));
     s.row.method = name;
     s.row.setting = fmt::format("N={}", n);
     s.row.value = static_cast<double>(n);
-    s.row.kind = rung.march != nullptr ? "single" : "batch";
-    const int substeps = static_cast<int>(n);
-    if (rung.march != nullptr)
-        s.one = [f = rung.march, substeps](const Impact& i, ImpactResult& out) {
-            f(i.ball1, i.ball2, i.params, substeps, out);
-        };
-    else
-        s.many = [f = rung.batch, substeps](const BatchArrays& a) { f(a.batch, substeps, a.result); };
     return s;
 }
 
@@ -144,19 +134,10 @@ void add_tolerances(std::vector<Subject>& list, Isa isa) {
         const std::string setting = fmt::format("1e-{}", p);
         const double tolerance = std::strtod(setting.c_str(), nullptr);
         for (const bool batch : {false, true}) {
-            Subject& s = list.emplace_back();
+            Subject& s = list.emplace_back(tolerance_call(isa, tolerance, batch), 0);
             s.row.method = "tolerance";
-            s.row.kind = batch ? "batch" : "single";
             s.row.setting = setting;
             s.row.value = tolerance;
-            if (batch)
-                s.many = [f = tolerance_batch_function(isa), tolerance](const BatchArrays& a) {
-                    f(a.batch, tolerance, a.result);
-                };
-            else
-                s.one = [f = tolerance_function(isa), tolerance](const Impact& i, ImpactResult& out) {
-                    f(i.ball1, i.ball2, i.params, tolerance, out);
-                };
         }
     }
 }
@@ -166,12 +147,12 @@ void add_formulas(std::vector<Subject>& list) {
     for (const auto& [name, f] :
          {std::pair<const char*, Formula>{"closed form inelastic", &collide_inelastic},
           {"closed form elastic", &collide_elastic}}) {
-        Subject s;
+        const auto one = [f = f](const Impact& i, int, ImpactResult& out) {
+            f(i.ball1, i.ball2, i.params, out);
+        };
+        Subject& s = list.emplace_back(KernelCall{one, {}}, 0);
         s.row.method = name;
-        s.row.kind = "single";
         s.row.other_model = true;
-        s.one = [f = f](const Impact& i, ImpactResult& out) { f(i.ball1, i.ball2, i.params, out); };
-        list.push_back(std::move(s));
     }
 }
 

@@ -186,9 +186,7 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     const Outcome outcome = outcome_of(truth), other_outcome = outcome_of(other);
     const std::vector<Vec2> end = final_positions(truth);
     result.contacts = outcome.contacts.size();
-    for (const Event& event : truth.events)
-        result.ball_hits +=
-            balls_collide(event.type) ? 1U : 0U;
+    for (const Event& event : truth.events) result.ball_hits += balls_collide(event.type) ? 1U : 0U;
     result.agreement = final_error(final_positions(other), end).largest;
     result.outcome_agrees =
         outcome.contacts == other_outcome.contacts && outcome.pockets == other_outcome.pockets;

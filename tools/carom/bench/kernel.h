@@ -55,10 +55,6 @@ struct KernelBench {
     std::vector<ShareRow> shares;
 };
 
-/// What measure_kernel times: rows with a name and no figures yet. @throws UsageError for a name in `only`
-/// that none has
-std::vector<KernelRow> kernel_rows(const BenchKernelArgs& options);
-
 KernelBench measure_kernel(const BenchKernelArgs& options);
 std::string kernel_bench_json(const KernelBench& bench);
 std::string kernel_bench_text(const KernelBench& bench);

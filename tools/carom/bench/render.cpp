@@ -36,12 +36,13 @@ double wall_ms_since(Clock::time_point since) {
     return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
 }
 
-// Counts the frames that are drawn in all measurements together.
+/// Shows how many frames are drawn, in all measurements together. SIGINT ends them.
 struct Steps {
-    const std::function<void(long, long)>& progress;
-    long done = 0, total = 0;
-    void look() const {
-        if (progress) progress(done, total);
+    long total, done = 0;
+    ProgressLine line{"bench render"};
+    void look() {
+        throw_if_interrupted();
+        line.show_bar(done, total);
     }
     void next() {
         ++done;
@@ -110,11 +111,10 @@ double frames_per_second(const Record& record, FrameSize size, int frames, Backe
 
 }  // namespace
 
-std::vector<RenderBenchRow> bench_render(const Record& record, int frames, Backend backend,
-                                         const std::function<void(long, long)>& progress) {
+std::vector<RenderBenchRow> bench_render(const Record& record, int frames, Backend backend) {
     if (frames < 3) throw RenderError("measuring takes at least 3 frames");
     const TemporaryFolder folder;
-    Steps steps{progress, 0, 2L * (2L * frames + 2L)};  // at two sizes: in one thread, and with one a core
+    Steps steps{2L * (2L * frames + 2L)};  // at two sizes: in one thread, and with one thread per core
     std::vector<RenderBenchRow> rows;
     for (const auto& [name, size] :
          {std::pair{"720p", FrameSize{1280, 720}}, std::pair{"1080p", FrameSize{1920, 1080}}}) {
@@ -138,18 +138,12 @@ struct BenchRenderArgs {
 
 int run(const BenchRenderArgs& args) {
     const Record record = simulate_plan(plan_scene(args.scene), {});
-    ProgressLine line("bench render");
-    const auto rows =
-        bench_render(record, args.frames, render::backend_from_name(args.gl), [&line](long done, long total) {
-            throw_if_interrupted();
-            line.show_bar(done, total);
-        });
     Table table(Column("name", "size", "<8"), Column("draw_ms", "draw", ">9.2f"),
                 Column("readback_ms", "readback", ">10.2f"),
                 Column("draw_readback_p95_ms", "both p95", ">10.2f"), Column("encode_ms", "encode", ">9.2f"),
                 Column("write_ms", "write", ">9.2f"), Column("setup_ms", "set-up", ">10.0f"),
                 Column("fps", "frames/s", ">12.1f"));
-    for (const RenderBenchRow& r : rows)
+    for (const RenderBenchRow& r : bench_render(record, args.frames, backend_from_name(args.gl)))
         table.add({r.name, r.draw_ms, r.readback_ms, r.slow_ms, r.encode_ms, r.write_ms, r.setup_ms, r.fps});
     if (args.json) {
         const nlohmann::ordered_json all = {

@@ -1,7 +1,6 @@
 // What frames cost: the rows of `carom bench render`.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,10 +20,8 @@ struct RenderBenchRow {
     double fps = 0.0;       ///< frames a second from the first to the last, in files, with a thread per core
 };
 
-/// Draws `frames` frames spread over the shot, at both sizes; files go to a temporary folder. `progress` is
-/// called between frames and between passes over the table, and may throw to stop. @throws RenderError
-std::vector<RenderBenchRow> bench_render(const Record& record, int frames = 120,
-                                         render::Backend backend = render::Backend::kOsmesa,
-                                         const std::function<void(long done, long total)>& progress = {});
+/// Draws `frames` frames spread over the shot, at both sizes; files go to a temporary folder. SIGINT ends it.
+/// @throws RenderError
+std::vector<RenderBenchRow> bench_render(const Record& record, int frames, render::Backend backend);
 
 }  // namespace carom::tools

@@ -64,10 +64,6 @@ struct TimedShot {
         least_profiled = all;
         split = sum;
     }
-    double clusters() const {
-        const Record record = simulate(plan);
-        return static_cast<double>(record.clusters.size());
-    }
 };
 
 ShotRow row_of(const std::string& name, const TimedShot* first, int seeds, double baseline_ns) {
@@ -81,7 +77,7 @@ ShotRow row_of(const std::string& name, const TimedShot* first, int seeds, doubl
         least.push_back(minimum(s->ns));
         middle.push_back(median(s->ns));
         events.push_back(static_cast<double>(s->events));
-        clusters.push_back(s->clusters());
+        clusters.push_back(static_cast<double>(simulate(s->plan).clusters.size()));
         all_events += events.back();
         all_ns += least.back();
         for (std::size_t k = 0; k < split.size(); ++k) split[k] += s->split[k];

@@ -7,7 +7,6 @@
 
 #include "carom/kernel/tolerance.h"
 #include "console.h"
-#include "ladder/ladder.h"
 #include "setup.h"
 
 namespace carom::tools {
@@ -19,31 +18,17 @@ std::vector<TimedKernel> subjects(const std::vector<Isa>& isas) {
     std::vector<TimedKernel> list;
     for (const Rung& rung : ladder()) {
         if (std::find(isas.begin(), isas.end(), rung.isa) == isas.end()) continue;
-        TimedKernel s;
-        s.row = {std::string("march ") + rung.name, rung.section, rung.march ? "single" : "batch", rung.isa,
-                 rung.portable_bits};
-        if (rung.march)
-            s.one = [f = rung.march](const Impact& i, int n, ImpactResult& out) {
-                f(i.ball1, i.ball2, i.params, n, out);
-            };
-        else
-            s.many = [f = rung.batch](const BatchArrays& a, int n) { f(a.batch, n, a.result); };
-        list.push_back(std::move(s));
+        TimedKernel& s = list.emplace_back(call_of(rung));
+        s.row = {std::string("march ") + rung.name, rung.section, s.kind(), rung.isa, rung.portable_bits};
     }
-    const struct {
-        const char* name;
-        double tolerance;
-    } asked[] = {{"tolerance 1e-3", 1e-3}, {"tolerance 1e-6", 1e-6}, {"tolerance 1e-10", 1e-10}};
+    const std::pair<const char*, double> asked[] = {
+        {"tolerance 1e-3", 1e-3}, {"tolerance 1e-6", 1e-6}, {"tolerance 1e-10", 1e-10}};
     for (Isa isa : isas) {
-        for (const auto& a : asked) {
-            list.emplace_back().row = {a.name, "past it", "single", isa, true};
-            list.back().one = [f = tolerance_function(isa), t = a.tolerance](const Impact& i, int,
-                                                                             ImpactResult& out) {
-                f(i.ball1, i.ball2, i.params, t, out);
-            };
-            list.emplace_back().row = {a.name, "past it", "batch", isa, true};
-            list.back().many = [f = tolerance_batch_function(isa), t = a.tolerance](
-                                   const BatchArrays& arrays, int) { f(arrays.batch, t, arrays.result); };
+        for (const auto& [name, tolerance] : asked) {
+            for (const bool batch : {false, true}) {
+                TimedKernel& s = list.emplace_back(tolerance_call(isa, tolerance, batch));
+                s.row = {name, "past it", s.kind(), isa, true};
+            }
         }
     }
     return list;
@@ -83,7 +68,7 @@ void choose(std::vector<TimedKernel>& list, const std::vector<std::string>& only
     std::size_t kept = 0;
     for (std::size_t i = 0; i < list.size(); ++i)
         if (keep[i]) std::swap(list[kept++], list[i]);
-    list.resize(kept);
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(kept), list.end());
 }
 
 std::vector<Isa> chosen_isas() {
@@ -98,6 +83,26 @@ std::vector<Isa> chosen_isas() {
 
 }  // namespace
 
+KernelCall call_of(const Rung& rung) {
+    if (rung.march == nullptr)
+        return {{}, [f = rung.batch](const BatchArrays& a, int n) { f(a.batch, n, a.result); }};
+    return {[f = rung.march](const Impact& i, int n, ImpactResult& out) {
+                f(i.ball1, i.ball2, i.params, n, out);
+            },
+            {}};
+}
+
+KernelCall tolerance_call(Isa isa, double tolerance, bool batch) {
+    if (batch)
+        return {{}, [f = tolerance_batch_function(isa), tolerance](const BatchArrays& a, int) {
+                    f(a.batch, tolerance, a.result);
+                }};
+    return {[f = tolerance_function(isa), tolerance](const Impact& i, int, ImpactResult& out) {
+                f(i.ball1, i.ball2, i.params, tolerance, out);
+            },
+            {}};
+}
+
 std::vector<TimedKernel> timed_kernels(const std::vector<std::string>& only) {
     std::vector<TimedKernel> list = subjects(chosen_isas());
     choose(list, only);
@@ -110,14 +115,6 @@ std::vector<ImpactResult> results_of(const TimedKernel& kernel, const ImpactSet&
     if (kernel.many)
         for (std::size_t i = 0; i < results.size(); ++i) results[i] = set.arrays->get(i);
     return results;
-}
-
-std::vector<KernelRow> kernel_rows(const BenchKernelArgs& options) {
-    const std::vector<TimedKernel> list = timed_kernels(options.only);
-    std::vector<KernelRow> rows;
-    rows.reserve(list.size());
-    for (const TimedKernel& s : list) rows.push_back(s.row);
-    return rows;
 }
 
 }  // namespace carom::tools

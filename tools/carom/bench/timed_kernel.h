@@ -10,6 +10,7 @@
 
 #include "bench/clock.h"
 #include "bench/kernel.h"
+#include "ladder/ladder.h"
 #include "reference/batch_arrays.h"
 #include "reference/random_impacts.h"
 
@@ -34,11 +35,20 @@ struct ImpactSet {
     std::size_t in_arrays;
 };
 
-/// One thing to measure: a rung, or a tolerance, for one impact or for a batch.
-struct TimedKernel {
-    KernelRow row;
+/// A kernel for one impact, or for a batch; one of the two is empty. n counts for a march only.
+struct KernelCall {
     std::function<void(const Impact&, int n, ImpactResult&)> one;
     std::function<void(const BatchArrays&, int n)> many;
+    const char* kind() const { return one ? "single" : "batch"; }
+};
+KernelCall call_of(const kernel::Rung& rung);
+KernelCall tolerance_call(kernel::Isa isa, double tolerance, bool batch);
+
+/// One thing to measure: a rung, or a tolerance.
+struct TimedKernel : KernelCall {
+    explicit TimedKernel(KernelCall call) : KernelCall(std::move(call)) {}
+
+    KernelRow row{};
     std::vector<double> five_ns, random_ns;  ///< per impact, one entry a round
     int five_calls = 1, random_calls = 1;
 

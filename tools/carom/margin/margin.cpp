@@ -194,7 +194,6 @@ TimingCost cost_of_timing(const Plan& plan) {
 namespace {
 
 int run(const MarginArgs& args) {
-    if (args.repeat < 1) throw UsageError("--repeat: expected at least 1");
     if (!args.size.empty()) parse_size(args.size);
     check_plot_path(args.plot);
     if (args.sweep && !args.trace.empty())

@@ -67,7 +67,6 @@ std::vector<double> simulate_costs(const std::vector<Record>& runs, double fps) 
         for (std::size_t k = 0; k < costs.size(); ++k) samples[k].push_back(costs[k].simulate_ms());
     }
     std::vector<double> costs;
-    costs.reserve(samples.size());
     for (const std::vector<double>& s : samples) costs.push_back(median(s));
     return costs;
 }
@@ -76,13 +75,11 @@ std::vector<double> simulate_costs(const std::vector<Record>& runs, double fps) 
 std::vector<double> drawn_costs(const Plan& plan, const MarginArgs& args) {
     if (args.no_render) return {};
     std::vector<MarginRun> runs;
-    runs.reserve(static_cast<std::size_t>(args.repeat));
     for (int run = 0; run < args.repeat; ++run)
         runs.push_back(
             one_run(plan, args, kDrawnRate, fmt::format("drawing {} of {}:", run + 1, args.repeat)));
     const Margin margin = combine(runs, kDrawnRate, true);
     std::vector<double> costs;
-    costs.reserve(margin.total.size());
     for (std::size_t k = 0; k < margin.total.size(); ++k)
         costs.push_back(margin.total[k] - margin.stage[kSimulate][k]);
     return costs;

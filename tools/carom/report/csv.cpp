@@ -5,6 +5,7 @@
 
 #include <iterator>
 
+#include "base/output_file.h"
 #include "console.h"
 
 namespace carom::tools {
@@ -15,7 +16,8 @@ constexpr double kMostRows = 1e9;
 
 }  // namespace
 
-void write_events_csv(const Record& record, OutputFile& file) {
+void write_events_csv(const Record& record, const std::string& path) {
+    OutputFile file(path);
     const bool profiled = !record.costs.empty();
     file.write(profiled ? "time,type,a,b,detect_ns,resolve_ns,kernel_ns,steps,method\n" : "time,type,a,b\n");
     for (std::size_t i = 0; i < record.events.size(); ++i) {
@@ -30,9 +32,11 @@ void write_events_csv(const Record& record, OutputFile& file) {
         }
         file.write(row + '\n');
     }
+    file.commit();
 }
 
-void write_samples_csv(const Record& record, double dt, OutputFile& file) {
+void write_samples_csv(const Record& record, double dt, const std::string& path) {
+    OutputFile file(path);
     const double rows = (record.duration / dt + 1.0) * static_cast<double>(record.tracks.size());
     if (!(rows <= kMostRows)) {
         throw UsageError(fmt::format("--sample-dt {}: that would be more than {:.0f} rows", dt, kMostRows));
@@ -51,6 +55,7 @@ void write_samples_csv(const Record& record, double dt, OutputFile& file) {
         }
         file.write({block.data(), block.size()});
     }
+    file.commit();
 }
 
 }  // namespace carom::tools

@@ -4,16 +4,15 @@
 
 #include <string>
 
-#include "base/output_file.h"
 #include "carom/engine/record.h"
 
 namespace carom::tools {
 
 /// `time,type,a,b`, and for a profiled record `detect_ns,resolve_ns,kernel_ns,steps,method` behind it.
-void write_events_csv(const Record& record, OutputFile& file);
+void write_events_csv(const Record& record, const std::string& path);
 
 /// `time,ball,state,x,y,z,vx,vy,vz,wx,wy,wz`: every ball at k dt, k = 0, 1, ..., up to the duration.
 /// @throws UsageError if that is too many rows
-void write_samples_csv(const Record& record, double dt, OutputFile& file);
+void write_samples_csv(const Record& record, double dt, const std::string& path);
 
 }  // namespace carom::tools
