@@ -135,7 +135,7 @@ Options& Options::command(std::string command_name, std::string description) {
     return commands.emplace_back(std::move(command_name), std::move(description));
 }
 
-Option& Options::argument(std::string place, std::string& variable, std::string description) {
+Option& Options::argument(const std::string& place, std::string& variable, std::string description) {
     return option(place, &variable, "", std::move(description));
 }
 

@@ -65,7 +65,7 @@ struct Options {
 
     // These add a row and return it, so that the members that few options use can be set. The next row may move it. A flag
     // negates its variable.
-    Option& argument(std::string place, std::string& variable, std::string description);
+    Option& argument(const std::string& place, std::string& variable, std::string description);
     Option& flag(const std::string& names, bool& variable, std::string description);
     Option& option(const std::string& names, OptionTarget variable, std::string value,
                    std::string description);

@@ -90,11 +90,17 @@ using namespace counting;
 // NOLINTEND(clang-diagnostic-reserved-macro-identifier)
 #define _mm_rsqrt_ss counted_rsqrt
 #include "bench/five_states.h"
-#include "ladder/branches.h"
+#include "ladder/branch_hints.h"
+#include "ladder/branch_order.h"
 #include "ladder/combined.h"
+#include "ladder/explicit_fma.h"
+#include "ladder/fewer_roots.h"
 #include "ladder/precomputed.h"
 #include "ladder/reduced.h"
-#include "ladder/roots.h"
+#include "ladder/rsqrt_newton.h"
+#include "ladder/rsqrt_raw.h"
+#include "ladder/two_stage.h"
+#include "ladder/unconditional_roots.h"
 #undef double
 
 namespace {

@@ -97,7 +97,7 @@ Table read_table(const JsonValue& value, const Format& format) {
 }
 
 RenderSettings read_render(const JsonValue& value, const Format& format) {
-    const RenderSettings render = read_object(value, kRenderFields, format);
+    RenderSettings render = read_object(value, kRenderFields, format);
     if (render.eye.has_value() != render.target.has_value())
         value.fail(std::string("the key \"") + (render.eye ? "target" : "eye") + "\" is missing");
     return render;

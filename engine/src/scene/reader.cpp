@@ -94,7 +94,7 @@ std::int64_t Section::integer(const toml::node& node, const Key& key) const {
 std::string Section::text(const toml::node& node, const Key& key) const {
     if (!node.is_string())
         fail(node, "{} must be a string in quotes, not {}", full(key.key), type_name(node));
-    const std::string got = *node.value<std::string>();
+    std::string got = *node.value<std::string>();
     const std::vector<const char*> names = key.names();
     if (!names.empty() && std::find(names.begin(), names.end(), got) == names.end())
         fail(node, "unknown {} {}; use {}", full(key.key), in_quotes(got), listed(names));

@@ -152,18 +152,20 @@ Table build(const char* preset, const PocketTable& t) {
             return Vec2(right ? w - p.x() : p.x(), foot ? l - p.y() : p.y());
         };
         const std::string across = foot ? "foot" : "head", along = right ? "right" : "left";
-        const std::string corner = across + "-" + along + " corner", middle = along + " side pocket";
+        const std::string corner = fmt::format("{}-{} corner", across, along),
+                          middle = along + " side pocket";
         std::vector<Cushion> cushions;
         std::vector<Jaw> jaws;
         const auto add = [&](const std::string& place, const std::string& of, const JawAndFacing& part,
                              double r) {
-            cushions.push_back({"", at(part.back), at(part.tip), h, place + ", facing of the " + of});
-            jaws.push_back({"", at(part.jaw), r, h, place + ", jaw of the " + of});
+            cushions.push_back(
+                {"", at(part.back), at(part.tip), h, fmt::format("{}, facing of the {}", place, of)});
+            jaws.push_back({"", at(part.jaw), r, h, fmt::format("{}, jaw of the {}", place, of)});
         };
         add(corner, across + " rail", short_rail, t.corner_jaw_radius);
         add(corner, along + " rail", long_rail, t.corner_jaw_radius);
         const Vec2 from = at({0.0, to_corner ? end : start}), to = at({0.0, to_corner ? start : end});
-        cushions.push_back({"", from, to, h, along + " rail, " + across + " half"});
+        cushions.push_back({"", from, to, h, fmt::format("{} rail, {} half", along, across)});
         add(middle, across + " half", side, t.side_jaw_radius);
         table.pockets.push_back(
             {"", at({-diagonal, -diagonal}), t.corner_radius, kPocketDepth, corner + " pocket"});

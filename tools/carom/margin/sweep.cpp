@@ -66,8 +66,8 @@ std::vector<double> simulate_costs(const std::vector<Record>& runs, double fps) 
         const std::vector<FrameCost> costs = costs_by_frame(record, 0.0, fps, frames);
         for (std::size_t k = 0; k < costs.size(); ++k) samples[k].push_back(costs[k].simulate_ms());
     }
-    std::vector<double> costs;
-    for (const std::vector<double>& s : samples) costs.push_back(median(s));
+    std::vector<double> costs(samples.size());
+    std::transform(samples.begin(), samples.end(), costs.begin(), [](const auto& s) { return median(s); });
     return costs;
 }
 
@@ -75,6 +75,7 @@ std::vector<double> simulate_costs(const std::vector<Record>& runs, double fps) 
 std::vector<double> drawn_costs(const Plan& plan, const MarginArgs& args) {
     if (args.no_render) return {};
     std::vector<MarginRun> runs;
+    runs.reserve(static_cast<std::size_t>(args.repeat));
     for (int run = 0; run < args.repeat; ++run)
         runs.push_back(
             one_run(plan, args, kDrawnRate, fmt::format("drawing {} of {}:", run + 1, args.repeat)));

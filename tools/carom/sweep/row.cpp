@@ -76,8 +76,8 @@ std::vector<SweepColumn> sweep_columns(const Variation& variation) {
     const auto add = [&columns](std::string key, std::function<Cell(const SweptShot&)> value) {
         columns.push_back({std::move(key), std::move(value)});
     };
-    const auto add_result = [&add](std::string key, auto value) {
-        add(std::move(key), [value](const SweptShot& s) { return s.record ? Cell(value(s)) : Cell(); });
+    const auto add_result = [&add](const std::string& key, auto value) {
+        add(key, [value](const SweptShot& s) { return s.record ? Cell(value(s)) : Cell(); });
     };
     add("shot", [](const SweptShot& s) { return Cell(s.index); });
     for (std::size_t i = 0; i < variation.keys().size(); ++i)

@@ -25,6 +25,7 @@ namespace carom {
 struct SourceLocation {
     int line = 0;
     int column = 0;
+    // NOLINTNEXTLINE(modernize-use-nullptr): an ordering is compared with 0, which is no pointer
     auto operator<=>(const SourceLocation&) const = default;
 };
 
