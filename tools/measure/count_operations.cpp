@@ -97,8 +97,7 @@ using namespace counting;
 #include "ladder/fewer_roots.h"
 #include "ladder/precomputed.h"
 #include "ladder/reduced.h"
-#include "ladder/rsqrt_newton.h"
-#include "ladder/rsqrt_raw.h"
+#include "ladder/rsqrt.h"
 #include "ladder/two_stage.h"
 #include "ladder/unconditional_roots.h"
 #undef double

@@ -1,4 +1,4 @@
-// The step of the baseline with reciprocal lengths from the policy Root instead of square root and division.
+// Section 3.2: the step of the baseline with reciprocal lengths from rsqrtss instead of square root and division.
 #pragma once
 
 #include "ladder/roots.h"
@@ -42,6 +42,11 @@ struct InverseStep {
         apply(s, k, d);
     }
 };
+
+using RsqrtRaw =
+    WithStep<InverseStep<RawRoot>>;  // the 12 bits as they come: their error is the reason for Newton steps
+// The published variant gives NaN at zero slip; here a zero slip takes no root.
+using RsqrtNewton = WithStep<InverseStep<NewtonRoot>>;
 
 }  // namespace
 }  // namespace carom::kernel
