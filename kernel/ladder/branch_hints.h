@@ -40,6 +40,7 @@ struct BranchHintsStep {
 };
 
 using BranchHints = WithStep<BranchHintsStep>;
+using TwoStage = InTwoStages<BranchHintsStep>;
 
 }  // namespace
 }  // namespace carom::kernel

@@ -40,17 +40,7 @@ struct CombinedStep {
     }
 };
 
-struct Combined {
-    template <int kSign>
-    static long loop(FrameState& s, const ImpactParams& p, int n) {
-        ImpactParams unit = p;
-        unit.R = unit.m = 1.0;
-        spins_to_speeds(s, p.R);
-        const long steps = two_stage_loop<CombinedStep, kSign>(s, unit, n);
-        speeds_to_spins(s, p.R);
-        return steps;
-    }
-};
+using Combined = OfUnitBalls<InTwoStages<CombinedStep>>;
 
 }  // namespace
 }  // namespace carom::kernel

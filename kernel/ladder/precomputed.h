@@ -61,17 +61,21 @@ struct PrecomputedStep {
     }
 };
 
-struct Precomputed {
+// A march of balls with R = m = 1.
+template <class March>
+struct OfUnitBalls {
     template <int kSign>
     static long loop(FrameState& s, const ImpactParams& p, int n) {
         ImpactParams unit = p;
         unit.R = unit.m = 1.0;
         spins_to_speeds(s, p.R);
-        const long steps = single_loop<PrecomputedStep, kSign>(s, unit, n);
+        const long steps = March::template loop<kSign>(s, unit, n);
         speeds_to_spins(s, p.R);
         return steps;
     }
 };
+
+using Precomputed = OfUnitBalls<WithStep<PrecomputedStep>>;
 
 }  // namespace
 }  // namespace carom::kernel

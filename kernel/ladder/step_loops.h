@@ -69,7 +69,7 @@ long single_loop(FrameState& s, const ImpactParams& p, int n) {
     return steps;
 }
 
-// The same in two loops, one for compression and one for restitution: neither asks which phase it is in.
+// Section 3.3: the same in two loops, one for compression and one for restitution: neither asks which phase it is in.
 template <class Step, int kSign>
 long two_stage_loop(FrameState& s, const ImpactParams& p, int n) {
     const Constants k = constants<kSign>(s, p, n);
@@ -93,12 +93,19 @@ long two_stage_loop(FrameState& s, const ImpactParams& p, int n) {
     return steps;
 }
 
-// A variant of which only the step differs.
+// Variants of which only the step differs.
 template <class Step>
 struct WithStep {
     template <int kSign>
     static long loop(FrameState& s, const ImpactParams& p, int n) {
         return single_loop<Step, kSign>(s, p, n);
+    }
+};
+template <class Step>
+struct InTwoStages {
+    template <int kSign>
+    static long loop(FrameState& s, const ImpactParams& p, int n) {
+        return two_stage_loop<Step, kSign>(s, p, n);
     }
 };
 

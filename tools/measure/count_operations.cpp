@@ -98,7 +98,6 @@ using namespace counting;
 #include "ladder/precomputed.h"
 #include "ladder/reduced.h"
 #include "ladder/rsqrt.h"
-#include "ladder/two_stage.h"
 #include "ladder/unconditional_roots.h"
 #undef double
 

@@ -123,7 +123,6 @@ void read_cue(const Section& top, Scene& scene) {
     const Vec2 offset(cue.side, cue.height);
     if (offset.squaredNorm() > kMiscueOffset * kMiscueOffset) {
         s->fail("offset",
-
                 "cue.offset is {:.4g} ball radii from the centre, where the tip slips off; keep it within {}",
                 offset.norm(), kMiscueOffset);
     }
