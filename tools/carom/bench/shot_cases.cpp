@@ -14,9 +14,37 @@ namespace {
 
 using reference::Generator;
 
-constexpr const char* kBreak = R"(
+// Every coefficient, so that no change of a preset or of a default moves what these shots measure.
+constexpr const char* kCoefficients = R"(
 [table]
 preset = "nine_foot"
+[balls]
+radius = 0.028575
+mass = 0.170097
+mu_s = 0.2
+mu_r = 0.01
+mu_sp = 0.0127
+mu_b = 0.05
+e_b = 0.95
+e_c = 0.85
+f_c = 0.2
+[cue]
+speed = {speed}
+aim_deg = {aim}
+elevation_deg = 0.0
+offset = [0.0, 0.1]
+mass = 0.567
+end_mass = 0.00567
+[physics]
+gravity = 9.81
+ball_ball = "mathavan"
+cushion = "han_2005"
+cloth_slip = "consistent"
+clusters = "{clusters}"
+tolerance = 1e-6
+)";
+
+constexpr const char* kBreak = R"(
 [rack]
 game = "{game}"
 gap = {gap}
@@ -24,27 +52,16 @@ seed = {seed}
 [[ball]]
 id = "cue"
 position = [{x}, 0.50]
-[cue]
-speed = {speed}
-aim_deg = 90.0
-offset = [0.0, 0.1]
-[physics]
-clusters = "{clusters}"
 )";
 
 // Cue ball and object ball a metre apart; the cue ball hits it up to two thirds full on either side.
 constexpr const char* kTwoBalls = R"(
-[table]
-preset = "nine_foot"
 [[ball]]
 id = "cue"
 position = [0.635, 0.60]
 [[ball]]
 id = "1"
 position = [0.635, 1.60]
-[cue]
-speed = {speed}
-aim_deg = {aim}
 )";
 
 struct Shot {
@@ -57,7 +74,7 @@ struct Shot {
 constexpr Shot kShots[] = {{"eight_ball_break", "eight_ball", 1e-4, "sequential"},
                            {"nine_ball_break", "nine_ball", 1e-4, "sequential"},
                            {"eight_ball_break compliant", "eight_ball", 0.0, "compliant"},
-                           {"two_ball_shot", nullptr, 0.0, ""}};
+                           {"two_ball_shot", nullptr, 0.0, "compliant"}};
 
 }  // namespace
 
@@ -71,18 +88,20 @@ Scene shot_scene(const std::string& name, std::uint64_t seed) {
     Generator rng(seed);
     for (const Shot& shot : kShots) {
         if (name != shot.name) continue;
-        std::string text;
+        std::string balls = kTwoBalls;
+        double speed = 9.0, aim = 90.0;
         if (shot.game == nullptr) {
-            text = fmt::format(kTwoBalls, fmt::arg("speed", rng.uniform(1.0, 3.0)),
-                               fmt::arg("aim", 90.0 + rng.uniform(-2.0, 2.0)));
+            aim += rng.uniform(-2.0, 2.0);
+            speed = rng.uniform(1.0, 3.0);
         } else {
-            text = fmt::format(kBreak, fmt::arg("game", shot.game), fmt::arg("gap", shot.gap),
-                               fmt::arg("seed", seed == 0 ? 1 : seed),
-                               fmt::arg("x", seed == 0 ? 0.635 : 0.635 + rng.uniform(-0.01, 0.01)),
-                               fmt::arg("speed", seed == 0 ? 9.0 : rng.uniform(8.0, 10.0)),
-                               fmt::arg("clusters", shot.clusters));
+            if (seed != 0) speed = rng.uniform(8.0, 10.0);
+            const double x = seed == 0 ? 0.635 : 0.635 + rng.uniform(-0.01, 0.01);
+            balls = fmt::format(kBreak, fmt::arg("game", shot.game), fmt::arg("gap", shot.gap),
+                                fmt::arg("seed", seed == 0 ? 1 : seed), fmt::arg("x", x));
         }
-        return parse_scene(text, name);
+        return parse_scene(balls + fmt::format(kCoefficients, fmt::arg("speed", speed), fmt::arg("aim", aim),
+                                               fmt::arg("clusters", shot.clusters)),
+                           name);
     }
     throw std::invalid_argument("no shot is called " + name);
 }
