@@ -48,7 +48,8 @@ constexpr std::pair<double carom_cue::*, double carom::Cue::*> kCueNumbers[] = {
     {&carom_cue::side, &carom::Cue::side},
     {&carom_cue::height, &carom::Cue::height},
     {&carom_cue::mass, &carom::Cue::mass},
-    {&carom_cue::end_mass, &carom::Cue::end_mass}};
+    {&carom_cue::end_mass, &carom::Cue::end_mass},
+    {&carom_cue::restitution, &carom::Cue::restitution}};
 static_assert(sizeof(carom_cue) == std::size(kCueNumbers) * sizeof(double));
 
 carom::BallStart* find_ball(carom::Scene& scene, const std::string& id) {
@@ -96,11 +97,10 @@ carom_status carom_scene_create(const char* table, const char* balls, carom_scen
         need({table, balls});
         try {
             if (*table != '\0') s.scene.table = carom::make_table(table);
-            s.scene.balls = carom::make_ball_params(balls);
+            carom::use_balls(s.scene, balls);
         } catch (const std::invalid_argument& error) {
             throw BadArgument(error.what());
         }
-        s.scene.ball_preset = balls;
         s.scene.file = "scene";
     });
 }

@@ -19,7 +19,7 @@ class ImpactParams(ctypes.Structure):
 class Cue(ctypes.Structure):
     """The defaults are those of a scene file."""
 
-    _fields_ = [(name, c_double) for name in ("speed", "aim_deg", "elevation_deg", "side", "height", "mass", "end_mass")]
+    _fields_ = [(name, c_double) for name in ("speed", "aim_deg", "elevation_deg", "side", "height", "mass", "end_mass", "restitution")]
 
     def __init__(self, **values):
         lib.carom_cue_init(byref(self))

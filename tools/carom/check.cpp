@@ -49,8 +49,8 @@ std::string report(const Plan& plan) {
     fmt::memory_buffer out;
     const auto line = std::back_inserter(out);
     fmt::format_to(line, "scene     {}: valid\n", scene.file);
-    fmt::format_to(line, "table     {}, {} x {} m\n", table.preset.empty() ? "custom" : table.preset,
-                   table.width, table.length);
+    fmt::format_to(line, "table     {}, {} x {} m{}\n", table.preset.empty() ? "custom" : table.preset,
+                   table.width, table.length, table.cloth ? ", cloth " + *table.cloth : "");
     fmt::format_to(line, "balls     {}: {}\n", scene.ball.size(), ids(scene.ball));
     fmt::format_to(
         line,
@@ -67,10 +67,10 @@ std::string report(const Plan& plan) {
     if (scene.cue) {
         const Cue& cue = *scene.cue;
         fmt::format_to(line,
-                       "cue       ball {}, {} m/s, aim {} deg, elevation {} deg, offset [{}, {}], mass {} "
-                       "kg, end mass {} kg\n",
-                       cue.ball, cue.speed, cue.aim_deg, cue.elevation_deg, cue.side, cue.height, cue.mass,
-                       cue.end_mass);
+                       "cue       ball {}, {} m/s, aim {} deg, elevation {} deg, offset [{}, {}]\n"
+                       "          {}: mass {} kg, end mass {} kg, restitution {}\n",
+                       cue.ball, cue.speed, cue.aim_deg, cue.elevation_deg, cue.side, cue.height, cue.preset,
+                       cue.mass, cue.end_mass, cue.restitution);
     }
     fmt::format_to(line, "models    ball-ball {}, cushion {}, jaws {}, clusters {}, gravity {} m/s^2\n",
                    name(scene.physics.ball_ball), name(scene.physics.cushion),

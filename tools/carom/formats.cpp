@@ -189,8 +189,11 @@ std::string balls_lines() {
     for (const Field<BallParams>& f : kBallFields) {
         if (!f.in(Files::kScene)) continue;
         std::vector<std::string> standards;
-        for (const char* preset : kBallPresets)
-            standards.push_back(default_text(f, f.value(make_ball_params(preset))));
+        for (const char* preset : {"pool", "snooker", "carom"}) {
+            const BallParams balls = make_ball_params(preset);
+            const bool fitted = f.key == std::string_view("mu_b") && balls.mu_b_more != 0.0;
+            standards.push_back(fitted ? "-" : default_text(f, f.value(balls)));
+        }
         text += line_of(f, fmt::format("{}", fmt::join(standards, " | ")));
     }
     return text;

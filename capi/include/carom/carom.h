@@ -90,12 +90,14 @@ CAROM_API carom_status carom_scene_read(const char* path, carom_scene** scene);
 CAROM_API carom_status carom_scene_parse(const char* text, const char* name, carom_scene** scene);
 
 /* Creates a scene without balls on it. table: "seven_foot", "eight_foot", "nine_foot", "snooker", "carom", or "" for
- * an unbounded cloth. balls: "pool", "snooker" or "carom". */
+ * an unbounded cloth. balls: "pool", "snooker" or "carom", with the cushion model of their game, or these with
+ * "_classic" behind the name. */
 CAROM_API carom_status carom_scene_create(const char* table, const char* balls, carom_scene** scene);
 CAROM_API void carom_scene_free(carom_scene* scene); /* NULL is allowed */
 
 /* One parameter of the balls: "radius", "mass", "mu_s", "mu_r", "mu_sp", "mu_b", "mu_b_more", "mu_b_fall", "e_b",
- * "e_c" or "f_c". The friction between two balls that slip at u m/s is mu_b + mu_b_more exp(-mu_b_fall u). A new
+ * "e_c" or "f_c". The friction between two balls that slip at u m/s is mu_b + mu_b_more exp(-mu_b_fall u); setting mu_b
+ * sets the other two to 0. A new
  * radius also changes the heights of the existing balls; balls with their own radius keep it. */
 CAROM_API carom_status carom_scene_set_ball_param(carom_scene* scene, const char* name, double value);
 CAROM_API carom_status carom_scene_get_ball_param(const carom_scene* scene, const char* name, double* value);
@@ -111,9 +113,11 @@ typedef struct carom_cue {
     double side, height;  /* offset in ball radii: left +, up +; together at most 0.5 */
     double mass;          /* [kg] */
     double end_mass;      /* of its end, which gives way sideways [kg]; 0 for none */
+    double restitution;   /* of the tip, 0 to 1; 1 loses nothing */
 } carom_cue;
 
-/* Sets the defaults of a scene file: 9 m/s along +y, slightly above the centre, 0.567 kg, end mass 0.00567 kg. */
+/* Sets the defaults of a scene file: 9 m/s along +y, slightly above the centre, 0.567 kg, end mass 0.00567 kg,
+ * restitution 0.73. */
 CAROM_API void carom_cue_init(carom_cue* cue);
 
 /* The cue strikes the ball with this id at the start; the ball must be at rest. NULL for `cue` removes the cue. */

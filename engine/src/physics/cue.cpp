@@ -24,7 +24,7 @@ StruckBall strike(const Cue& cue, const BallSize& ball, bool squirt) {
     const double a = cue.side, b = cue.height;
     const auto [sin_aim, cos_aim] = sin_cos_deg(cue.aim_deg);
     const auto [sin_up, cos_up] = sin_cos_deg(cue.elevation_deg);
-    const double v = 2.0 * cue.speed / (1.0 + ball.m / cue.mass + 2.5 * (a * a + b * b));
+    const double v = (1.0 + cue.restitution) * cue.speed / (1.0 + ball.m / cue.mass + 2.5 * (a * a + b * b));
     // w = (5 v / 2 R) (b l - a sin(th) t - a cos(th) z), l = left of the aim t.
     const double turn = 2.5 * v / ball.R;
     const Vec3 w(turn * (-b * sin_aim - a * sin_up * cos_aim), turn * (b * cos_aim - a * sin_up * sin_aim),

@@ -72,8 +72,8 @@ Scene scene_from(const toml::table& file, const std::string& name) {
                       {"table", "balls", "rack", "ball", "cue", "physics", "stop", "render", "effects"});
     Scene scene;
     scene.file = name;
-    read_physics(top, scene);
     read_balls(top, scene);
+    read_physics(top, scene);
     read_table(top, scene);
     read_ball_list(top, scene);
     read_rack(top, scene);

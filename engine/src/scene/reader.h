@@ -32,6 +32,11 @@ class Section {
     bool has(std::string_view key) const { return table_.contains(key); }
     /// Where a key's value stands, or the section if the key is absent.
     SourceLocation where(std::string_view key) const;
+    /// The same of a key in a section inside this one.
+    bool has(std::string_view section, std::string_view key) const { return bool(table_[section][key]); }
+    SourceLocation where(std::string_view section, std::string_view key) const {
+        return has(section, key) ? where(*table_[section][key].node()) : where(section);
+    }
     static SourceLocation where(const toml::node& node) { return place(node.source()); }
     static SourceLocation where(SourceLocation known) { return known; }
 

@@ -58,25 +58,14 @@ std::vector<std::string_view> joined(std::vector<std::string_view> keys,
 }  // namespace
 
 void read_balls(const Section& top, Scene& scene) {
-    scene.balls = make_ball_params(scene.ball_preset);
     const auto s = top.section(
         "balls", joined(keys_of(kBallPresetFields, Files::kScene), keys_of(kBallFields, Files::kScene)));
+    if (s) s->read(kBallPresetFields, scene);
+    use_balls(scene, scene.ball_preset);
     if (!s) return;
-    s->read(kBallPresetFields, scene);
-    BallParams& p = scene.balls = make_ball_params(scene.ball_preset);
-    s->read(kBallFields, p);
+    s->read(kBallFields, scene.balls);
     if (s->has("mu_b") && s->has("mu_b_fit"))
         s->fail("mu_b_fit", "balls.mu_b and balls.mu_b_fit are two values for one friction; remove one");
-    for (const auto& [key, value] :
-         {std::pair{"mu_s", p.mu_s},
-          std::pair{p.mu_b_more > 0.0 ? "mu_b_fit" : "mu_b", p.mu_b + p.mu_b_more}}) {
-        if (value > kernel::kLargestFriction && scene.physics.ball_ball->reads_tolerance &&
-            !scene.physics.substeps)
-            s->fail(key,
-                    "balls.{} = {}: the impact by tolerance takes frictions up to {}; lower it, or set "
-                    "physics.substeps = 1000",
-                    key, value, kernel::kLargestFriction);
-    }
 }
 
 void read_ball_list(const Section& top, Scene& scene) {
@@ -151,6 +140,17 @@ void read_physics(const Section& top, Scene& scene) {
     if (s && s->has("substeps") && s->has("tolerance"))
         s->fail("substeps",
                 "physics.substeps and physics.tolerance exclude each other; remove one of the two");
+    const BallParams& p = scene.balls;
+    for (const auto& [key, value] :
+         {std::pair{"mu_s", p.mu_s},
+          std::pair{p.mu_b_more > 0.0 ? "mu_b_fit" : "mu_b", p.mu_b + p.mu_b_more}}) {
+        if (value > kernel::kLargestFriction && scene.physics.ball_ball->reads_tolerance &&
+            !scene.physics.substeps)
+            top.fail(top.where("balls", key),
+                     "balls.{} = {}: the impact by tolerance takes frictions up to {}; lower it, or set "
+                     "physics.substeps = 1000",
+                     key, value, kernel::kLargestFriction);
+    }
 }
 
 void read_effects(const Section& top, Scene& scene) {

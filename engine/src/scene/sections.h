@@ -8,10 +8,11 @@
 
 namespace carom::detail {
 
+/// Also the cushion model that goes with the balls.
 void read_balls(const Section& top, Scene& scene);
 /// Gives the parts of a table their ids: "c1", "c2", ..., "j1", ..., "p1", ...
 void number_parts(Table& table);
-/// Needs scene.balls (default nose height).
+/// Needs scene.balls (default nose height), and sets their rolling friction where the cloth has a name.
 void read_table(const Section& top, Scene& scene);
 /// Written balls. Needs scene.balls.
 void read_ball_list(const Section& top, Scene& scene);
@@ -19,6 +20,7 @@ void read_ball_list(const Section& top, Scene& scene);
 void read_rack(const Section& top, Scene& scene);
 /// Needs scene.ball.
 void read_cue(const Section& top, Scene& scene);
+/// After the balls.
 void read_physics(const Section& top, Scene& scene);
 /// Checked against what the scene needs when it is planned.
 void read_effects(const Section& top, Scene& scene);

@@ -75,13 +75,13 @@ void read_table(const Section& top, Scene& scene) {
             "preset",
             "a table has a preset or cushions, jaws and pockets of its own, not both; remove one of the two");
     }
-    if (!custom) {
-        Table named;
-        named.preset = kStandardTable;
-        if (s) s->read(kTableFields, named);
-        scene.table = make_table(named.preset);
-        return;
-    }
+    Table named;
+    if (!custom) named.preset = kStandardTable;
+    if (s) s->read(kTableFields, named);
+    if (!custom) scene.table = make_table(named.preset);
+    scene.table.cloth = named.cloth;
+    if (named.cloth && !top.has("balls", "mu_r")) scene.balls.mu_r = cloth_mu_r(*named.cloth);
+    if (!custom) return;
     const double height = kNoseShare * scene.balls.R;
     const auto any = [](const Section&, const auto&) {};
     read_parts(*s, "cushion", kCushionFields, Cushion{"", {}, {}, height}, scene.table.cushions,

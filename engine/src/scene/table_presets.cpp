@@ -214,27 +214,4 @@ Table make_table(std::string_view preset) {
     throw std::invalid_argument(fmt::format("unknown table preset \"{}\"", preset));
 }
 
-BallParams make_ball_params(std::string_view preset) {
-    // Pool: sources and measured ranges in docs/physics.md. The frictions and restitutions serve all three presets.
-    BallParams p{.R = 0.028575,
-                 .m = 0.170097,
-                 .mu_s = 0.2,
-                 .mu_r = 0.01,
-                 .mu_sp = 0.0127,
-                 .mu_b = 0.05,
-                 .e_b = 0.95,
-                 .e_c = 0.85,
-                 .f_c = 0.2};
-    if (preset == "snooker") {
-        p.R = 0.02625;
-        p.m = 0.140;
-    } else if (preset == "carom") {
-        p.R = 0.03075;
-        p.m = 0.21;
-    } else if (preset != "pool") {
-        throw std::invalid_argument(fmt::format("unknown ball preset \"{}\"", preset));
-    }
-    return p;
-}
-
 }  // namespace carom

@@ -41,7 +41,7 @@ struct CushionModelInfo {
 };
 
 /// The models that others refer to; cushion_model("stronge") and all_of() find the rest.
-extern const CushionModelInfo kHan2005, kSmooth;
+extern const CushionModelInfo kHan2005, kMathavan2010, kSmooth;
 
 /// All models, as messages list them.
 std::span<const CushionModelInfo* const> all_of(const CushionModelInfo*);

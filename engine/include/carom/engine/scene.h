@@ -84,7 +84,12 @@ inline constexpr Field<BallParams> kBallFields[] = {
     field<&BallParams::mu_s>("mu_s", kFriction, "sliding friction on the cloth"),
     field<&BallParams::mu_r>("mu_r", kFriction, "rolling friction"),
     field<&BallParams::mu_sp>("mu_sp", kFriction, "spinning friction"),
-    field<&BallParams::mu_b>("mu_b", kFriction, "ball-ball friction"),
+    // A number takes the place of a fit. Records give the rest of the fit in rows that follow.
+    {field<&BallParams::mu_b>("mu_b", kFriction, "ball-ball friction, at any slip; replaces the fit of a preset"),
+     [](const BallParams& p) -> FieldValue { return p.mu_b; },
+     [](BallParams& p, const FieldValue& value) {
+         p.mu_b = std::get<double>(value), p.mu_b_more = p.mu_b_fall = 0.0;
+     }},
     field<&BallParams::mu_b_more>(
         "mu_b_more", kFriction,
         "at a slip of u m/s the ball-ball friction is `mu_b` + `mu_b_more` exp(-`mu_b_fall` u)",
@@ -166,6 +171,7 @@ inline constexpr Field<Rack> kRackFields[] = {
 
 /// What strikes the ball. Its defaults are those of a scene file with an empty [cue], and of the C interface.
 struct Cue {
+    std::string preset = "low_deflection";
     std::string ball = "cue";
     double speed = 9.0;
     double aim_deg = 90.0;
@@ -173,10 +179,19 @@ struct Cue {
     double side = 0.0, height = 0.1;  ///< offset in ball radii: left +, up +; a little above the centre
     double mass = 0.567;
     double end_mass = 0.00567;
+    double restitution = 0.73;
     SourceLocation where;
     bool operator==(const Cue&) const = default;
 };
+inline constexpr const char* kCuePresets[] = {"low_deflection", "plain", "break", "lossless"};
+
+/// Gives a cue the mass, end mass and tip of a preset. @throws std::invalid_argument for an unknown one
+void use_cue(Cue& cue, std::string_view preset);
+
 inline constexpr Field<Cue> kCueFields[] = {
+    {field<&Cue::preset>("preset", "kind of cue: its `mass`, `end_mass` and `restitution`", {.names = kCuePresets}),
+     [](const Cue& cue) -> FieldValue { return cue.preset; },
+     [](Cue& cue, const FieldValue& value) { use_cue(cue, std::get<std::string>(value)); }},
     field<&Cue::ball>("ball", "id of the ball that is struck"),
     field<&Cue::speed>("speed", at_least(0.0, kMaxSpeed, "m/s"), "of the cue"),
     field<&Cue::aim_deg>("aim_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"), "0 is +x, 90 is +y"),
@@ -189,6 +204,7 @@ inline constexpr Field<Cue> kCueFields[] = {
     field<&Cue::mass>("mass", kMass, "of the cue"),
     field<&Cue::end_mass>("end_mass", at_least(0.0, kMaxMass, "kg"),
                           "of its end, for squirt; 0 for none, at most `mass`"),
+    field<&Cue::restitution>("restitution", kRestitution, "of the tip; 1 loses nothing"),
 };
 
 enum class ClothSlipSign : std::uint8_t { kConsistent, kAsPublished };
@@ -213,7 +229,7 @@ extern const CushionModelInfo kHan2005;
 struct Physics {
     double gravity = 9.81;
     const BallBallModelInfo* ball_ball = &kMathavan;
-    const CushionModelInfo* cushion = &kHan2005;  ///< straight noses
+    const CushionModelInfo* cushion = &kHan2005;  ///< straight noses; a ball preset brings the one that fits its game
     const CushionModelInfo* jaw = nullptr;        ///< round jaws; null: as the straight noses
     const CushionModelInfo* jaw_model() const { return jaw != nullptr ? jaw : cushion; }
     ClothSlipSign cloth_slip = ClothSlipSign::kConsistent;
@@ -227,7 +243,8 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
     field<&Physics::ball_ball>("ball_ball", "impact of two balls"),
     field<&Physics::cushion>(
         "cushion",
-        "impact with a straight cushion; `mathavan_2010` refuses a friction under which a ball could jam"),
+        "impact with a straight cushion; `mathavan_2010` refuses a friction under which a ball could jam",
+        {.standard = "that of the balls"}),
     field<&Physics::jaw>("jaw", "impact with a round jaw", {.standard = "as `cushion`"}),
     field<&Physics::cloth_slip>(
         "cloth_slip",
@@ -318,7 +335,8 @@ struct Scene {
     }
     bool operator==(const Scene&) const = default;
 };
-inline constexpr const char* kBallPresets[] = {"pool", "snooker", "carom"};
+inline constexpr const char* kBallPresets[] = {"pool",         "snooker",         "carom",
+                                               "pool_classic", "snooker_classic", "carom_classic"};
 /// The first key of [balls]; the others are kBallFields.
 inline constexpr Field<Scene> kBallPresetFields[] = {
     field<&Scene::ball_preset>("preset", "ball properties to start from", {.names = kBallPresets}),
@@ -340,5 +358,9 @@ void validate(const Scene& scene);
 /// A preset by name. @throws std::invalid_argument for an unknown one
 Table make_table(std::string_view preset);
 BallParams make_ball_params(std::string_view preset);
+/// Gives a scene the balls of a preset and the model of their cushions.
+void use_balls(Scene& scene, std::string_view preset);
+/// Rolling friction on a cloth by name.
+double cloth_mu_r(std::string_view cloth);
 
 }  // namespace carom

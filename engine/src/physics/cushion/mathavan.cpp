@@ -359,7 +359,7 @@ bool mathavan_2010_ends(const CushionContact& p) {
 
 }  // namespace detail
 
-extern constinit const CushionModelInfo kMathavan2010 = {
+constinit const CushionModelInfo kMathavan2010 = {
     .name = "mathavan_2010",
     .source = "Mathavan, Jackson, Parkin, Proc. IMechE C 224 (2010)",
     .resolve = detail::cushion_mathavan_2010,

@@ -6,7 +6,7 @@
 
 namespace carom {
 
-extern const CushionModelInfo kMathavan2010, kStronge, kImpulse;
+extern const CushionModelInfo kStronge, kImpulse;
 
 std::span<const CushionModelInfo* const> all_of(const CushionModelInfo*) {
     static constexpr const CushionModelInfo* kModels[] = {&kHan2005, &kMathavan2010, &kStronge, &kImpulse,

@@ -1,0 +1,114 @@
+// Balls, cloths and cues that come with the program. "Measured", "published" and how far to trust each number: docs/physics.md,
+// "Where the numbers come from".
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+#include <string_view>
+
+#include "carom/engine/cushion.h"
+#include "carom/engine/scene.h"
+
+namespace carom {
+namespace {
+
+struct BallPreset {
+    const char* name;
+    BallParams balls;
+    const CushionModelInfo* cushion;
+};
+
+/// What simulators have in common: one set of coefficients for every game, and a friction between balls that does not depend on
+/// their slip.
+constexpr BallParams classic(double R, double m) {
+    return {.R = R, .m = m, .mu_s = 0.2, .mu_r = 0.01, .mu_sp = 0.0127, .mu_b = 0.05, .e_b = 0.95, .e_c = 0.85, .f_c = 0.2};
+}
+constexpr BallParams kPoolClassic = classic(0.028575, 0.170097), kSnookerClassic = classic(0.02625, 0.140),
+                     kCaromClassic = classic(0.03075, 0.21);
+
+/// The fit of Alciatore's TP A.14 to Marlow's measurements.
+constexpr BallParams pool() {
+    BallParams p = kPoolClassic;
+    p.mu_b = 0.009951, p.mu_b_more = 0.108, p.mu_b_fall = 1.088;
+    return p;
+}
+
+/// Rolling friction: Mathavan, Jackson, Parkin (2009), 0.124 to 0.126 m/s^2. Cushion: the same authors' rebounds of a rolling
+/// ball, which their model of 2010 meets with 0.98 and 0.14; the models of an impact in the air lose 27 % of the speed more.
+constexpr BallParams snooker() {
+    BallParams p = kSnookerClassic;
+    p.mu_r = 0.0128, p.e_c = 0.98, p.f_c = 0.14;
+    return p;
+}
+
+/// Measured on 182 tracked shots of a three-cushion match: rolling friction of 1900 stretches, cushion of 54 paths.
+constexpr BallParams carom_balls() {
+    BallParams p = kCaromClassic;
+    p.mu_r = 0.0045, p.e_c = 0.87, p.f_c = 0.26;
+    return p;
+}
+
+/// In the order of kBallPresets.
+constexpr BallPreset kBalls[] = {{"pool", pool(), &kHan2005},
+                                 {"snooker", snooker(), &kMathavan2010},
+                                 {"carom", carom_balls(), &kHan2005},
+                                 {"pool_classic", kPoolClassic, &kHan2005},
+                                 {"snooker_classic", kSnookerClassic, &kHan2005},
+                                 {"carom_classic", kCaromClassic, &kHan2005}};
+
+struct CuePreset {
+    const char* name;
+    double mass, end_mass;  ///< [kg]
+    double restitution;
+};
+
+/// In the order of kCuePresets. End masses: pool ball over the ratios of Alciatore's TP B.1 (Predator Z 29.2 and similar; Players
+/// 20.1; Stinger break cue 12.0). Restitution: leather 0.71 to 0.75, phenolic 0.81 to 0.87 (Alciatore, physical properties).
+constexpr CuePreset kCues[] = {{"low_deflection", 0.567, 0.00567, 0.73},
+                               {"plain", 0.567, 0.00844, 0.73},
+                               {"break", 0.567, 0.01417, 0.84},
+                               {"lossless", 0.567, 0.00567, 1.0}};
+
+struct Cloth {
+    const char* name;
+    double mu_r;
+};
+
+/// In the order of kCloths. A lag of 7 to 8.5 s on a nine-foot table is 0.0106 to 0.0072 (Jewett); the heated cloth of a
+/// three-cushion match was measured at 0.0043 to 0.0051.
+constexpr Cloth kClothFriction[] = {{"club", 0.01}, {"tournament", 0.0075}, {"match_heated", 0.0045}};
+
+template <class Row, std::size_t kRows>
+const Row& named(const Row (&rows)[kRows], std::string_view name, const char* what) {
+    const Row* row = std::find_if(rows, std::end(rows), [&](const Row& r) { return r.name == name; });
+    if (row == std::end(rows)) throw std::invalid_argument(fmt::format("unknown {} \"{}\"", what, name));
+    return *row;
+}
+
+}  // namespace
+
+BallParams make_ball_params(std::string_view preset) {
+    return named(kBalls, preset, "ball preset").balls;
+}
+
+void use_balls(Scene& scene, std::string_view preset) {
+    const BallPreset& row = named(kBalls, preset, "ball preset");
+    scene.ball_preset = row.name;
+    scene.balls = row.balls;
+    scene.physics.cushion = row.cushion;
+}
+
+void use_cue(Cue& cue, std::string_view preset) {
+    const CuePreset& row = named(kCues, preset, "cue preset");
+    cue.preset = row.name;
+    cue.mass = row.mass;
+    cue.end_mass = row.end_mass;
+    cue.restitution = row.restitution;
+}
+
+double cloth_mu_r(std::string_view cloth) {
+    return named(kClothFriction, cloth, "cloth").mu_r;
+}
+
+}  // namespace carom
