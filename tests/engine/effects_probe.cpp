@@ -31,7 +31,7 @@ void add(Scene& scene, const char* id, double x, double y, double vx, double vy)
 Scene bare() {
     Scene scene;
     scene.file = "(probe)";
-    scene.balls = make_ball_params("pool");
+    scene.balls = make_ball_params("pool_classic");
     scene.balls.mu_s = scene.balls.mu_r = scene.balls.mu_sp = scene.balls.mu_b = scene.balls.f_c = 0.0;
     scene.balls.e_b = scene.balls.e_c = 1.0;
     scene.physics.ball_ball = ball_ball_model("elastic");

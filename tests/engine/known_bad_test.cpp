@@ -42,6 +42,7 @@ Scene scene_named(const std::string& wanted) {
         cue.elevation_deg = q.at("theta_deg").get<double>();
         cue.side = q.at("a").get<double>();
         cue.height = q.at("b").get<double>();
+        cue.restitution = 1.0;
         cue.mass = q.at("M").get<double>();
         cue.end_mass = q.at("end_mass").get<double>();
         scene.cue = cue;

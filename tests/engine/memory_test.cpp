@@ -100,7 +100,7 @@ Scene eight_ball_break(ClusterModel clusters) {
 
 TEST(Memory, NoAllocationInTheLoopOfABreak) {
     const LoopCount count(plan_of(eight_ball_break(ClusterModel::kSequential)));
-    EXPECT_GT(count.events, 100u);
+    EXPECT_GT(count.events, 80u);
     EXPECT_EQ(count.in_loop(), 0);
 }
 

@@ -83,6 +83,7 @@ TEST(Shots, EventListsAndFinalPositions) {
             const auto& q = c.at("cue");
             Cue cue;
             cue.ball = "cue";
+            use_cue(cue, "lossless");
             cue.speed = q.at("V0").get<double>();
             cue.aim_deg = q.at("phi_deg").get<double>();
             cue.elevation_deg = q.at("theta_deg").get<double>();

@@ -25,8 +25,9 @@ inline Vec3 vec3(const nlohmann::json& j) {
     return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
 }
 
+/// With a friction between balls that is one number, as formulas and reference solutions have it.
 inline BallParams pool_balls() {
-    return make_ball_params("pool");
+    return make_ball_params("pool_classic");
 }
 
 /// Reads R, m, u_s, ... where given; the rest stays at the pool defaults.

@@ -26,7 +26,7 @@ enum class DrawOrder { kLastFirst, kFirstFirst };
 class RandomScene {
   public:
     explicit RandomScene(std::uint64_t seed, DrawOrder order = DrawOrder::kLastFirst)
-        : rng_(seed), scene_(empty_scene()), order_(order) {}
+        : seed_(seed), rng_(seed), scene_(empty_scene()), order_(order) {}
 
     Scene make() {
         choose_table();
@@ -67,6 +67,11 @@ class RandomScene {
         b.mu_r = one_of<double>({0.01, 0.01, 0.005, 0.05});
         b.mu_sp = one_of<double>({0.0127, 0.0127, 0.044});
         b.mu_b = one_of<double>({0.05, 0.05, 0.0, 0.2});
+        // Every other scene with the default of pool tables, a friction that falls with the slip.
+        if (b.mu_b == 0.05 && seed_ % 2 == 1) {
+            const BallParams pool = make_ball_params("pool");
+            b.mu_b = pool.mu_b, b.mu_b_more = pool.mu_b_more, b.mu_b_fall = pool.mu_b_fall;
+        }
         b.e_b = one_of<double>({0.95, 0.95, 1.0, 0.5, 0.8});
         b.e_c = one_of<double>({0.85, 0.85, 0.0, 0.5, 1.0});
         b.f_c = one_of<double>({0.2, 0.2, 0.0});
@@ -211,6 +216,7 @@ class RandomScene {
         }
     }
 
+    std::uint64_t seed_;
     Generator rng_;
     Scene scene_;
     DrawOrder order_;
@@ -229,11 +235,13 @@ inline std::string dump(const Scene& scene) {
     std::string text;
     char line[400];
     const BallParams& b = scene.balls;
-    std::snprintf(line, sizeof line,
-                  "table %s %g, mu_s %g mu_r %g mu_sp %g mu_b %g e_b %g e_c %g f_c %g, models %s %s %s\n",
-                  scene.table.preset.c_str(), scene.table.width, b.mu_s, b.mu_r, b.mu_sp, b.mu_b, b.e_b,
-                  b.e_c, b.f_c, name(scene.physics.ball_ball), name(scene.physics.cushion),
-                  name(scene.physics.clusters));
+    std::snprintf(
+        line, sizeof line,
+        "table %s %g, mu_s %g mu_r %g mu_sp %g mu_b %g + %g exp(-%g u) e_b %g e_c %g f_c %g, models %s "
+        "%s %s\n",
+        scene.table.preset.c_str(), scene.table.width, b.mu_s, b.mu_r, b.mu_sp, b.mu_b, b.mu_b_more,
+        b.mu_b_fall, b.e_b, b.e_c, b.f_c, name(scene.physics.ball_ball), name(scene.physics.cushion),
+        name(scene.physics.clusters));
     text += line;
     for (const BallStart& s : scene.ball) {
         std::snprintf(line, sizeof line, "%s: r %.17g %.17g v %.17g %.17g w %.17g %.17g %.17g\n",

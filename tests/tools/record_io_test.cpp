@@ -52,7 +52,8 @@ void expect_unusual(std::vector<double> values) {
 
 TEST(RecordFile, TheSampleHasAValueOfItsOwnInEveryField) {
     const Record record = sample_record();
-    const auto& [preset, width, length, corner, cushions, jaws, pockets] = record.table;
+    const auto& [preset, cloth, width, length, corner, cushions, jaws, pockets] = record.table;
+    EXPECT_FALSE(cloth);  // its friction is in the balls
     EXPECT_NE(preset, Table().preset);
     expect_unusual({width, length, corner.x(), corner.y()});
     const auto& [c_id, from, to, c_height, c_name] = cushions.at(0);

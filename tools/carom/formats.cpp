@@ -97,7 +97,7 @@ void add_properties(Json& object, const Field<T> (&fields)[kRows], const T& stan
         Json schema = value_schema(f, files);
         const FieldValue value = f.value(standard);
         const bool stated = files == Files::kScene && !f.options.needed && !f.options.standard;
-        if (stated && value.index() != 0) schema["default"] = json_of(value);
+        if (stated && is_written(fields, f, standard)) schema["default"] = json_of(value);
         schema["description"] = description(f);
         object["properties"][key] = schema;
         if (files == Files::kRecord ? !f.optional : f.options.needed) object["required"].push_back(key);
@@ -184,15 +184,14 @@ std::string lines_of(const Field<T> (&fields)[kRows], const T& standard, const c
 }
 
 std::string balls_lines() {
-    std::string text = fmt::format("| `preset` | `\"{}\"` | | {} |\n", fmt::join(kBallPresets, "\"` | `\""),
-                                   kBallPresetFields[0].meaning);
+    std::string text = line_of(kBallPresetFields[0], "`\"pool\"` | `\"snooker\"` | `\"carom\"`");
     for (const Field<BallParams>& f : kBallFields) {
         if (!f.in(Files::kScene)) continue;
         std::vector<std::string> standards;
         for (const char* preset : {"pool", "snooker", "carom"}) {
             const BallParams balls = make_ball_params(preset);
-            const bool fitted = f.key == std::string_view("mu_b") && balls.mu_b_more != 0.0;
-            standards.push_back(fitted ? "-" : default_text(f, f.value(balls)));
+            standards.push_back(
+                default_text(f, is_written(kBallFields, f, balls) ? f.value(balls) : FieldValue()));
         }
         text += line_of(f, fmt::format("{}", fmt::join(standards, " | ")));
     }

@@ -22,7 +22,15 @@ struct BallPreset {
 /// What simulators have in common: one set of coefficients for every game, and a friction between balls that does not depend on
 /// their slip.
 constexpr BallParams classic(double R, double m) {
-    return {.R = R, .m = m, .mu_s = 0.2, .mu_r = 0.01, .mu_sp = 0.0127, .mu_b = 0.05, .e_b = 0.95, .e_c = 0.85, .f_c = 0.2};
+    return {.R = R,
+            .m = m,
+            .mu_s = 0.2,
+            .mu_r = 0.01,
+            .mu_sp = 0.0127,
+            .mu_b = 0.05,
+            .e_b = 0.95,
+            .e_c = 0.85,
+            .f_c = 0.2};
 }
 constexpr BallParams kPoolClassic = classic(0.028575, 0.170097), kSnookerClassic = classic(0.02625, 0.140),
                      kCaromClassic = classic(0.03075, 0.21);

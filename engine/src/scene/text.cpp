@@ -44,16 +44,9 @@ std::string text_of(const FieldValue& value) {
 /// A line for each value, under a heading that is there only if a line is.
 template <class T, std::size_t kRows>
 void write_fields(Out out, const char* heading, const Field<T> (&fields)[kRows], const T& object) {
-    const auto is_given = [&](const Field<T>& f) { return f.value(object).index() != 0; };
-    for (const Field<T>& f : fields) {
-        // Another key may stand in for this one.
-        const bool replaced = std::any_of(std::begin(fields), std::end(fields), [&](const Field<T>& other) {
-            const char* key = other.options.instead_of;
-            return key != nullptr && key == std::string_view(f.key) && is_given(other);
-        });
-        if (!f.in(Files::kScene) || replaced || !is_given(f)) continue;
-        fmt::format_to(out, "{}{} = {}\n", std::exchange(heading, ""), f.key, text_of(f.value(object)));
-    }
+    for (const Field<T>& f : fields)
+        if (is_written(fields, f, object))
+            fmt::format_to(out, "{}{} = {}\n", std::exchange(heading, ""), f.key, text_of(f.value(object)));
 }
 
 /// Whether a scene file would say the same of the parts of two tables.

@@ -35,6 +35,7 @@ elevation_deg = 0.0
 offset = [0.0, 0.1]
 mass = 0.567
 end_mass = 0.00567
+restitution = 1.0
 [physics]
 gravity = 9.81
 ball_ball = "mathavan"
@@ -109,7 +110,7 @@ Scene shot_scene(const std::string& name, std::uint64_t seed) {
 Scene gas_scene(int n, long events, std::uint64_t seed) {
     Scene scene;
     scene.file = fmt::format("gas of {}", n);
-    BallParams& b = scene.balls = make_ball_params("pool");
+    BallParams& b = scene.balls = make_ball_params("pool_classic");
     b.mu_s = b.mu_r = b.mu_sp = b.mu_b = b.f_c = 0.0;
     b.e_b = b.e_c = 1.0;
     scene.physics.ball_ball = ball_ball_model("elastic");

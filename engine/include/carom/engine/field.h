@@ -90,6 +90,16 @@ struct Field : Key {
     }
 };
 
+/// Whether a scene file that says all of `object` has this row: it holds a value, and no other key stands in for it.
+template <class T, std::size_t kRows>
+bool is_written(const Field<T> (&fields)[kRows], const Field<T>& field, const T& object) {
+    const bool replaced = std::any_of(fields, fields + kRows, [&](const Field<T>& other) {
+        const char* key = other.options.instead_of;
+        return key != nullptr && key == std::string_view(field.key) && other.value(object).index() != 0;
+    });
+    return field.in(Files::kScene) && !replaced && field.value(object).index() != 0;
+}
+
 /// What files call a value of an enumeration.
 template <class E>
 auto name(E e) -> typename decltype(names_of(e))::value_type {

@@ -85,7 +85,8 @@ inline constexpr Field<BallParams> kBallFields[] = {
     field<&BallParams::mu_r>("mu_r", kFriction, "rolling friction"),
     field<&BallParams::mu_sp>("mu_sp", kFriction, "spinning friction"),
     // A number takes the place of a fit. Records give the rest of the fit in rows that follow.
-    {field<&BallParams::mu_b>("mu_b", kFriction, "ball-ball friction, at any slip; replaces the fit of a preset"),
+    {field<&BallParams::mu_b>("mu_b", kFriction,
+                              "ball-ball friction, at any slip; replaces the fit of a preset"),
      [](const BallParams& p) -> FieldValue { return p.mu_b; },
      [](BallParams& p, const FieldValue& value) {
          p.mu_b = std::get<double>(value), p.mu_b_more = p.mu_b_fall = 0.0;
@@ -189,7 +190,8 @@ inline constexpr const char* kCuePresets[] = {"low_deflection", "plain", "break"
 void use_cue(Cue& cue, std::string_view preset);
 
 inline constexpr Field<Cue> kCueFields[] = {
-    {field<&Cue::preset>("preset", "kind of cue: its `mass`, `end_mass` and `restitution`", {.names = kCuePresets}),
+    {field<&Cue::preset>("preset", "kind of cue: its `mass`, `end_mass` and `restitution`",
+                         {.names = kCuePresets}),
      [](const Cue& cue) -> FieldValue { return cue.preset; },
      [](Cue& cue, const FieldValue& value) { use_cue(cue, std::get<std::string>(value)); }},
     field<&Cue::ball>("ball", "id of the ball that is struck"),
@@ -229,8 +231,9 @@ extern const CushionModelInfo kHan2005;
 struct Physics {
     double gravity = 9.81;
     const BallBallModelInfo* ball_ball = &kMathavan;
-    const CushionModelInfo* cushion = &kHan2005;  ///< straight noses; a ball preset brings the one that fits its game
-    const CushionModelInfo* jaw = nullptr;        ///< round jaws; null: as the straight noses
+    const CushionModelInfo* cushion =
+        &kHan2005;  ///< straight noses; a ball preset brings the one that fits its game
+    const CushionModelInfo* jaw = nullptr;  ///< round jaws; null: as the straight noses
     const CushionModelInfo* jaw_model() const { return jaw != nullptr ? jaw : cushion; }
     ClothSlipSign cloth_slip = ClothSlipSign::kConsistent;
     ClusterModel clusters = ClusterModel::kCompliant;
@@ -244,7 +247,7 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
     field<&Physics::cushion>(
         "cushion",
         "impact with a straight cushion; `mathavan_2010` refuses a friction under which a ball could jam",
-        {.standard = "that of the balls"}),
+        {.standard = "that of the balls' preset"}),
     field<&Physics::jaw>("jaw", "impact with a round jaw", {.standard = "as `cushion`"}),
     field<&Physics::cloth_slip>(
         "cloth_slip",
@@ -339,7 +342,8 @@ inline constexpr const char* kBallPresets[] = {"pool",         "snooker",       
                                                "pool_classic", "snooker_classic", "carom_classic"};
 /// The first key of [balls]; the others are kBallFields.
 inline constexpr Field<Scene> kBallPresetFields[] = {
-    field<&Scene::ball_preset>("preset", "ball properties to start from", {.names = kBallPresets}),
+    field<&Scene::ball_preset>("preset", "ball properties, and the cushion model, to start from",
+                               {.names = kBallPresets}),
 };
 
 /// Reads and validates a scene file. @throws SceneError

@@ -79,7 +79,8 @@ inline constexpr Field<Pocket> kPocketFields[] = {
 /// The presets list them clockwise as seen from above, starting at the pocket (or corner) at the origin.
 struct Table {
     std::string preset;  ///< "seven_foot", ..., or "" for a custom outline
-    std::optional<std::string> cloth = std::nullopt;  ///< as the scene names it; its friction is in BallParams
+    std::optional<std::string> cloth =
+        std::nullopt;  ///< as the scene names it; its friction is in BallParams
     double width = 0.0,
            length = 0.0;         ///< playing surface between nose lines; the bounding box of a custom outline
     Vec2 corner = Vec2::Zero();  ///< its corner of smallest x and y: the origin, except for a custom outline
@@ -94,9 +95,9 @@ inline constexpr const char* kTablePresets[] = {"seven_foot", "eight_foot", "nin
 /// The lists of cushions, jaws and pockets beside.
 inline constexpr Field<Table> kTableFields[] = {
     field<&Table::preset>("preset", "a table with published sizes", {.names = kTablePresets}),
-    field<&Table::cloth>("cloth",
-                         "rolling friction by name: `mu_r` = 0.01, 0.0075 or 0.0045; `mu_r` in `[balls]` wins",
-                         {.files = Files::kScene, .standard = "as `[balls]`", .names = kCloths}),
+    field<&Table::cloth>(
+        "cloth", "rolling friction by name: `mu_r` = 0.01, 0.0075 or 0.0045; `mu_r` in `[balls]` wins",
+        {.files = Files::kScene, .standard = "as `[balls]`", .names = kCloths}),
     field<&Table::width>("width", at_least(0.0, kMaxCoordinate, "m"), "between the nose lines along x",
                          {.files = Files::kRecord}),
     field<&Table::length>("length", at_least(0.0, kMaxCoordinate, "m"), "the same along y",
