@@ -55,7 +55,7 @@ TEST_F(CliSimulate, VerifyNamesTheBrokenLawAndTheEvent) {
     // The published march with few steps gains energy where an impact loses none.
     const std::string scene =
         folder_.write("gain.toml",
-                      "[balls]\ne_b = 1.0\n[physics]\nsubsteps = 100\n"
+                      "[balls]\ne_b = 1.0\nmu_b = 0.05\n[physics]\nsubsteps = 100\n"
                       "[[ball]]\nid = \"a\"\nposition = [0.3, 0.5]\nvelocity = [0, 3.0]\n"
                       "[[ball]]\nid = \"b\"\nposition = [0.3, 0.55716]\n");
     const ProcessResult bad = carom({"simulate", scene, "--hash", "--verify"});
