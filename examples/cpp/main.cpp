@@ -18,7 +18,7 @@ carom::Scene cut_shot() {
     carom::Scene scene;
     scene.file = "cut shot";  // stands in messages
     scene.table = carom::make_table("nine_foot");
-    scene.balls = carom::make_ball_params("pool");
+    carom::use_balls(scene, "pool");  // and the model of their cushions
     scene.ball = {ball_at("cue", 0.635, 0.60, scene.balls.R), ball_at("1", 0.65, 1.40, scene.balls.R)};
     carom::Cue cue;
     cue.ball = "cue";

@@ -272,6 +272,11 @@ TEST(CApi, EveryNumberOfTheBallsHasAName) {
     EXPECT_EQ(get("mu_b_fall"), 1.088);
     ASSERT_EQ(carom_scene_set_ball_param(h.scene, "mu_b_more", 0.2), CAROM_OK);
     EXPECT_EQ(get("mu_b_more"), 0.2);
+    // One number takes the place of the fit, as in a scene file.
+    ASSERT_EQ(carom_scene_set_ball_param(h.scene, "mu_b", 0.05), CAROM_OK);
+    EXPECT_EQ(get("mu_b"), 0.05);
+    EXPECT_EQ(get("mu_b_more"), 0.0);
+    EXPECT_EQ(get("mu_b_fall"), 0.0);
     // A number of its own each: none changes another.
     const char* names[] = {"radius",    "mass",      "mu_s", "mu_r", "mu_sp", "mu_b",
                            "mu_b_more", "mu_b_fall", "e_b",  "e_c",  "f_c"};
@@ -361,6 +366,7 @@ TEST(CApi, TheCueBeginsAsInASceneFileAndInCpp) {
         EXPECT_EQ(cue.height, c.height);
         EXPECT_EQ(cue.mass, c.mass);
         EXPECT_EQ(cue.end_mass, c.end_mass);
+        EXPECT_EQ(cue.restitution, c.restitution);
     }
 }
 

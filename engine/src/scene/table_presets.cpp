@@ -59,8 +59,7 @@ PocketTable seven_foot() {
 /// Nine-foot table. Playing surface 100 x 50 in; the mouths are the middle of what the WPA equipment
 /// specifications allow (corner 4.5 to 4.625 in, side 5 to 5.125 in), and so are the angles between rail and
 /// facing (corner 142, side 104 degrees; here they count from 135 and from 90). The nose, at 64 % of the
-/// ball's diameter, lies within their 62.5 to 64.5 %. The numbers of the WPA are recalled, not read again for
-/// this table. Carried over from the seven-foot table: cushion width, jaw radii, pocket radii and depths;
+/// ball's diameter, lies within their 62.5 to 64.5 %. Carried over from the seven-foot table: cushion width, jaw radii, pocket radii and depths;
 /// they give shelves of 37.6 mm in the corners and 4 mm at the sides (specified: 25 to 57 mm, 0 to 9.5 mm).
 PocketTable nine_foot() {
     PocketTable t = seven_foot();
@@ -75,7 +74,7 @@ PocketTable nine_foot() {
 }
 
 /// Eight-foot table: playing surface 92 x 46 in, the eight-foot size of the WPA equipment specifications
-/// (recalled; tables of 88 x 44 in are sold as eight-foot too). Pockets as on the nine-foot table: the
+/// (tables of 88 x 44 in are sold as eight-foot too). Pockets as on the nine-foot table: the
 /// specification has one set for both.
 PocketTable eight_foot() {
     PocketTable t = nine_foot();
