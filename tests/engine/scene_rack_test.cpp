@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "carom/engine/scene.h"
+#include "support/scene_errors.h"
 
 namespace {
 
@@ -237,6 +238,51 @@ TEST(ThreeCushionRack, IsTheOpeningPosition) {
     EXPECT_LE((of(s, "red") - Vec2(0.71, 2.13)).norm(), 1e-12);
     EXPECT_LE((of(s, "yellow") - Vec2(0.71, 0.71)).norm(), 1e-12);
     EXPECT_LE((of(s, "white") - Vec2(0.71 - 0.1825, 0.71)).norm(), 1e-12);
+}
+
+// The 1 at the apex, the 10 in the middle of the third row.
+TEST(TenBall, OneAndTenHaveTheirPlaces) {
+    std::set<std::string> second_rows;
+    for (const char* seed : {"1", "2", "3", "4", "5"}) {
+        const Scene s = rack(std::string("game = \"ten_ball\"\ngap = 0\nseed = ") + seed + "\n");
+        ASSERT_EQ(s.ball.size(), 10u);
+        EXPECT_EQ(touching_pairs(s, 2 * kR), 18);
+        EXPECT_EQ(ball_at(s, {0.635, 1.905}), "1");
+        EXPECT_EQ(ball_at(s, {0.635, 1.905 + 2 * std::sqrt(3.0) * kR}), "10");
+        second_rows.insert(ball_at(s, {0.6, 1.96}));
+    }
+    EXPECT_GT(second_rows.size(), 2u);
+}
+
+TEST(Rack, NineOnTheSpot) {
+    for (const char* keys : {"", "gap = 0.001\n", "jitter = 0\nangle_deg = 30\n", "angle_deg = -90\n"}) {
+        const Scene s = rack(std::string("game = \"nine_ball\"\nspot_ball = 9\n") + keys);
+        EXPECT_NEAR((at(s, 8) - Vec2(0.635, 1.905)).norm(), 0.0, 1e-15) << keys;
+        EXPECT_EQ(s.ball[8].id, "9");
+    }
+    const Scene one = rack("game = \"nine_ball\"\n");
+    EXPECT_EQ(at(one, 0), Vec2(0.635, 1.905));
+}
+
+// Turned about its place the rack keeps all distances; a quarter turn counter-clockwise takes the rows from +y to -x.
+TEST(Rack, PlaceAndAngle) {
+    const Scene s = rack("game = \"eight_ball\"\ngap = 0\nposition = [0.5, 0.7]\n"),
+                turned = rack("game = \"eight_ball\"\ngap = 0\nposition = [0.5, 0.7]\nangle_deg = 90\n");
+    EXPECT_EQ(ball_at(s, {0.5, 0.7}), ball_at(turned, {0.5, 0.7}));
+    for (std::size_t i = 0; i < 15; ++i) {
+        const Vec2 d = at(s, i) - Vec2(0.5, 0.7), e = at(turned, i) - Vec2(0.5, 0.7);
+        EXPECT_NEAR((e - Vec2(-d.y(), d.x())).norm(), 0.0, 1e-15);
+    }
+    EXPECT_EQ(touching_pairs(s, 2 * kR), 30);
+}
+
+TEST(Rack, RefusesWhatHasNoPlace) {
+    const auto error = [](const std::string& keys) { return carom::test::error_of("[rack]\n" + keys); };
+    EXPECT_EQ(error("game = \"nine_ball\"\nspot_ball = 10\n"),
+              "s.toml:3:13: rack.spot_ball = 10: the balls of this rack are 1 to 9; name one of them");
+    EXPECT_EQ(error("game = \"snooker\"\nposition = [0.5, 0.5]\n"),
+              "s.toml:3:12: rack.position moves a rack, and the balls of this game stand on spots of the "
+              "table; leave it out");
 }
 
 }  // namespace

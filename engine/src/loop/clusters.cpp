@@ -114,19 +114,21 @@ void Clusters::collect_at(int a, int b, double v_n) {
     }
 }
 
-long Clusters::resolve(double v_n, double mu_b) {
+long Clusters::resolve(double v_n, bool friction) {
     const BallParams& p = plan_.balls;
     const double e_b = plan_.ball_ball->reads_friction ? p.e_b : 1.0;
     if (plan_.clusters == ClusterModel::kRigid) return map_.rigid(members_, contacts_, p.e_b);
     const ClusterSettings settings{
         .R = balls_.radius(members_.front().ball),  // equal for all members
         .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
-        .mu_b = mu_b,
+        .mu_b = friction ? p.mu_b : 0.0,
         .e_b = e_b,
         .published_cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
         .epsilon = kClusterEpsilon,
-        .longest_step = mu_b > 0.0 ? kClusterFrictionStep : kClusterStep,
-        .integrate = plan_.contact_phase};
+        .longest_step = friction && p.ball_friction() ? kClusterFrictionStep : kClusterStep,
+        .integrate = plan_.contact_phase,
+        .mu_b_more = friction ? p.mu_b_more : 0.0,
+        .mu_b_fall = p.mu_b_fall};
     const long steps = map_.compliant(members_, contacts_, settings, v_n);
     // Friction and a wedge can press balls together without end: the cluster is then resolved as rigid.
     return steps < 0 ? map_.rigid(members_, contacts_, p.e_b) : steps;

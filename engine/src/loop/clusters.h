@@ -22,9 +22,9 @@ class Clusters {
 
     /// Replaces the velocities and spins of balls() by those after the impact.
     /// @param v_n   [m/s] the fastest approach
-    /// @param mu_b  [-] friction between the balls
+    /// @param friction  whether there is friction between the balls
     /// @return number of steps of the map
-    long resolve(double v_n, double mu_b);
+    long resolve(double v_n, bool friction);
 
     /// Number of balls that collect() has examined besides the two of the impact; used by tests.
     std::int64_t looks() const { return looks_; }

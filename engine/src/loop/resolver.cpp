@@ -147,7 +147,7 @@ bool Resolver::cluster(int a, int b, double v_n) {
     long steps;
     {
         const Stopwatch watch(kernel_ns_);
-        steps = clusters_.resolve(v_n, friction ? pair_friction(plan_, balls_, a, b) : 0.0);
+        steps = clusters_.resolve(v_n, friction);
     }
     if (cost_ != nullptr) {
         cost_->steps = steps;

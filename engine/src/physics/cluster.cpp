@@ -68,10 +68,10 @@ int law_exponent(double e_b) {
     return p;
 }
 
-kernel::HertzLaw law_of(const ClusterSettings& s) {
+kernel::HertzLaw law_of(const ClusterSettings& s, double V) {
     const int p = law_exponent(s.e_b);
     const double b = std::min(1.0, (1.0 - s.e_b * s.e_b) * 0.4 / (0.4 - 1.0 / (2.5 + p)));
-    return {1.0 - b, b, p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip};
+    return {1.0 - b, b, p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip, s.mu_b_more, s.mu_b_fall * V};
 }
 
 // The integration reads and writes four numbers at once. From the start of a cache line on, none of these lies across two:
@@ -153,8 +153,8 @@ long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<Cl
                                      contacts_.data(),
                                      on_cache_line(numbers_),
                                      places_.data()};
-    const long steps = settings.integrate(phase, law_of(settings), settings.longest_step, kClusterLookAhead,
-                                          kClusterTimeLimit);
+    const long steps = settings.integrate(phase, law_of(settings, V), settings.longest_step,
+                                          kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
     keep_energy(before);
     const double* y = motion_.data();

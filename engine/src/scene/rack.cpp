@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/splitmix64.h"
+#include "carom/engine/math.h"
 
 namespace carom {
 namespace {
@@ -16,6 +17,7 @@ namespace {
 std::vector<int> rows_of(const Rack& rack) {
     if (rack.game == RackGame::kThreeCushion) return {};
     if (rack.game == RackGame::kNineBall) return {1, 2, 3, 2, 1};
+    if (rack.game == RackGame::kTenBall) return {1, 2, 3, 4};
     if (rack.game == RackGame::kLine) return std::vector<int>(static_cast<std::size_t>(rack.count), 1);
     std::vector<int> rows(rack.game == RackGame::kTriangle ? static_cast<std::size_t>(rack.rows) : 5);
     std::iota(rows.begin(), rows.end(), 1);
@@ -46,18 +48,21 @@ std::vector<int> eight_ball_numbers(SplitMix64& random) {
     return numbers;
 }
 
-/// The 1 lies at the apex, the 9 in the middle, and the rest at random.
-std::vector<int> nine_ball_numbers(SplitMix64& random) {
-    std::vector<int> rest = {2, 3, 4, 5, 6, 7, 8};
-    shuffle(rest, random);
-    return {1, rest[0], rest[1], rest[2], 9, rest[3], rest[4], rest[5], rest[6]};
+/// The 1 lies at the apex, the last one, 9 or 10, in the middle of the third row, and the rest at random.
+std::vector<int> rotation_numbers(int last, SplitMix64& random) {
+    std::vector<int> numbers(static_cast<std::size_t>(last - 2));
+    std::iota(numbers.begin(), numbers.end(), 2);
+    shuffle(numbers, random);
+    numbers.insert(numbers.begin(), 1);
+    numbers.insert(numbers.begin() + 4, last);
+    return numbers;
 }
 
 std::vector<int> numbers_of(const Rack& rack, SplitMix64& random) {
     if (rack.game == RackGame::kEightBall) return eight_ball_numbers(random);
-    if (rack.game == RackGame::kNineBall) return nine_ball_numbers(random);
-    const std::vector<int> rows = rows_of(rack);
-    std::vector<int> out(static_cast<std::size_t>(std::accumulate(rows.begin(), rows.end(), 0)));
+    if (rack.game == RackGame::kNineBall) return rotation_numbers(9, random);
+    if (rack.game == RackGame::kTenBall) return rotation_numbers(10, random);
+    std::vector<int> out(static_cast<std::size_t>(balls_of(rack)));
     std::iota(out.begin(), out.end(), 1);
     return out;
 }
@@ -132,13 +137,31 @@ void add_jitter(std::vector<Vec2>& places, const Rack& rack, double R, SplitMix6
 
 }  // namespace
 
+int balls_of(const Rack& rack) {
+    const std::vector<int> rows = rows_of(rack);
+    return std::accumulate(rows.begin(), rows.end(), 0);
+}
+
 std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R) {
-    Vec2 apex = foot_spot(table);
+    const Vec2 place = rack.position.value_or(foot_spot(table));
+    Vec2 apex = place;
     if (rack.game == RackGame::kSnooker) apex.y() += 2.0 * R + rack.gap;
     SplitMix64 random(rack.seed);
     const std::vector<int> numbers = numbers_of(rack, random);
     std::vector<Vec2> slots = slots_of(rack, apex, R);
+    if (rack.spot_ball) {
+        const auto there = std::find(numbers.begin(), numbers.end(), *rack.spot_ball) - numbers.begin();
+        apex = place - (slots[static_cast<std::size_t>(there)] - place);
+        slots = slots_of(rack, apex, R);
+    }
     if (rack.jitter > 0.0) add_jitter(slots, rack, R, random);
+    if (rack.angle_deg != 0.0) {
+        const auto [sin, cos] = sin_cos_deg(rack.angle_deg);
+        for (Vec2& slot : slots) {
+            const Vec2 d = slot - place;
+            slot = place + Vec2(cos * d.x() - sin * d.y(), sin * d.x() + cos * d.y());
+        }
+    }
     std::vector<RackedBall> out(slots.size());
     for (std::size_t i = 0; i < slots.size(); ++i)
         out[numbers[i] - 1] = {std::to_string(numbers[i]), slots[i]};

@@ -13,11 +13,15 @@ struct RackedBall {
     Vec2 position;
 };
 
+/// How many numbered balls a rack has.
+int balls_of(const Rack& rack);
+
 /// Places a rack, ordered by number; colours that have a spot of their own come last.
 ///
 /// @param R  ball radius [m]
 ///
-/// The apex stands on the foot spot (snooker: behind the pink, a diameter and a gap away), rows towards +y.
+/// The apex, or rack.spot_ball, which has to be in the rack, stands at rack.position, or else on the foot spot (snooker: behind
+/// the pink, a diameter and a gap away). Rows run towards +y, turned by rack.angle_deg about that ball.
 /// The colours of snooker and the balls of three-cushion stand on their spots, whose distances (rack.cpp) are scaled with
 /// the length of the table; they do not jitter.
 ///

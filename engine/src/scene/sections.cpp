@@ -89,10 +89,19 @@ void read_rack(const Section& top, Scene& scene) {
     if (s->has("rows") && rack.game != RackGame::kTriangle)
         s->fail("rows", "rack.rows belongs to the game triangle; leave it out or set game = \"triangle\"");
     const bool spots = rack.game == RackGame::kSnooker || rack.game == RackGame::kThreeCushion;
+    for (const char* key : {"position", "spot_ball", "angle_deg"})
+        if (spots && s->has(key))
+            s->fail(
+                key,
+                "rack.{} moves a rack, and the balls of this game stand on spots of the table; leave it out",
+                key);
     if (spots && !(scene.table.length > 0.0)) {
         s->fail("game",
                 "this layout puts balls on the spots of a table, and the cloth is endless; choose a table");
     }
+    if (rack.spot_ball && *rack.spot_ball > balls_of(rack))
+        s->fail("spot_ball", "rack.spot_ball = {}: the balls of this rack are 1 to {}; name one of them",
+                *rack.spot_ball, balls_of(rack));
     for (const RackedBall& ball : make_rack(rack, scene.table, scene.balls.R)) {
         if (scene.ball.size() == kMaxBalls)
             s->fail(s->where(), "more than {} balls; leave some out", kMaxBalls);

@@ -58,10 +58,21 @@ struct Work {
 // HertzLaw in lanes.
 struct Law {
     Four a, b, minus_mu_b, mu_s, epsilon2, cloth_sign;
-    Four stiffest;  // -mu_b / epsilon
+    Four stiffest;  // -mu_b / epsilon at the largest mu_b
+    Four minus_mu_b_more, fall;
     int p;
-    bool cloth;
+    bool cloth, falls;  // falls: mu_b depends on the slip
 };
+
+// e^-x for x >= 0, as the 64th power of a Taylor series: within 4e-8 of it (relative) up to x = 10. From 64 on it stays at e^-64.
+CAROM_INLINE Four falling_exponential(Four x) {
+    const Four part = (1.0 / 64.0) * x, one = broadcast<4>(1.0), t = select(part < one, part, one);
+    constexpr double kFactors[] = {-1.0 / 120.0, 1.0 / 24.0, -1.0 / 6.0, 0.5, -1.0, 1.0};
+    Four power = broadcast<4>(1.0 / 720.0);
+    for (const double factor : kFactors) power = power * t + broadcast<4>(factor);
+    for (int doubling = 0; doubling < 6; ++doubling) power = power * power;
+    return power;
+}
 
 // The next `count` numbers of the scratch memory, set to zero.
 CAROM_INLINE double* take(double*& from, int count) {
@@ -173,7 +184,10 @@ CAROM_INLINE void add_forces(const Work& w, const Law& law, const double* y, con
     // t = n x z = (n_y, -n_x); s_x = (v_i - v_j) . t - R (w_iz + w_jz), s_z = R (w_i + w_j) . t.
     const Four s_x = motion[0] * ny - motion[2] * nx - turning;
     const Four s_z = motion[1] * ny - motion[3] * nx;
-    const Four k = law.minus_mu_b * F / square_root(s_x * s_x + s_z * s_z + law.epsilon2);
+    const Four slip = square_root(s_x * s_x + s_z * s_z + law.epsilon2);
+    Four minus_mu_b = law.minus_mu_b;
+    if (law.falls) minus_mu_b = minus_mu_b + law.minus_mu_b_more * falling_exponential(law.fall * slip);
+    const Four k = minus_mu_b * F / slip;
     const Four f_x = k * s_x, f_z = k * s_z;
     const Four twist = 2.5 * f_z;
     Four rows[4] = {f_x * ny - F * nx, twist * ny, -F * ny - f_x * nx, -twist * nx};
@@ -321,9 +335,12 @@ long contact_phase(const ContactPhase& phase, const HertzLaw& law, double longes
                     broadcast<4>(law.mu_s),
                     broadcast<4>(law.epsilon * law.epsilon),
                     broadcast<4>(law.published_slip_sign ? 1.0 : -1.0),
-                    broadcast<4>(-law.mu_b / law.epsilon),
+                    broadcast<4>(-(law.mu_b + law.mu_b_more) / law.epsilon),
+                    broadcast<4>(-law.mu_b_more),
+                    broadcast<4>(law.mu_b_fall),
                     law.p,
-                    law.mu_s > 0.0};
+                    law.mu_s > 0.0,
+                    law.mu_b_more > 0.0};
     rates(w, w.y, w.rate[0]);
     long steps = 0;
     double time = 0.0;

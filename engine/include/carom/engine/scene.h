@@ -146,9 +146,17 @@ inline constexpr Field<BallStart> kBallStartFields[] = {
                             {.shape = "[wx, wy, wz]"}),
 };
 
-enum class RackGame : std::uint8_t { kEightBall, kNineBall, kSnooker, kThreeCushion, kTriangle, kLine };
+enum class RackGame : std::uint8_t {
+    kEightBall,
+    kNineBall,
+    kTenBall,
+    kSnooker,
+    kThreeCushion,
+    kTriangle,
+    kLine
+};
 constexpr auto names_of(RackGame) {
-    return std::array{"eight_ball", "nine_ball", "snooker", "three_cushion", "triangle", "line"};
+    return std::array{"eight_ball", "nine_ball", "ten_ball", "snooker", "three_cushion", "triangle", "line"};
 }
 
 /// Balls that a file does not place one by one.
@@ -159,6 +167,9 @@ struct Rack {
     std::uint64_t seed = 1;
     int count = 5;
     int rows = 5;
+    double angle_deg = 0.0;                       ///< counter-clockwise; 0: rows towards +y
+    std::optional<int> spot_ball = std::nullopt;  ///< the ball that stands at the position; nothing: the apex
+    std::optional<Vec2> position = std::nullopt;  ///< nothing: the foot spot
 };
 inline constexpr Field<Rack> kRackFields[] = {
     field<&Rack::game>("game", "which balls stand where"),
@@ -168,6 +179,14 @@ inline constexpr Field<Rack> kRackFields[] = {
     field<&Rack::seed>("seed", at_least(0.0, kAnyInteger), "of the random numbers"),
     field<&Rack::count>("count", at_least(1.0, kMaxBalls), "balls of a `line`"),
     field<&Rack::rows>("rows", at_least(1.0, kMaxRackRows), "rows of a `triangle`"),
+    field<&Rack::position>("position", kCoordinate, "where the rack stands",
+                           {.shape = "[x, y]", .standard = "the foot spot"}),
+    field<&Rack::spot_ball>(
+        "spot_ball", at_least(1.0, kMaxBalls),
+        "number of the ball that stands there: 9 in a nine-ball rack with the 9 on the spot",
+        {.standard = "the apex"}),
+    field<&Rack::angle_deg>("angle_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"),
+                            "by which the rack is turned about that ball; 0 has its rows towards +y"),
 };
 
 /// What strikes the ball. Its defaults are those of a scene file with an empty [cue], and of the C interface.

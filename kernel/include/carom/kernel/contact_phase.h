@@ -15,13 +15,16 @@ struct HertzContact {
 };
 
 /// F = d^1.5 while a contact is loaded for the first time, d^1.5 (a + b (d / d_m)^p) below its largest
-/// overlap d_m; friction along the slip s with |s| regularised to sqrt(s^2 + epsilon^2).
+/// overlap d_m; friction along the slip s with |s| regularised to sqrt(s^2 + epsilon^2). At every instant each contact has the
+/// friction of its own slip, mu_b + mu_b_more exp(-mu_b_fall |s|).
 struct HertzLaw {
     double a, b;
     int p;  ///< a power of 2
     double mu_b, mu_s;
     double epsilon;            ///< [V] > 0
     bool published_slip_sign;  ///< of the cloth slip
+    double mu_b_more = 0.0;    ///< 0: mu_b at every slip
+    double mu_b_fall = 0.0;    ///< [1/V]
 };
 
 /// What one call reads and writes. `numbers` and `places` are scratch memory of contact_phase_numbers() and
