@@ -77,7 +77,7 @@ double nearest_end(const Table& t, const Vec2& p) {
 }
 
 TEST(PocketTables, RailsAndFacingsMeetTheirJaws) {
-    for (const char* preset : {"seven_foot", "nine_foot"}) {
+    for (const char* preset : {"seven_foot", "seven_foot_bar", "eight_foot", "nine_foot"}) {
         const Table t = make_table(preset);
         ASSERT_EQ(t.cushions.size(), 18u);
         ASSERT_EQ(t.jaws.size(), 12u);
@@ -136,8 +136,27 @@ TEST(NineFoot, MouthsAndAnglesAreThoseOfTheSpecification) {
     EXPECT_LE(nose, 0.645);
 }
 
+// The surface is two inches longer than that of seven_foot, the corners wider, the sides narrower.
+TEST(SevenFootBar, HasItsSurfaceAndMouths) {
+    const Table t = make_table("seven_foot_bar");
+    EXPECT_EQ(t.preset, "seven_foot_bar");
+    EXPECT_NEAR(t.width, 1.016, 1e-15);
+    EXPECT_NEAR(t.length, 2.032, 1e-15);
+    const auto on_axis = [](const carom::Cushion& c, int axis) {
+        const double s = -c.from[axis] / (c.to[axis] - c.from[axis]);
+        return Vec2(c.from + s * (c.to - c.from));
+    };
+    EXPECT_NEAR((on_axis(t.cushions[0], 1) - on_axis(t.cushions[1], 0)).norm(), 4.875 * 0.0254, 1e-14);
+    EXPECT_NEAR((on_axis(t.cushions[3], 0) - on_axis(t.cushions[4], 0)).norm(), 4.75 * 0.0254, 1e-14);
+    // The shelf: from the line of the points to where a ball falls.
+    const Vec2 mouth = (on_axis(t.cushions[0], 1) + on_axis(t.cushions[1], 0)) / 2.0;
+    const double shelf = (mouth - t.pockets[0].center).norm() - t.pockets[0].radius;
+    EXPECT_GT(shelf, 0.041);
+    EXPECT_LT(shelf, 0.048);
+}
+
 TEST(PocketTables, AreTheirOwnMirrorImages) {
-    for (const char* preset : {"seven_foot", "nine_foot"}) {
+    for (const char* preset : {"seven_foot", "seven_foot_bar", "eight_foot", "nine_foot"}) {
         const Table t = make_table(preset);
         for (const carom::Cushion& c : t.cushions) {
             for (const Vec2& end : {c.from, c.to}) {
@@ -172,7 +191,7 @@ TEST(PocketTables, OrderIsClockwiseFromTheOrigin) {
 }
 
 TEST(PocketTables, ABallFitsIntoEveryPocket) {
-    for (const char* preset : {"seven_foot", "nine_foot"}) {
+    for (const char* preset : {"seven_foot", "seven_foot_bar", "eight_foot", "nine_foot"}) {
         const Table t = make_table(preset);
         for (const carom::Pocket& p : t.pockets) {
             // Straight from the middle of the table (or of its half) to where the pocket takes the ball.
@@ -193,6 +212,7 @@ TEST(PocketTables, ABallFitsIntoEveryPocket) {
 
 TEST(CaromTable, HasFourRailsAndNothingElse) {
     const Table t = make_table("carom");
+    EXPECT_TRUE(make_table("carom_ten_foot") == t);
     EXPECT_EQ(t.width, 1.42);
     EXPECT_EQ(t.length, 2.84);
     ASSERT_EQ(t.cushions.size(), 4u);

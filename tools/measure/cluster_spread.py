@@ -24,6 +24,8 @@ GAPS = [0.0] + [10.0**k for k in range(-12, -3)]
 STOP = 0.16  # s: about 0.05 s after the cue ball has met the rack
 SCENE = """[table]
 preset = "nine_foot"
+[balls]
+preset = "pool_classic"
 [rack]
 game = "eight_ball"
 gap = {gap!r}
@@ -32,6 +34,7 @@ seed = 1
 id = "cue"
 position = [0.635, 0.50]
 [cue]
+preset = "lossless"
 ball = "cue"
 speed = 9.0
 aim_deg = 90.0

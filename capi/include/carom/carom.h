@@ -89,8 +89,8 @@ typedef struct carom_scene carom_scene;
 CAROM_API carom_status carom_scene_read(const char* path, carom_scene** scene);
 CAROM_API carom_status carom_scene_parse(const char* text, const char* name, carom_scene** scene);
 
-/* Creates a scene without balls on it. table: "seven_foot", "eight_foot", "nine_foot", "snooker", "carom", or "" for
- * an unbounded cloth. balls: "pool", "snooker" or "carom", with the cushion model of their game, or these with
+/* Creates a scene without balls on it. table: "nine_foot", ... (docs/scene_format.md), or "" for an
+ * unbounded cloth. balls: "pool", "snooker" or "carom", with the cushion model of their game, or these with
  * "_classic" behind the name. */
 CAROM_API carom_status carom_scene_create(const char* table, const char* balls, carom_scene** scene);
 CAROM_API void carom_scene_free(carom_scene* scene); /* NULL is allowed */

@@ -83,6 +83,21 @@ PocketTable eight_foot() {
     return t;
 }
 
+/// Coin-operated bar table, called seven-foot in America: playing surface 80 x 40 in (Valley, Diamond), mouths of Valley's (corner
+/// 4 7/8, side 4 3/4 in), angles of the BCA (corner 142, side 103 degrees). Carried over from the seven-foot table as for the
+/// nine-foot one; they give shelves of 41.6 mm in the corners (BCA: 41 to 48 mm) and 4 mm at the sides.
+PocketTable bar_table() {
+    PocketTable t = seven_foot();
+    t.length = 80.0 * 0.0254;
+    t.width = 40.0 * 0.0254;
+    t.corner_mouth = 4.875 * 0.0254;
+    t.corner_angle = 142.0 - 135.0;
+    t.side_mouth = 4.75 * 0.0254;
+    t.side_angle = 103.0 - 90.0;
+    t.side_run = tan_deg(t.side_angle);
+    return t;
+}
+
 /// Twelve-foot snooker table. Playing surface 3.569 x 1.778 m (11 ft 8 1/2 in x 5 ft 10 in, rules of the
 /// WPBSA, section 1). Nose height 7/5 of the ball's radius (Mathavan, Jackson, Parkin 2010). The pocket
 /// templates of the WPBSA are not published: mouths of 89 and 105 mm are the figures commonly quoted
@@ -206,10 +221,11 @@ Vec2 foot_spot(const Table& table) {
 
 Table make_table(std::string_view preset) {
     if (preset == "seven_foot") return build("seven_foot", seven_foot());
+    if (preset == "seven_foot_bar") return build("seven_foot_bar", bar_table());
     if (preset == "nine_foot") return build("nine_foot", nine_foot());
     if (preset == "eight_foot") return build("eight_foot", eight_foot());
     if (preset == "snooker") return build("snooker", snooker_table());
-    if (preset == "carom") return carom_table();
+    if (preset == "carom" || preset == "carom_ten_foot") return carom_table();
     throw std::invalid_argument(fmt::format("unknown table preset \"{}\"", preset));
 }
 

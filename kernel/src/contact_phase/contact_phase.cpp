@@ -55,13 +55,14 @@ struct Work {
     int count;      // contacts in the list, with those that fill the last register
 };
 
-// HertzLaw in lanes.
+// HertzLaw in lanes. kFalls: the friction between balls depends on the slip.
+template <bool kFalls>
 struct Law {
     Four a, b, minus_mu_b, mu_s, epsilon2, cloth_sign;
     Four stiffest;  // -mu_b / epsilon at the largest mu_b
     Four minus_mu_b_more, fall;
     int p;
-    bool cloth, falls;  // falls: mu_b depends on the slip
+    bool cloth;
 };
 
 // e^-x for x >= 0, as the 64th power of a Taylor series: within 4e-8 of it (relative) up to x = 10. From 64 on it stays at e^-64.
@@ -135,7 +136,8 @@ CAROM_INLINE void rates(const Work& w, const double* y, double* rate) {
     }
 }
 
-CAROM_INLINE Four normal_force(const Law& law, Four d, Four memory) {
+template <bool kFalls>
+CAROM_INLINE Four normal_force(const Law<kFalls>& law, Four d, Four memory) {
     const Four loading = d * square_root(d);
     Four share = d / memory;  // a lane whose memory is 0 does not use it
     for (int p = law.p; p > 1; p /= 2) share = share * share;
@@ -167,8 +169,9 @@ CAROM_INLINE void list_overlaps(Work& w, const double* d) {
 }
 
 // Adds the forces of four contacts of the list to the slopes of their balls.
-CAROM_INLINE void add_forces(const Work& w, const Law& law, const double* y, const double* d, int first,
-                             double* dy) {
+template <bool kFalls>
+CAROM_INLINE void add_forces(const Work& w, const Law<kFalls>& law, const double* y, const double* d,
+                             int first, double* dy) {
     const int *c = w.active + first, *i = w.active_i + first, *j = w.active_j + first;
     const Four nx = load<4>(w.active_nx + first), ny = load<4>(w.active_ny + first);
     Four motion[4];
@@ -186,7 +189,7 @@ CAROM_INLINE void add_forces(const Work& w, const Law& law, const double* y, con
     const Four s_z = motion[1] * ny - motion[3] * nx;
     const Four slip = square_root(s_x * s_x + s_z * s_z + law.epsilon2);
     Four minus_mu_b = law.minus_mu_b;
-    if (law.falls) minus_mu_b = minus_mu_b + law.minus_mu_b_more * falling_exponential(law.fall * slip);
+    if (kFalls) minus_mu_b = minus_mu_b + law.minus_mu_b_more * falling_exponential(law.fall * slip);
     const Four k = minus_mu_b * F / slip;
     const Four f_x = k * s_x, f_z = k * s_z;
     const Four twist = 2.5 * f_z;
@@ -205,7 +208,8 @@ CAROM_INLINE void add_forces(const Work& w, const Law& law, const double* y, con
 }
 
 // Adds the friction of the cloth under the balls that are pressed down.
-CAROM_INLINE void add_cloth(const Work& w, const Law& law, const double* y, double* dy) {
+template <bool kFalls>
+CAROM_INLINE void add_cloth(const Work& w, const Law<kFalls>& law, const double* y, double* dy) {
     const Four zero = broadcast<4>(0.0);
     for (int b = 0; b < kRow * w.rows; b += 4 * kRow) {
         const double* vertical = dy + b + kLift;
@@ -230,7 +234,8 @@ CAROM_INLINE void add_cloth(const Work& w, const Law& law, const double* y, doub
 }
 
 // Adds the right-hand side to dy, in units of V and L: forces are d^1.5, masses 1.
-CAROM_INLINE void forces(Work& w, const Law& law, const double* y, const double* d, double* dy) {
+template <bool kFalls>
+CAROM_INLINE void forces(Work& w, const Law<kFalls>& law, const double* y, const double* d, double* dy) {
     list_overlaps(w, d);
     for (int n = 0; n < w.count; n += 4) add_forces(w, law, y, d, n, dy);
     if (law.cloth) add_cloth(w, law, y, dy);
@@ -271,7 +276,8 @@ CAROM_INLINE double stable_step(const Work& w, const double* dy, double longest)
 
 // One Runge-Kutta step; returns its length. At entry rate[0] belongs to the state; at exit d_stage is the overlap
 // before the step.
-CAROM_INLINE double step(Work& w, const Law& law, double longest) {
+template <bool kFalls>
+CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double longest) {
     forces(w, law, w.y, w.d, w.dy[0]);
     const double h = stable_step(w, w.dy[0], longest);
     const double share[kStages] = {0.0, 0.5 * h, 0.5 * h, h};
@@ -322,25 +328,21 @@ CAROM_INLINE bool finished(const Work& w, const double* rate, double look_ahead)
     return true;
 }
 
-}  // namespace
-
-namespace CAROM_ISA_NAMESPACE {
-
-long contact_phase(const ContactPhase& phase, const HertzLaw& law, double longest_step, double look_ahead,
-                   double time_limit) noexcept {
+template <bool kFalls>
+long integrate(const ContactPhase& phase, const HertzLaw& law, double longest_step, double look_ahead,
+               double time_limit) {
     Work w = lay_out(phase);
-    const Law lanes{broadcast<4>(law.a),
-                    broadcast<4>(law.b),
-                    broadcast<4>(-law.mu_b),
-                    broadcast<4>(law.mu_s),
-                    broadcast<4>(law.epsilon * law.epsilon),
-                    broadcast<4>(law.published_slip_sign ? 1.0 : -1.0),
-                    broadcast<4>(-(law.mu_b + law.mu_b_more) / law.epsilon),
-                    broadcast<4>(-law.mu_b_more),
-                    broadcast<4>(law.mu_b_fall),
-                    law.p,
-                    law.mu_s > 0.0,
-                    law.mu_b_more > 0.0};
+    const Law<kFalls> lanes{broadcast<4>(law.a),
+                            broadcast<4>(law.b),
+                            broadcast<4>(-law.mu_b),
+                            broadcast<4>(law.mu_s),
+                            broadcast<4>(law.epsilon * law.epsilon),
+                            broadcast<4>(law.published_slip_sign ? 1.0 : -1.0),
+                            broadcast<4>(-(law.mu_b + law.mu_b_more) / law.epsilon),
+                            broadcast<4>(-law.mu_b_more),
+                            broadcast<4>(law.mu_b_fall),
+                            law.p,
+                            law.mu_s > 0.0};
     rates(w, w.y, w.rate[0]);
     long steps = 0;
     double time = 0.0;
@@ -358,6 +360,16 @@ long contact_phase(const ContactPhase& phase, const HertzLaw& law, double longes
         for (int k = 0; k < kPerBall; ++k) phase.motion[kPerBall * b + k] = w.y[kRow * b + kPlace[k]];
     }
     return steps;
+}
+
+}  // namespace
+
+namespace CAROM_ISA_NAMESPACE {
+
+long contact_phase(const ContactPhase& phase, const HertzLaw& law, double longest_step, double look_ahead,
+                   double time_limit) noexcept {
+    return law.mu_b_more > 0.0 ? integrate<true>(phase, law, longest_step, look_ahead, time_limit)
+                               : integrate<false>(phase, law, longest_step, look_ahead, time_limit);
 }
 
 }  // namespace CAROM_ISA_NAMESPACE
