@@ -1,5 +1,4 @@
 // Every rule of the scene format: bad scenes and their exact messages, defaults, limits.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -253,83 +252,6 @@ camera = "top"
     EXPECT_EQ(s.render.fps, 25.0);
     EXPECT_EQ(s.render.width, 640);
     EXPECT_EQ(s.render.height, 480);
-}
-
-// The measured coefficients, and the cushion model of the game.
-TEST(Scenes, BallPresets) {
-    const Scene snooker = parse_scene("[balls]\npreset = \"snooker\"\n" + kBall, "s.toml");
-    EXPECT_EQ(snooker.balls.R, 0.02625);
-    EXPECT_EQ(snooker.balls.m, 0.140);
-    EXPECT_EQ(snooker.balls.mu_r, 0.0128);
-    EXPECT_EQ(snooker.balls.e_c, 0.98);
-    EXPECT_EQ(snooker.balls.f_c, 0.14);
-    EXPECT_STREQ(name(snooker.physics.cushion), "mathavan_2010");
-    const Scene carom = parse_scene("[balls]\npreset = \"carom\"\nmass = 0.2\n" + kBall, "s.toml");
-    EXPECT_EQ(carom.balls.R, 0.03075);
-    EXPECT_EQ(carom.balls.m, 0.2);
-    EXPECT_EQ(carom.balls.mu_r, 0.0045);
-    EXPECT_EQ(carom.balls.e_c, 0.87);
-    EXPECT_EQ(carom.balls.f_c, 0.26);
-    EXPECT_STREQ(name(carom.physics.cushion), "han_2005");
-    EXPECT_EQ(carom::make_ball_params("carom").m, 0.21);
-    EXPECT_THROW(carom::make_ball_params("marble"), std::invalid_argument);
-}
-
-TEST(Scenes, WhatIsWrittenComesBeforeThePreset) {
-    const Scene s = parse_scene(
-        "[balls]\npreset = \"snooker\"\nmu_r = 0.02\ne_c = 0.9\n[physics]\ncushion = \"han_2005\"\n" + kBall,
-        "s.toml");
-    EXPECT_EQ(s.balls.mu_r, 0.02);
-    EXPECT_EQ(s.balls.e_c, 0.9);
-    EXPECT_STREQ(name(s.physics.cushion), "han_2005");
-}
-
-// The coefficients of before there were measured ones: sizes differ, the rest is one set.
-TEST(Scenes, ClassicPresets) {
-    for (const char* game : {"pool", "snooker", "carom"}) {
-        const Scene s =
-            parse_scene(fmt::format("[balls]\npreset = \"{}_classic\"\n", game) + kBall, "s.toml");
-        const carom::BallParams measured = carom::make_ball_params(game), &p = s.balls;
-        EXPECT_EQ((std::vector<double>{p.R, p.m}), (std::vector<double>{measured.R, measured.m}));
-        EXPECT_EQ((std::vector<double>{p.mu_s, p.mu_r, p.mu_sp, p.mu_b, p.mu_b_more, p.e_b, p.e_c, p.f_c}),
-                  (std::vector<double>{0.2, 0.01, 0.0127, 0.05, 0.0, 0.95, 0.85, 0.2}));
-        EXPECT_STREQ(name(s.physics.cushion), "han_2005");
-    }
-}
-
-// One number takes the place of the fit that the preset brings; a fit takes the place of the preset's number.
-TEST(Scenes, OneFrictionReplacesTheOtherOfThePreset) {
-    const Scene number = parse_scene("[balls]\nmu_b = 0.05\n" + kBall, "s.toml");
-    EXPECT_EQ(number.balls.mu_b, 0.05);
-    EXPECT_EQ(number.balls.mu_b_more, 0.0);
-    EXPECT_EQ(number.balls.mu_b_fall, 0.0);
-    const Scene fit =
-        parse_scene("[balls]\npreset = \"carom\"\nmu_b_fit = [0.01, 0.1, 1.0]\n" + kBall, "s.toml");
-    EXPECT_EQ(fit.balls.mu_b, 0.01);
-    EXPECT_EQ(fit.balls.mu_b_more, 0.1);
-    EXPECT_EQ(fit.balls.mu_b_fall, 1.0);
-}
-
-TEST(Scenes, ClothsByName) {
-    const auto mu_r = [](const std::string& text) { return parse_scene(text + kBall, "s.toml").balls.mu_r; };
-    EXPECT_EQ(mu_r("[table]\ncloth = \"club\"\n"), 0.01);
-    EXPECT_EQ(mu_r("[table]\ncloth = \"tournament\"\n"), 0.0075);
-    EXPECT_EQ(mu_r("[table]\npreset = \"carom\"\ncloth = \"match_heated\"\n"), 0.0045);
-    EXPECT_EQ(mu_r("[table]\ncushion = []\ncloth = \"tournament\"\n"), 0.0075);
-    EXPECT_EQ(mu_r("[table]\ncloth = \"tournament\"\n[balls]\nmu_r = 0.02\n"), 0.02);
-    EXPECT_EQ(mu_r("[table]\ncloth = \"tournament\"\n[balls]\npreset = \"snooker\"\n"), 0.0075);
-}
-
-TEST(Scenes, CuesByKind) {
-    const auto cue = [](const std::string& text) {
-        return *parse_scene(kBall + "[cue]\n" + text, "s.toml").cue;
-    };
-    EXPECT_EQ(cue("preset = \"plain\"").end_mass, 0.00844);
-    EXPECT_EQ(cue("preset = \"break\"").restitution, 0.84);
-    EXPECT_EQ(cue("preset = \"lossless\"").restitution, 1.0);
-    const carom::Cue own = cue("mass = 0.5\npreset = \"plain\"\nrestitution = 0.7");
-    EXPECT_EQ((std::vector<double>{own.mass, own.end_mass, own.restitution}),
-              (std::vector<double>{0.5, 0.00844, 0.7}));
 }
 
 // The rounding of 0.5 + 0.05715 is far below the tolerance; 1e-9 m is far above it.

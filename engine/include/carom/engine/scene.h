@@ -101,7 +101,8 @@ inline constexpr Field<BallParams> kBallFields[] = {
     {{"mu_b_fit",
       Key::Kind::kNumbers,
       kFriction,
-      "ball-ball friction a + b exp(-c u) at the slip u in m/s before the impact; `[0.009951, 0.108, 1.088]` "
+      "ball-ball friction a + b exp(-c u) at the slip u in m/s, in an impact of two balls the slip before "
+      "it; `[0.009951, 0.108, 1.088]` "
       "is the fit of Alciatore's TP A.14",
       {.shape = "[a, b, c] for a + b exp(-c u)", .files = Files::kScene, .instead_of = "mu_b"},
       true,
@@ -123,7 +124,7 @@ inline constexpr Field<BallParams> kBallFields[] = {
 
 /// Friction between two balls whose surfaces slip by `slip` [m/s] at the contact. Source of the form: D.
 /// Alciatore, Technical Proof A.14: a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact takes it
-/// once, at the slip before it.
+/// once, at the slip before it; in a compliant cluster every contact has that of its own slip at every instant.
 double ball_friction(const BallParams& balls, double slip);
 
 /// A ball at the start.
