@@ -1,4 +1,4 @@
-# cmake --install: libraries, headers, the CMake package and the pkg-config files. docs/embedding.md shows their use.
+# cmake --install: libraries, headers, the CMake package and the pkg-config files. docs/guide/embedding.md shows their use.
 include(CMakePackageConfigHelpers)
 
 set(carom_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/carom)

@@ -2,7 +2,7 @@
 // stick) the arithmetic of the published march takes over, eight lanes at once and with the same bits. A result
 // depends on its own impact alone and has the same bits on every instruction set; it has the step count of the
 // published march, or one beside it where the last step sits on a rounding tie, and differs from it by at most about
-// 1e-10 of the approach speed at N up to 1000 (docs/kernel.md).
+// 1e-10 of the approach speed at N up to 1000 (docs/lab/2026-11-ladder.md).
 #pragma once
 
 #include "ladder/batch_arrays.h"

@@ -1,5 +1,5 @@
 // s = (x, z) is the slip between the balls and u = (a, b) the slip of the active ball, which is pressed on the cloth,
-// as in docs/kernel_tolerance.md. The independent variable is q, with dp = |s| |u| dq for the normal impulse p per
+// as in docs/design/impact_kernel.md. The independent variable is q, with dp = |s| |u| dq for the normal impulse p per
 // unit mass: in q neither the end of the slip (|s| -> 0) nor a cloth slip that passes close to zero is singular. With
 // ' = d/dq,
 //

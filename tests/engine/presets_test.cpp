@@ -1,5 +1,5 @@
 // Presets of balls, cloths and cues: what they set, what a file overrides, and how they do beside what was measured on real
-// tables (docs/physics.md, "Where the numbers come from"), the known misses of the models included.
+// tables (docs/reference/physics.md, "Where the numbers come from"), the known misses of the models included.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// docs/scene_format.md and docs/scene.schema.json against the reader: the same keys, and the defaults that
+// docs/reference/scene_format.md and docs/reference/scene.schema.json against the reader: the same keys, and the defaults that
 // they state are those that the reader takes.
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ struct Row {
 // The table rows of the document under each heading "## [name]" or "## [[name]]".
 std::map<std::string, std::vector<Row>> rows_of_document() {
     std::map<std::string, std::vector<Row>> rows;
-    for (auto& [heading, list] : test::table_rows(test::read_source("docs/scene_format.md"))) {
+    for (auto& [heading, list] : test::table_rows(test::read_source("docs/reference/scene_format.md"))) {
         std::string section;
         for (const char c : heading)
             if (c != '[' && c != ']') section += c;
@@ -198,7 +198,7 @@ std::set<std::string> choices_of_reader(const std::string& section, const std::s
 // The JSON Schema: the same keys as the reader, every default and every choice accepted, and all scenes
 // described by it.
 TEST(SceneSchema, HasTheKeysDefaultsAndChoicesOfTheReader) {
-    const Json schema = Json::parse(test::read_source("docs/scene.schema.json"));
+    const Json schema = Json::parse(test::read_source("docs/reference/scene.schema.json"));
     for (const Place& place : kSections) {
         std::string name = place.name;
         Json object = schema.at("properties");
@@ -293,7 +293,7 @@ void expect_range(const std::string& head, const std::string& key, const Json& r
 }
 
 TEST(SceneSchema, RangesAreThoseOfTheReader) {
-    const Json schema = Json::parse(test::read_source("docs/scene.schema.json"));
+    const Json schema = Json::parse(test::read_source("docs/reference/scene.schema.json"));
     int numbers = 0, arrays = 0;
     for (const Place& place : kSections) {
         const std::string name = place.name;

@@ -125,7 +125,7 @@ void collect_keys(const nlohmann::json& node, std::set<std::string>& keys) {
 
 // Guards against a key that is added to the format and forgotten here.
 TEST(SceneText, WritesEveryKeyOfTheFormat) {
-    std::ifstream file(CAROM_SOURCE_DIR "/docs/scene.schema.json");
+    std::ifstream file(CAROM_SOURCE_DIR "/docs/reference/scene.schema.json");
     std::set<std::string> keys;
     collect_keys(nlohmann::json::parse(file), keys);
     ASSERT_GE(keys.size(), 40u);

@@ -37,7 +37,7 @@ std::vector<HardImpact> impacts_for(ClothSlip slip) {
     return list;
 }
 
-// The vertical slip of H31 with mu_b = 1 as published is beyond where the model is stable (docs/kernel_tolerance.md).
+// The vertical slip of H31 with mu_b = 1 as published is beyond where the model is stable (docs/design/impact_kernel.md).
 bool has_a_stable_solution(const HardImpact& i) {
     return i.params.cloth_slip == ClothSlip::kConsistent || i.params.mu_b <= 0.3;
 }

@@ -18,8 +18,8 @@ using Json = nlohmann::json;
 constexpr const char* kStale = " is stale; run tools/measure/renew_formats.py";
 
 TEST(Formats, TheSchemaOfScenesIsThatOfTheTables) {
-    EXPECT_TRUE(test::read_source("docs/scene.schema.json") == scene_schema())
-        << "docs/scene.schema.json" << kStale;
+    EXPECT_TRUE(test::read_source("docs/reference/scene.schema.json") == scene_schema())
+        << "docs/reference/scene.schema.json" << kStale;
 }
 
 TEST(Formats, TheSchemaOfRecordsHasThePartsOfTheTables) {
@@ -32,12 +32,12 @@ TEST(Formats, TheSchemaOfRecordsHasThePartsOfTheTables) {
 }
 
 TEST(Formats, ThePageOfSceneFilesHasTheTables) {
-    const std::string page = test::read_source("docs/scene_format.md"), all = scene_format();
+    const std::string page = test::read_source("docs/reference/scene_format.md"), all = scene_format();
     const std::regex block("<!-- begin (\\w+) -->[^]*?<!-- end \\1 -->");
     int blocks = 0;
     for (std::sregex_iterator it(all.begin(), all.end(), block), end; it != end; ++it, ++blocks)
         EXPECT_NE(page.find(it->str()), std::string::npos)
-            << "the table " << (*it)[1] << " of docs/scene_format.md" << kStale;
+            << "the table " << (*it)[1] << " of docs/reference/scene_format.md" << kStale;
     EXPECT_EQ(blocks, 10);
 }
 

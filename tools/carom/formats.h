@@ -5,11 +5,11 @@
 
 namespace carom::tools {
 
-/// A JSON Schema of scene files: docs/scene.schema.json.
+/// A JSON Schema of scene files: docs/reference/scene.schema.json.
 std::string scene_schema();
 /// What docs/reference/record.schema.json has from the tables: an object with a JSON pointer for each part of it.
 std::string record_schema();
-/// The tables of docs/scene_format.md, each between the marks <!-- begin NAME --> and <!-- end NAME -->.
+/// The tables of docs/reference/scene_format.md, each between the marks <!-- begin NAME --> and <!-- end NAME -->.
 std::string scene_format();
 
 }  // namespace carom::tools

@@ -1,4 +1,4 @@
-"""Seeded shots for the experiments of docs/accuracy.md, as scene files: straight, cut, three cushions, break."""
+"""Seeded shots for the experiments of docs/guide/accuracy.md, as scene files: straight, cut, three cushions, break."""
 import math
 import random
 

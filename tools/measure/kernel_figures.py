@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the figures of docs/kernel.md (matplotlib).
+"""Draws the figures of docs/lab/2026-11-ladder.md (matplotlib).
 
     carom bench kernel --json > bench.json
     tools/measure/mca_kernel.py --cxx g++ clang++ --json mca.json

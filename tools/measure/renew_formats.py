@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes anew what docs/ says about file formats from the program's own tables: docs/scene.schema.json, the parts of
-docs/reference/record.schema.json that have rows, and the tables of docs/scene_format.md between the marks
+"""Writes anew what docs/ says about file formats from the program's own tables: docs/reference/scene.schema.json, the parts of
+docs/reference/record.schema.json that have rows, and the tables of docs/reference/scene_format.md between the marks
 <!-- begin NAME --> and <!-- end NAME -->.
 
     cmake --build --preset release --target carom_program
@@ -21,7 +21,7 @@ def describe(what):
 
 
 def main():
-    (ROOT / "docs/scene.schema.json").write_text(describe("scene-schema"))
+    (ROOT / "docs/reference/scene.schema.json").write_text(describe("scene-schema"))
 
     path = ROOT / "docs/reference/record.schema.json"
     schema = json.loads(path.read_text())
@@ -33,12 +33,12 @@ def main():
         place[last] = part
     path.write_text(json.dumps(schema, indent=2, ensure_ascii=False) + "\n")
 
-    path = ROOT / "docs/scene_format.md"
+    path = ROOT / "docs/reference/scene_format.md"
     page = path.read_text()
     for block, name in re.findall(r"(<!-- begin (\w+) -->.*?<!-- end \2 -->)", describe("scene-format"), re.S):
         page, found = re.subn(rf"<!-- begin {name} -->.*?<!-- end {name} -->", lambda _: block, page, flags=re.S)
         if found != 1:
-            sys.exit(f"renew_formats: docs/scene_format.md has the marks of {name} {found} times")
+            sys.exit(f"renew_formats: docs/reference/scene_format.md has the marks of {name} {found} times")
     path.write_text(page)
 
 

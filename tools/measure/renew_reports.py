@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures everything that docs/accuracy.md and docs/margin.md show, anew: their figures, and the tables between the marks
+"""Measures everything that docs/guide/accuracy.md and docs/guide/margin.md show, anew: their figures, and the tables between the marks
 <!-- begin NAME --> and <!-- end NAME -->. Best on a machine with nothing else to do.
 
     cmake --build --preset release --target carom_program carom_detectors
@@ -125,8 +125,8 @@ class Renewal:
         return text
 
 
-PLAN = {"docs/accuracy.md": ("machine", "kernel", "break", "throw", "experiments", "detectors"),
-        "docs/margin.md": ("machine", "margin", "sweep")}
+PLAN = {"docs/guide/accuracy.md": ("machine", "kernel", "break", "throw", "experiments", "detectors"),
+        "docs/guide/margin.md": ("machine", "margin", "sweep")}
 
 
 def main():

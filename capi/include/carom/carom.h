@@ -84,12 +84,12 @@ CAROM_API carom_status carom_collide_balls_batch(size_t count, const double* in1
 
 typedef struct carom_scene carom_scene;
 
-/* Reads a scene from a file or from its text (docs/scene_format.md); messages use `name` as the name of the file. On
+/* Reads a scene from a file or from its text (docs/reference/scene_format.md); messages use `name` as the name of the file. On
  * failure *scene is NULL. */
 CAROM_API carom_status carom_scene_read(const char* path, carom_scene** scene);
 CAROM_API carom_status carom_scene_parse(const char* text, const char* name, carom_scene** scene);
 
-/* Creates a scene without balls on it. table: "nine_foot", ... (docs/scene_format.md), or "" for an
+/* Creates a scene without balls on it. table: "nine_foot", ... (docs/reference/scene_format.md), or "" for an
  * unbounded cloth. balls: "pool", "snooker" or "carom", with the cushion model of their game, or these with
  * "_classic" behind the name. */
 CAROM_API carom_status carom_scene_create(const char* table, const char* balls, carom_scene** scene);
@@ -143,10 +143,10 @@ CAROM_API size_t carom_record_event_count(const carom_record* record);
 /* Id of a ball by its index from 0; NULL if the index is out of range. Valid as long as the record exists. */
 CAROM_API const char* carom_record_ball_id(const carom_record* record, size_t ball);
 
+/* The types of events are those of docs/reference/record_format.md; docs/reference/scene_format.md has the ids of balls and parts. */
 typedef struct carom_event {
     double time;      /* [s] */
-    const char* type; /* "ball_ball", "ball_cushion", "slide_roll", ...: docs/scene_format.md names the balls
-                         and parts */
+    const char* type; /* "ball_ball", "ball_cushion", "slide_roll", ... */
     const char* a;    /* id of the ball */
     char b[72];       /* id of the other ball, cushion, jaw or pocket; "" if there is none */
 } carom_event;

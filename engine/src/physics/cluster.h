@@ -1,6 +1,6 @@
 // Many contacts at once: the compliant map (Hertz contacts of the whole cluster, frozen normals,
 // instantaneous for the engine) and the rigid symmetric projection. Source: clusters.md of the design notes
-// (equations 1 to 8); docs/hard_cases.md says what such a model can and cannot claim.
+// (equations 1 to 8); docs/design/hard_cases.md says what such a model can and cannot claim.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ inline constexpr double kClusterFaster = 2.0;
 /// [share of R] Gaps up to this are rounding of the positions: the balls touch.
 inline constexpr double kTouchUlp = 64.0 * 2.220446049250313e-16;
 
-/// [V] and [L/V] Regularisation of the friction in the compliant map, which errs by about 2e-3 V in stick (docs/hard_cases.md), and its
+/// [V] and [L/V] Regularisation of the friction in the compliant map, which errs by about 2e-3 V in stick (docs/design/hard_cases.md), and its
 /// longest steps: without friction, where they err by 3e-7 V, and with it, where 2e-5 V (largest of 40 racks 8e-5 V) is far below the former.
 inline constexpr double kClusterEpsilon = 2e-3;
 inline constexpr double kClusterStep = 1.0 / 80.0;

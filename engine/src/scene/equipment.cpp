@@ -1,4 +1,4 @@
-// Balls, cloths and cues that come with the program. "Measured", "published" and how far to trust each number: docs/physics.md,
+// Balls, cloths and cues that come with the program. "Measured", "published" and how far to trust each number: docs/reference/physics.md,
 // "Where the numbers come from".
 #include <fmt/format.h>
 

@@ -118,7 +118,7 @@ std::size_t take_part(std::string_view& key, const std::string& list) {
     return number - 1;
 }
 
-/// Returns the place in an array that "x", "side" or "0" stands for; the names are those of docs/scene_format.md.
+/// Returns the place in an array that "x", "side" or "0" stands for; the names are those of docs/reference/scene_format.md.
 std::size_t element_index(std::string_view name) {
     constexpr struct {
         const char* name;

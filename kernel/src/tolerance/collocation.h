@@ -1,6 +1,6 @@
 // Gauss collocation of the impact over one stretch of the normal impulse, solved by Picard sweeps.
 //
-// All quantities are per unit mass and scaled by the approach speed (docs/kernel_tolerance.md). s = (x, z) is the
+// All quantities are per unit mass and scaled by the approach speed (docs/design/impact_kernel.md). s = (x, z) is the
 // slip between the balls, z >= 0; u = (a, b) is the slip of the active ball, which is pressed on the cloth; p is the
 // normal impulse; v is the normal velocity, -1 at the start. The forces are
 //

@@ -290,7 +290,8 @@ void add_sweep(Options& program) {
                    "(default: all)");
     command.option("-o,--output", &args.output, "FILE.csv", "Table to write").required = true;
     command.footer =
-        "A sweep that was stopped or killed goes on when the same command is given again (docs/sweep.md).";
+        "A sweep that was stopped or killed goes on when the same command is given again "
+        "(docs/guide/sweep.md).";
 }
 
 }  // namespace carom::tools

@@ -37,14 +37,14 @@ struct BallBallModelInfo {
     bool rough_masses = false;  ///< with friction, takes balls of different mass; without it every model does
 };
 
-/// All models; equations and sources in docs/physics.md, "Ball-ball impact".
+/// All models; equations and sources in docs/reference/physics.md, "Ball-ball impact".
 std::span<const BallBallModelInfo* const> all_of(const BallBallModelInfo*);
 /// The model of this name, or null.
 const BallBallModelInfo* ball_ball_model(std::string_view name);
 
 /// Two balls of different size. The planar model holds both to the cloth: the horizontal velocities along the
 /// line of centres part at e_b times the approach, whatever the tilt of that line. Friction is known for equal
-/// radii only: mu_b must be 0 where the radii differ. Equations: docs/physics.md, "Balls of different size".
+/// radii only: mu_b must be 0 where the radii differ. Equations: docs/reference/physics.md, "Balls of different size".
 ///
 /// @param params  R and m are not read
 void collide_unequal(const BallSize& size1, const BallSize& size2, const kernel::Ball& ball1,

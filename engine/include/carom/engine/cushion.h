@@ -27,7 +27,7 @@ struct CushionContact {
 using CushionFunction = bool (*)(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
 
 /// One model: its function and what it looks at. All models are homogeneous in the velocities and do not read
-/// the mass (all impulses are per mass). Equations and sources: docs/physics.md, "Cushion impact".
+/// the mass (all impulses are per mass). Equations and sources: docs/reference/physics.md, "Cushion impact".
 struct CushionModelInfo {
     const char* name;
     const char* source;

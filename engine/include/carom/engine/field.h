@@ -1,5 +1,5 @@
 // Fields: the keys of a section as rows of a table. What reads and writes scenes and records, the schemas, the tables of
-// docs/scene_format.md and the C interface all go through the rows, so that a key which is added is known to each of them.
+// docs/reference/scene_format.md and the C interface all go through the rows, so that a key which is added is known to each of them.
 // The rows of a section stand below its struct, in scene.h and table.h.
 #pragma once
 

@@ -30,7 +30,7 @@ namespace {
 // and far below the default tolerance of a ball-ball impact.
 constexpr double kCushionTolerance = 1e-7;
 // [of the approach speed] A nose that can stick is taken to stick below this slip. What that leaves out is of second
-// order (docs/physics.md, "Cushion impact").
+// order (docs/reference/physics.md, "Cushion impact").
 constexpr double kCushionStick = 3e-5;
 // [of the approach speed] A nose that has stopped to stick slips by less than this for a while. Its direction then follows
 // the drive without delay, which makes the equations stiff, so it is set to that of the drive. What that leaves out is of

@@ -1,5 +1,5 @@
 // The contact phase of many equal balls at once: Hertz contacts with friction, frozen normals, in units of
-// the approach speed V and of L = (V^2 m / k)^0.4 (docs/physics.md, several contacts at once).
+// the approach speed V and of L = (V^2 m / k)^0.4 (docs/reference/physics.md, several contacts at once).
 #pragma once
 
 #include <cstddef>

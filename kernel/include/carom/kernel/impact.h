@@ -13,7 +13,7 @@ struct Ball {
     double w[3];  ///< angular velocity [rad/s], right-hand rule
 };
 
-/// Sign of the cloth slip inside the impact (docs/physics.md, "Sign of the cloth slip").
+/// Sign of the cloth slip inside the impact (docs/reference/physics.md, "Sign of the cloth slip").
 enum class ClothSlip : unsigned char {
     kConsistent,   ///< u = (v_x - R w_y, v_y + R w_x): agrees with the motion between events; the default
     kAsPublished,  ///< u = (v_x + R w_y, v_y - R w_x): the published code; feeds energy in; for parity only

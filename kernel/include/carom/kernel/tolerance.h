@@ -1,4 +1,4 @@
-// Impacts by tolerance: as accurate as asked, and no slower than needed (docs/kernel_tolerance.md).
+// Impacts by tolerance: as accurate as asked, and no slower than needed (docs/design/impact_kernel.md).
 //
 // The impact of the 2014 model (march.h) is a small ordinary differential equation in the normal impulse.
 // Instead of marching, this kernel solves it by the cheapest method that keeps the tolerance asked for.
