@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli.h"
+#include "support/pages.h"
 
 namespace carom::test {
 namespace {
@@ -57,7 +58,7 @@ TEST(CliDescribe, BashOffersCommandsOptionsValuesAndFiles) {
     EXPECT_EQ(offered(folder, {"carom", "check", "a"}), Words{"a shot.toml"});
     EXPECT_EQ(offered(folder, {"carom", "sweep", "-o", "a"}), Words{"a shot.toml"});
     EXPECT_EQ(offered(folder, {"carom", "describe", ""}),
-              (Words{"man", "bash", "zsh", "scene-schema", "record-schema", "scene-format"}));
+              (Words{"man", "bash", "zsh", "command-line", "scene-schema", "record-schema", "scene-format"}));
 }
 
 TEST(CliDescribe, ZshReadsItsCompletion) {
@@ -94,6 +95,21 @@ TEST(CliDescribe, TheManPageHasEveryCommandAndIsCleanRoff) {
     const ProcessResult result =
         shell("bash", "groff -man -ww -z -Tascii carom.1 2>&1", folder.path().string());
     EXPECT_EQ(result.out, "");
+}
+
+TEST(Formats, ThePageOfTheCommandLineIsThatOfTheOptions) {
+    const std::string page = described("command-line");
+    EXPECT_TRUE(read_source("docs/reference/command_line.md") == page)
+        << "docs/reference/command_line.md is stale; run tools/measure/renew_formats.py";
+    for (const char* text :
+         {"\n## carom bench kernel\n",
+          "\n`carom sweep SCENE --vary KEY=DISTRIBUTION --count N --output FILE.csv`\n",
+          "* `--jobs N`: Threads that encode and write; 0: one per core (default: 0); 0 to 256\n",
+          "* `--camera NAME`: Camera (default: the scene's, which is top unless it says otherwise); one of "
+          "`top`, `rail`, "
+          "`player`, `follow`\n",
+          "143 terminated"})
+        EXPECT_NE(page.find(text), std::string::npos) << text;
 }
 
 TEST(CliDescribe, RefusesOtherFormats) {

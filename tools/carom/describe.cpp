@@ -1,5 +1,5 @@
-// carom describe: the program described for others to read, a man page and completions for bash and zsh. They are written from
-// the table of options that is parsed, so that they cannot differ from it.
+// carom describe: the program described for others to read, a man page, a page of the documents, and completions for bash and
+// zsh. They are written from the table of options that is parsed, so that they cannot differ from it.
 #include <fmt/format.h>
 
 #include <list>
@@ -44,6 +44,27 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text;
 }
 
+/// "carom sweep SCENE --vary KEY=DISTRIBUTION": how a command is called, with what it cannot do without.
+std::string synopsis_of(const Options& command, const std::string& name) {
+    std::string synopsis = name;
+    for (const Option& row : rows_of(command, true)) synopsis += " " + row.names.front();
+    for (const Option& row : rows_of(command, false))
+        if (row.required) synopsis += " " + row.names.back() + " " + row.value;
+    return synopsis;
+}
+
+constexpr const char* kIsaText =
+    "scalar, v3 or v4 forces the instruction set; all give the same bits. Left out, the widest one that the "
+    "processor has.";
+constexpr struct {
+    int status;
+    const char* meaning;
+} kStatuses[] = {{kOk, "done"},
+                 {kFailed, "failed while running"},
+                 {kBadUsage, "bad usage or bad scene"},
+                 {130, "interrupted"},
+                 {143, "terminated"}};
+
 // ---- man -------------------------------------------------------------------------------------------------
 
 /// Escapes text so that troff prints it unchanged.
@@ -57,11 +78,7 @@ void man_command(std::string& out, const Options& command, const std::string& pa
     const std::string name = path + " " + command.name;
     for (const Options& inner : command.commands) man_command(out, inner, name);
     if (!command.run) return;
-    std::string synopsis = name;
-    for (const Option& row : rows_of(command, true)) synopsis += " " + row.names.front();
-    for (const Option& row : rows_of(command, false))
-        if (row.required) synopsis += " " + row.names.back() + " " + row.value;
-    out += ".SS \"" + roff(synopsis) + " [options]\"\n" + roff(command.text) + ".\n";
+    out += ".SS \"" + roff(synopsis_of(command, name)) + " [options]\"\n" + roff(command.text) + ".\n";
     for (const bool by_place : {true, false}) {
         for (const Option& row : rows_of(command, by_place)) {
             if (row.names.back() == "--help") continue;
@@ -75,8 +92,9 @@ void man_command(std::string& out, const Options& command, const std::string& pa
 }
 
 std::string man_page(const Options& program) {
-    std::string commands;
+    std::string commands, statuses;
     for (const Options& command : program.commands) man_command(commands, command, program.name);
+    for (const auto& [status, text] : kStatuses) statuses += fmt::format(".TP\n{}\n{}\n", status, text);
     return ".TH CAROM 1 \"\" \"carom " + program.version +
            "\" \"User Commands\"\n"
            ".SH NAME\ncarom \\- event\\-based billiards simulator\n"
@@ -85,14 +103,66 @@ std::string man_page(const Options& program) {
            "event "
            "to event, draws what happened without a display, and says what every frame cost.\n"
            ".SH COMMANDS\n" +
-           commands +
-           ".SH ENVIRONMENT\n.TP\n\\fBCAROM_ISA\\fR\nscalar, v3 or v4 forces the instruction set; all give "
-           "the "
-           "same bits. Left out, the widest one that the processor has.\n"
-           ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\nfailed while running\n.TP\n2\nbad usage or bad scene\n"
-           ".TP\n130\ninterrupted\n"
+           commands + ".SH ENVIRONMENT\n.TP\n\\fBCAROM_ISA\\fR\n" + kIsaText + "\n.SH EXIT STATUS\n" +
+           statuses +
            ".SH EXAMPLES\n.EX\ncarom simulate scenes/hello.toml\n"
            "carom render scenes/eight_ball_break.toml \\-\\-to 2 \\-o frames/%05d.png\n.EE\n";
+}
+
+// ---- the page of the documents ---------------------------------------------------------------------------
+
+/// Escapes text so that Markdown prints it unchanged.
+std::string markdown(std::string text) {
+    for (const char* c : {"*", "_", "<"}) text = replaced(std::move(text), c, std::string("\\") + c);
+    return text;
+}
+
+std::string code_list(const std::vector<std::string>& words) {
+    return fmt::format("`{}`", fmt::join(words, "`, `"));
+}
+
+/// The description of an option; what the page says of all flags and files at its top is left out.
+std::string page_meaning(const Option& row) {
+    std::string text = meaning(row);
+    for (const char* known : {" (default: off)", " (default: not written)"})
+        text = replaced(std::move(text), known, "");
+    return markdown(text);
+}
+
+void page_command(std::string& out, const Options& command, const std::string& path) {
+    const std::string name = path + " " + command.name;
+    for (const Options& inner : command.commands) page_command(out, inner, name);
+    if (!command.run) return;
+    out +=
+        fmt::format("\n## {}\n\n`{}`\n\n{}.\n\n", name, synopsis_of(command, name), markdown(command.text));
+    for (const bool by_place : {true, false}) {
+        for (const Option& row : rows_of(command, by_place)) {
+            if (row.names.back() == "--help") continue;
+            out += fmt::format("* `{}{}{}`: {}", joined(row.names, ", "), row.value.empty() ? "" : " ",
+                               row.value, page_meaning(row));
+            if (!row.choices.empty()) out += fmt::format("; one of {}", code_list(row.choices));
+            if (row.range) out += fmt::format("; {:g} to {:g}", row.range->first, row.range->second);
+            if (!row.needs.empty()) out += fmt::format("; needs `{}`", row.needs);
+            if (!row.excludes.empty()) out += fmt::format("; not with `{}`", row.excludes);
+            out += "\n";
+        }
+    }
+    if (!command.footer.empty()) out += fmt::format("\n{}\n", markdown(command.footer));
+}
+
+std::string command_line_page(const Options& program) {
+    std::string commands, statuses;
+    for (const Options& command : program.commands) page_command(commands, command, program.name);
+    for (const auto& [status, text] : kStatuses)
+        statuses += fmt::format("{}{} {}", statuses.empty() ? "" : ", ", status, text);
+    return "# The command line\n\n"
+           "Every command with its options, printed by `carom describe command-line` from the table that the "
+           "program "
+           "parses. `--help` behind a command says the same. A flag is off, and a file is not written, "
+           "unless it is "
+           "named.\n\n"
+           "* Exit status: " +
+           statuses + ".\n* `CAROM_ISA` in the environment: " + kIsaText + "\n" + commands;
 }
 
 // ---- bash ------------------------------------------------------------------------------------------------
@@ -208,6 +278,7 @@ constexpr struct {
 } kFormats[] = {{"man", man_page},
                 {"bash", bash_completion},
                 {"zsh", zsh_completion},
+                {"command-line", command_line_page},
                 {"scene-schema", [](const Options&) { return scene_schema(); }},
                 {"record-schema", [](const Options&) { return record_schema(); }},
                 {"scene-format", [](const Options&) { return scene_format(); }}};

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Experiments E2 to E5 of docs/guide/accuracy.md over seeded shots of four classes.
+"""Experiments E2 to E5 of docs/lab/2026-11-accuracy_experiments.md over seeded shots of four classes.
 
     tools/measure/accuracy_experiments.py [--count 100] [--program build/release/carom] [--data FILE.json] [--images FOLDER]
     tools/measure/accuracy_experiments.py --from FILE.json        # the tables again, from measurements kept

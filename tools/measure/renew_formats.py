@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes anew what docs/ says about file formats from the program's own tables: docs/reference/scene.schema.json, the parts of
-docs/reference/record.schema.json that have rows, and the tables of docs/reference/scene_format.md between the marks
-<!-- begin NAME --> and <!-- end NAME -->.
+"""Writes anew what docs/ says about file formats and the command line from the program's own tables:
+docs/reference/command_line.md, docs/reference/scene.schema.json, the parts of docs/reference/record.schema.json that have rows, and the
+tables of docs/reference/scene_format.md between the marks <!-- begin NAME --> and <!-- end NAME -->.
 
     cmake --build --preset release --target carom_program
     tools/measure/renew_formats.py [BUILD_FOLDER]
@@ -21,6 +21,7 @@ def describe(what):
 
 
 def main():
+    (ROOT / "docs/reference/command_line.md").write_text(describe("command-line"))
     (ROOT / "docs/reference/scene.schema.json").write_text(describe("scene-schema"))
 
     path = ROOT / "docs/reference/record.schema.json"

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Measures everything that docs/guide/accuracy.md and docs/guide/margin.md show, anew: their figures, and the tables between the marks
-<!-- begin NAME --> and <!-- end NAME -->. Best on a machine with nothing else to do.
+"""Measures anew what the lab notes about accuracy and margins show: their figures in docs/images, and the tables between the marks
+<!-- begin NAME --> and <!-- end NAME -->. It writes notes of docs/lab/ only; the notes of another month are named by --accuracy and --margins
+(copy the old ones first: a note is not changed later). Best on a machine with nothing else to do.
 
     cmake --build --preset release --target carom_program carom_detectors
     tools/measure/renew_reports.py [--quick] [--only NAME ...]
@@ -8,6 +9,7 @@
 Takes about a quarter of an hour; --quick takes about three minutes and measures less. Needs python3-matplotlib.
 """
 import argparse
+import datetime
 import json
 import os
 import pathlib
@@ -36,10 +38,11 @@ class Renewal:
         return self.call(self.build / "carom", *arguments)
 
     def machine(self):
+        commit = self.call("git", "describe", "--always", "--dirty").strip()
         cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown")
         compiler = self.call("c++", "--version").split("\n")[0]
         load, cores = os.getloadavg()[0], os.cpu_count()
-        text = f"{cpu}, {cores} cores, {compiler}; load when this began: {load:.1f}."
+        text = f"{datetime.date.today()}, commit {commit}, {cpu}, {cores} cores, {compiler}; load when this began: {load:.1f}."
         if load > 0.75 * cores:
             text += (" **Other work ran beside it.** Wall times (every figure of a frame) are then far too long, processor times "
                      "somewhat: read them as ratios, or measure again.")
@@ -125,20 +128,28 @@ class Renewal:
         return text
 
 
-PLAN = {"docs/guide/accuracy.md": ("machine", "kernel", "break", "throw", "experiments", "detectors"),
-        "docs/guide/margin.md": ("machine", "margin", "sweep")}
+ACCURACY = ("machine", "kernel", "break", "throw", "experiments", "detectors")
+MARGINS = ("machine", "margin", "sweep")
+
+
+def lab_note(name):
+    path = (ROOT / name).resolve()
+    if path.parent != ROOT / "docs/lab" or not path.is_file():
+        raise argparse.ArgumentTypeError(f"{name} is no note of docs/lab/")
+    return path
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default=str(ROOT / "build/release"))
     parser.add_argument("--quick", action="store_true", help="fewer impacts, shots and repeats")
-    names = sorted({name for part in PLAN.values() for name in part})
+    parser.add_argument("--accuracy", type=lab_note, default="docs/lab/2026-11-accuracy_experiments.md", help="note to write (%(default)s)")
+    parser.add_argument("--margins", type=lab_note, default="docs/lab/2026-11-margins.md", help="note to write (%(default)s)")
+    names = sorted({*ACCURACY, *MARGINS})
     parser.add_argument("--only", nargs="+", choices=names, help="renew these only (default: all)")
     options = parser.parse_args()
     renewal = Renewal(pathlib.Path(options.build).resolve(), options.quick)
-    for path, parts in PLAN.items():
-        page = ROOT / path
+    for page, parts in ((options.accuracy, ACCURACY), (options.margins, MARGINS)):
         for name in parts:
             if options.only and name not in options.only:
                 continue
@@ -146,7 +157,7 @@ def main():
             text = page.read_text()
             begin, end = f"<!-- begin {name} -->\n", f"<!-- end {name} -->"
             if begin not in text or end not in text:
-                sys.exit(f"renew_reports: {path}: the marks of {name} are missing")
+                sys.exit(f"renew_reports: {page}: the marks of {name} are missing")
             head, rest = text.split(begin, 1)
             page.write_text(head + begin + new.strip() + "\n" + end + rest.split(end, 1)[1])
 

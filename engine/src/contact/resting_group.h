@@ -11,7 +11,7 @@
 
 namespace carom::resting {
 
-/// [-] Most changes of a ball between rest, rolling and sliding in one solution (docs/design/hard_cases.md, "Open").
+/// [-] Most changes of a ball between rest, rolling and sliding in one solution (docs/design/hard_cases.md, "Where the model has no answer").
 inline constexpr int kModeChanges = 8;
 /// [-] Relative rounding error of the forces.
 inline constexpr double kForceRounding = 1e-9;

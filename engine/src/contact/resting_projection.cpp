@@ -117,8 +117,8 @@ void stop_within_interval(Group& g) {
 
 }  // namespace
 
-// The velocities nearest to the present ones, in the metric of the masses, that close no contact (docs/design/hard_cases.md,
-// "Clusters"). A pressed contact that opens so slowly that it would close again at once is closed now.
+// The velocities nearest to the present ones, in the metric of the masses, that close no contact (docs/reference/physics.md,
+// "Resting contacts"). A pressed contact that opens so slowly that it would close again at once is closed now.
 void project_velocities(Group& g) {
     stop_within_interval(g);
     const std::vector<char> sticky = sticky_contacts(g);

@@ -1,5 +1,5 @@
 // Cushion model `impulse`: one frictional impulse along the inclined normal, as for two rough spheres. It is Coulomb's f J_n,
-// or what ends the slip (2/7 of it). Equations: docs/reference/physics.md, "Cushion impact", impulse.
+// or what ends the slip (2/7 of it). Equations: docs/reference/physics.md, "Cushion impact".
 #include <algorithm>
 
 #include "physics/cushion/nose.h"

@@ -1,0 +1,179 @@
+// The documents hold together: links lead somewhere, pages of the guide are short and say what they are for, notes of the lab say
+// where they come from, and all of it stays readable in an afternoon.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/pages.h"
+
+namespace carom::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Pages = std::map<std::string, std::string>;  // path from the top folder, text
+
+/// The pages of docs/`folder` (all of docs/ for ""), in the order of their names.
+Pages pages_of(const std::string& folder) {
+    Pages pages;
+    for (const auto& entry : fs::recursive_directory_iterator(CAROM_SOURCE_DIR "/docs/" + folder)) {
+        if (entry.path().extension() != ".md") continue;
+        const std::string name = fs::relative(entry.path(), CAROM_SOURCE_DIR).string();
+        pages[name] = read_source(name);
+    }
+    return pages;
+}
+
+Pages all_pages() {
+    Pages pages = pages_of("");
+    for (const char* name : {"README.md", "CONTRIBUTING.md"}) pages[name] = read_source(name);
+    return pages;
+}
+
+/// The page without what stands between fences: there "](" is code.
+std::string prose(const std::string& page) {
+    std::istringstream in(page);
+    std::string text;
+    bool code = false;
+    for (std::string line; std::getline(in, line);) {
+        const bool fence = line.rfind("```", 0) == 0;
+        if (fence) code = !code;
+        if (!fence && !code) text += line + '\n';
+    }
+    return text;
+}
+
+std::vector<std::string> links_of(const std::string& page) {
+    static const std::regex link(R"(\]\(([^)\s]+)\))");
+    const std::string text = prose(page);
+    std::vector<std::string> found;
+    for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it)
+        found.push_back(it->str(1));
+    return found;
+}
+
+/// The anchors of the headings, as GitHub and the site make them: lower case, blanks are dashes, marks are gone.
+std::set<std::string> anchors_of(const std::string& page) {
+    std::set<std::string> anchors;
+    std::istringstream in(prose(page));
+    for (std::string line; std::getline(in, line);) {
+        if (line.rfind('#', 0) != 0) continue;
+        std::string anchor;
+        for (const char c : line.substr(line.find_first_not_of("# "))) {
+            if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_')
+                anchor += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+            else if (c == ' ')
+                anchor += '-';
+        }
+        anchors.insert(anchor);
+    }
+    return anchors;
+}
+
+/// What is wrong with the links of a page. `exists` knows the files and folders, by their paths from the top folder.
+std::vector<std::string> dead_links(const Pages& pages, const std::string& name,
+                                    const std::function<bool(const std::string&)>& exists) {
+    std::vector<std::string> dead;
+    for (const std::string& link : links_of(pages.at(name))) {
+        if (link.find("://") != link.npos || link.rfind("mailto:", 0) == 0) continue;
+        const std::size_t hash = link.find('#');
+        const std::string file = link.substr(0, hash);
+        const std::string path =
+            file.empty() ? name : (fs::path(name).parent_path() / file).lexically_normal().string();
+        const bool there = pages.count(path) != 0 || exists(path);
+        if (!there) dead.push_back(name + ": " + link + ": there is no such file");
+        if (!there || hash == link.npos) continue;
+        const auto page = pages.find(path);
+        if (page == pages.end() || anchors_of(page->second).count(link.substr(hash + 1)) == 0)
+            dead.push_back(name + ": " + link + ": there is no such heading");
+    }
+    return dead;
+}
+
+std::size_t words_of(const std::string& page) {
+    std::istringstream in(page);
+    std::size_t words = 0;
+    for (std::string word; in >> word;)
+        words += std::any_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) != 0; });
+    return words;
+}
+
+TEST(Pages, EveryLinkLeadsToAFileAndAHeading) {
+    const Pages pages = all_pages();
+    std::size_t links = 0;
+    const auto exists = [](const std::string& path) { return fs::exists(fs::path(CAROM_SOURCE_DIR) / path); };
+    for (const auto& [name, text] : pages) {
+        links += links_of(text).size();
+        for (const std::string& fault : dead_links(pages, name, exists)) ADD_FAILURE() << fault;
+    }
+    EXPECT_GE(links, 100u);
+}
+
+TEST(Pages, DeadLinksAreSeen) {
+    const Pages pages = {{"docs/a.md",
+                          "# A b, c\n[x](b.md) [x](#a-b-c) [x](../README.md) [x](https://no.where)\n"
+                          "```\n[x](code.md)\n```\n"},
+                         {"docs/b.md", "[x](a.md#a-b-c) [x](a.md#d) [x](#e) [x](c.md)\n"},
+                         {"README.md", "[x](docs/a.md#a) [x](docs/) [x](tools/run)\n"}};
+    const auto exists = [](const std::string& path) { return path == "docs/"; };
+    EXPECT_EQ(dead_links(pages, "docs/a.md", exists), std::vector<std::string>{});
+    EXPECT_EQ(dead_links(pages, "docs/b.md", exists),
+              (std::vector<std::string>{"docs/b.md: a.md#d: there is no such heading",
+                                        "docs/b.md: #e: there is no such heading",
+                                        "docs/b.md: c.md: there is no such file"}));
+    EXPECT_EQ(dead_links(pages, "README.md", exists),
+              (std::vector<std::string>{"README.md: docs/a.md#a: there is no such heading",
+                                        "README.md: tools/run: there is no such file"}));
+}
+
+TEST(Pages, TheIndexNamesEveryPage) {
+    const std::string index = read_source("docs/README.md");
+    const std::vector<std::string> links = links_of(index);
+    for (const auto& [name, text] : pages_of("")) {
+        const std::string path = name.substr(std::string("docs/").size());
+        if (path == "README.md") continue;
+        EXPECT_NE(std::find(links.begin(), links.end(), path), links.end())
+            << "docs/README.md has no link to " << path;
+    }
+}
+
+TEST(Pages, ThoseOfTheGuideAreShortAndBeginWithWhatTheReaderWillHave) {
+    const Pages guide = pages_of("guide");
+    EXPECT_GE(guide.size(), 7u);
+    for (const auto& [name, text] : guide) {
+        EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 150) << name;
+        EXPECT_TRUE(std::regex_search(text, std::regex("^# [^\n]+\n\nAt the end of this page ")))
+            << name << " does not begin with a title and \"At the end of this page ...\"";
+    }
+}
+
+TEST(Pages, NotesOfTheLabSayWhenWhereAndAtWhichCommit) {
+    const Pages notes = pages_of("lab");
+    EXPECT_GE(notes.size(), 12u);
+    for (const auto& [name, text] : notes) {
+        EXPECT_TRUE(std::regex_search(name, std::regex("/20[0-9]{2}-[0-9]{2}-[a-z_]+\\.md$")))
+            << name << ": a note is called YEAR-MONTH-subject.md";
+        for (const char* row : {"\n| measured | 20", "\n| machine | ", "\n| commit | ", "\n| today | ["})
+            EXPECT_NE(text.find(row), text.npos) << name << " has no row " << row + 1;
+    }
+}
+
+// Words are what holds a letter or a digit: the rules of a table are none. The command line is generated and counts.
+TEST(Pages, GuideReferenceAndDesignAreNoLongerThanAnAfternoon) {
+    EXPECT_EQ(words_of("| a | 1.5 m |\n|---|---|\n"), 3u);
+    std::size_t words = 0;
+    for (const char* folder : {"guide", "reference", "design"})
+        for (const auto& [name, text] : pages_of(folder)) words += words_of(text);
+    EXPECT_LT(words, 20000u) << "cut, or move what was measured to a note in docs/lab";
+}
+
+}  // namespace
+}  // namespace carom::test
