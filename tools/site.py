@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""The two parts of tools/docs that are no shell: site.py configure FILE writes the configuration of MkDocs; site.py check FOLDER follows
+every link of the built site, to headings as well. Exit status 1: a link is dead.
+
+The order of the pages in the navigation is that of docs/README.md, which names every page.
+"""
+import html.parser
+import json
+import pathlib
+import re
+import sys
+import urllib.parse
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+SECTIONS = ("guide", "reference", "design", "lab")
+
+
+def navigation():
+    index = (ROOT / "docs/README.md").read_text()
+    paths = list(dict.fromkeys(re.findall(r"\]\(((?:%s)/[a-z0-9_-]+\.md)" % "|".join(SECTIONS), index, re.I)))
+    sections = [{name.capitalize(): [f"docs/{path}" for path in paths if path.startswith(name + "/")]} for name in SECTIONS]
+    return [{"carom": "README.md"}, {"Documents": "docs/README.md"}, *sections,
+            {"Contributing": "CONTRIBUTING.md"}, {"Changes": "CHANGELOG.md"}]
+
+
+def configure(path):
+    # JSON is YAML. No fonts and no icons from elsewhere: the site works without a network.
+    pathlib.Path(path).write_text(json.dumps({
+        "site_name": "carom",
+        "docs_dir": "pages",
+        "nav": navigation(),
+        "use_directory_urls": False,
+        "theme": {"name": "material", "font": False, "features": ["navigation.sections", "navigation.top", "search.highlight"]},
+        "plugins": ["search"],
+        "markdown_extensions": ["tables", "fenced_code", "sane_lists", {"toc": {"permalink": True}}],
+    }, indent=1))
+
+
+class Page(html.parser.HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.links, self.anchors = [], set()
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        for key, value in attributes:
+            if key == "id":
+                self.anchors.add(value)
+            elif value and (key, tag) in (("href", "a"), ("src", "img")):
+                self.links.append(value)
+
+
+def check(folder):
+    root = pathlib.Path(folder).resolve()
+    pages = {path: Page(path.read_text()) for path in root.rglob("*.html") if path.name != "404.html"}
+    dead = set()
+    for path, page in pages.items():
+        for link in page.links:
+            url = urllib.parse.urlsplit(link)
+            if url.scheme or url.netloc or link == "#":
+                continue
+            target = (path.parent / urllib.parse.unquote(url.path)).resolve() if url.path else path
+            if target.is_dir():
+                target /= "index.html"
+            if not target.is_file() or (url.fragment and target in pages and url.fragment not in pages[target].anchors):
+                dead.add(f"{path.relative_to(root)}: {link}")
+    for line in sorted(dead):
+        print(f"site: a dead link in {line}", file=sys.stderr)
+    print(f"site: {len(pages)} pages, {sum(len(page.links) for page in pages.values())} links: {folder}/index.html")
+    return 1 if dead else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3 or sys.argv[1] not in ("configure", "check"):
+        sys.exit(__doc__)
+    sys.exit({"configure": configure, "check": check}[sys.argv[1]](sys.argv[2]))
