@@ -46,6 +46,19 @@ TEST_P(RandomScenes, ComeToRest) {
                  DrawOrder::kFirstFirst);
 }
 
+// The same shots with cushions whose friction and restitution fall, touched where the sphere meets the nose.
+TEST(RandomScenes, WithFitsAndNoses) {
+    for (std::uint64_t seed = 0; seed < kScenes / 40; ++seed) {
+        Scene scene = RandomScene(seed).make();
+        BallParams& b = scene.balls;
+        b.f_c = 0.17, b.f_c_more = 0.09, b.f_c_fall = 0.4;
+        b.e_c = 0.9, b.e_c_fall = 0.05, b.e_c_above = 0.5;
+        scene.physics.cushion_touch = CushionTouch::kNose;
+        if (scene.ball.empty()) continue;
+        EXPECT_EQ(what_breaks(scene), "") << "seed " << seed << "\n" << dump(scene);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Part, RandomScenes, testing::Range(0, kParts));
 
 /// The seven-foot table's cushion and jaw where a ball stood at their join.

@@ -65,6 +65,7 @@ jaw = "smooth"
 cloth_slip = "as_published"
 clusters = "rigid"
 tolerance = 1e-7
+cushion_touch = "nose"
 [effects]
 pockets = true
 [stop]
@@ -90,6 +91,8 @@ TEST(SceneText, ReadsBackToTheSameScene) {
     std::vector<std::string> texts = {kEveryKey};
     texts.push_back(with(kEveryKey, "tolerance = 1e-7", "substeps = 500"));
     texts.push_back(with(kEveryKey, "mu_b = 0.06", "mu_b_fit = [0.01, 0.1, 1.1]"));
+    texts.push_back(
+        with(kEveryKey, "e_c = 0.84\nf_c = 0.19", "e_c_fit = [0.9, 0.03, 0.5]\nf_c_fit = [0.1, 0.2, 0.4]"));
     texts.push_back(with(kEveryKey, "camera = \"rail\"", "eye = [1, 2, 3]\ntarget = [0, 1, 0]"));
     texts.push_back("[table]\ncushion = []\n[[ball]]\nvelocity = [0, 1]\n");
     for (const std::string& text : texts) {
@@ -133,6 +136,9 @@ TEST(SceneText, WritesEveryKeyOfTheFormat) {
         scene_text(parse_scene(kEveryKey, "a.toml")) +
         scene_text(parse_scene(with(kEveryKey, "tolerance = 1e-7", "substeps = 500"), "a.toml")) +
         scene_text(parse_scene(with(kEveryKey, "mu_b = 0.06", "mu_b_fit = [0, 0.1, 1]"), "a.toml")) +
+        scene_text(parse_scene(with(kEveryKey, "e_c = 0.84\nf_c = 0.19",
+                                    "e_c_fit = [0.9, 0.03, 0.5]\nf_c_fit = [0.1, 0.2, 0.4]"),
+                               "a.toml")) +
         scene_text(parse_scene(with(kEveryKey, "camera = \"rail\"", "eye = [1, 2, 3]\ntarget = [0, 1, 0]"),
                                "a.toml"));
     for (const EffectInfo& effect : effect_table())

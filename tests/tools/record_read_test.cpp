@@ -125,7 +125,8 @@ TEST(RecordFile, NestingNeedsNoStack) {
 /// The sample as version 1 had it.
 Json version_1() {
     Json json = Json::parse(changed("/version", 1));
-    for (const char* key : {"mu_b_more", "mu_b_fall"}) json["balls"].erase(key);
+    for (const char* key : {"mu_b_more", "mu_b_fall", "e_c_fall", "e_c_above", "f_c_more", "f_c_fall"})
+        json["balls"].erase(key);
     for (const char* list : {"cushions", "jaws", "pockets"})
         for (Json& part : json["table"][list]) part.erase("name");
     for (Json& event : json["events"]) event.erase("queue_ns");
@@ -139,7 +140,9 @@ TEST(RecordFile, Version1IsReadWithANote) {
     EXPECT_NE(notes[0].find("version 1 of the format does not keep mu_b_fit"), std::string::npos) << notes[0];
     // All else is there.
     Record expected = sample_record();
-    expected.balls.mu_b_more = expected.balls.mu_b_fall = 0.0;
+    BallParams& balls = expected.balls;
+    balls.mu_b_more = balls.mu_b_fall = 0.0;
+    balls.e_c_fall = balls.e_c_above = balls.f_c_more = balls.f_c_fall = 0.0;
     for (Cushion& c : expected.table.cushions) c.name.clear();
     for (Jaw& j : expected.table.jaws) j.name.clear();
     for (Pocket& p : expected.table.pockets) p.name.clear();

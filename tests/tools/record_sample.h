@@ -54,7 +54,8 @@ inline Record sample_record() {
     record.table.cushions = {{"left", {0.0, -0.0}, {0.1, 2.54}, 0.037, "left rail"}};
     record.table.jaws = {{"jaw \"1\"", {1e-300, 0.1}, 0.04, 0.037, "a jaw\n"}};
     record.table.pockets = {{"p,1", {1.0 / 3.0, 0.1}, 0.06, 0.08, "Tasche \xc3\xa4"}};
-    record.balls = {0.028575, 0.170097, 0.21, 0.011, 0.0127, 0.05, 0.95, 0.85, 0.23, 0.108, 1.0 / 3.0};
+    record.balls = {0.028575, 0.170097, 0.21,      0.011, 0.0127, 0.05,  0.95, 0.85,
+                    0.23,     0.108,    1.0 / 3.0, 0.07,  0.41,   0.031, 0.62};
     record.gravity = 9.80665;
     record.render = {59.94, 1920, 1080, "follow", Vec3(0.1, -1.0 / 3.0, 2.0), Vec3(0.5, 1.0, 0.0)};
     record.duration = 7.0 / 3.0;

@@ -96,9 +96,9 @@ CAROM_API carom_status carom_scene_create(const char* table, const char* balls, 
 CAROM_API void carom_scene_free(carom_scene* scene); /* NULL is allowed */
 
 /* One parameter of the balls: "radius", "mass", "mu_s", "mu_r", "mu_sp", "mu_b", "mu_b_more", "mu_b_fall", "e_b",
- * "e_c" or "f_c". The friction between two balls that slip at u m/s is mu_b + mu_b_more exp(-mu_b_fall u); setting mu_b
- * sets the other two to 0. A new
- * radius also changes the heights of the existing balls; balls with their own radius keep it. */
+ * "e_c", "e_c_fall", "e_c_above", "f_c", "f_c_more" or "f_c_fall". The friction between two balls that slip at u m/s is
+ * mu_b + mu_b_more exp(-mu_b_fall u), that of a cushion f_c + f_c_more exp(-f_c_fall u), and its restitution at v m/s is
+ * e_c - e_c_fall max(0, v - e_c_above); setting mu_b, f_c or e_c sets the other two to 0. A new radius also changes the heights of the existing balls; balls with their own radius keep it. */
 CAROM_API carom_status carom_scene_set_ball_param(carom_scene* scene, const char* name, double value);
 CAROM_API carom_status carom_scene_get_ball_param(const carom_scene* scene, const char* name, double* value);
 

@@ -52,7 +52,7 @@ Link link_of(const Group& g, const RestingContact& c) {
     double depth;
     if (c.contact.with == With::kCushion) {
         link.line = &g.around.geometry.cushions[c.contact.other];
-        depth = R - std::abs(cross(link.line->direction, here - link.line->from));
+        depth = R - link.line->inset - std::abs(cross(link.line->direction, here - link.line->from));
     } else {
         Vec2 center;
         if (c.contact.with == With::kBall) {
@@ -61,7 +61,7 @@ Link link_of(const Group& g, const RestingContact& c) {
             center = planar(g.group.balls[link.j].r);
         } else {
             const Nose& nose = g.around.geometry.noses[c.contact.other];
-            link.distance = R + nose.radius;
+            link.distance = R + nose.radius - nose.inset;
             center = nose.center;
         }
         depth = link.distance - length(center - here);

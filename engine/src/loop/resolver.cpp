@@ -174,7 +174,7 @@ void Resolver::cushion(const Contact& contact) {
         normal = out / length(out);
         height = nose.height;
         const double v_t = cross(normal, planar(v));
-        curving = v_t * v_t / (balls_.radius(ball) + nose.radius);
+        curving = v_t * v_t / (balls_.radius(ball) + nose.radius - nose.inset);
     } else {
         const CushionLine& line = plan_.geometry.cushions[contact.other];
         normal = Vec2(-line.direction.y(), line.direction.x());
@@ -191,11 +191,9 @@ void Resolver::cushion(const Contact& contact) {
                       .a_c = pressing(balls_.segment(ball).a)};
     if (resting_.try_hold(approach, p.e_c)) return;
 
-    const BallSize& size = plan_.sizes[ball];
     const bool jaw = is_jaw(contact, plan_.geometry);
     const CushionModelInfo& model = jaw ? *plan_.jaw : *plan_.cushion;
-    const CushionContact nose{
-        .R = size.R, .m = size.m, .mu_s = p.mu_s, .e_c = p.e_c, .f_c = p.f_c, .height = height};
+    const CushionContact nose = cushion_contact(p, plan_.sizes[ball], height, normal, v, w);
     if (!model.resolve(nose, normal, v, w))
         log_.fail(
             fmt::format("the cushion model {} found no solution for the impact of ball {}; use another one",

@@ -78,12 +78,13 @@ double Detector::time_to(const Contact& contact, const Path& p, double window) c
     switch (contact.with) {
         case With::kCushion: {
             const CushionLine& c = plan_.geometry.cushions[contact.other];
-            if (stays_off_line(p, c.from, c.direction, R, window) || resting_.has(contact)) return kNever;
-            return time_to_line(p, c.from, c.direction, c.length, R);
+            const double reach = R - c.inset;
+            if (stays_off_line(p, c.from, c.direction, reach, window) || resting_.has(contact)) return kNever;
+            return time_to_line(p, c.from, c.direction, c.length, reach);
         }
         case With::kNose: {
             const Nose& n = plan_.geometry.noses[contact.other];
-            const double reach = R + n.radius;
+            const double reach = R + n.radius - n.inset;
             if (stays_apart(p.r - n.center, p.v, p.a, reach, window) || resting_.has(contact)) return kNever;
             return time_to_circle(p, n.center, reach);
         }

@@ -57,7 +57,8 @@ Need spin_decay(const Facts& f) {
     for (const BallStart& ball : f.scene.ball) side = side || ball.spin.z() != 0.0;
     if (side) return needed("a ball starts with vertical spin");
     if (f.plan.in_force(Effect::kThrow)) return needed("friction between balls makes vertical spin");
-    const bool rough = f.balls().f_c != 0.0 && (f.plan.cushion->reads_friction || f.plan.jaw->reads_friction);
+    const bool rough = f.balls().most_cushion_friction() != 0.0 &&
+                       (f.plan.cushion->reads_friction || f.plan.jaw->reads_friction);
     if (rough && f.plan.in_force(Effect::kCushions)) return needed("cushion friction makes vertical spin");
     return {false, "no ball can ever have vertical spin: none at the start, no friction in impacts"};
 }
@@ -96,15 +97,20 @@ Need cushion_friction(const Facts& f) {
     if (!f.reach.cushions) return {false, "no cushion within reach: " + f.reach.why};
     const CushionModelInfo &straight = *f.plan.cushion, &jaw = *f.plan.jaw;
     if (&straight == &kSmooth && (&jaw == &kSmooth || table.jaws.empty())) return {false, "model smooth"};
-    bool level = f.balls().f_c == 0.0 && straight.reflects_when_level && jaw.reflects_when_level;
+    bool level =
+        f.balls().most_cushion_friction() == 0.0 && straight.reflects_when_level && jaw.reflects_when_level;
     for (const BallSize& ball : f.plan.sizes) {
         for (const Cushion& c : table.cushions) level = level && c.height == ball.R;
         for (const Jaw& j : table.jaws) level = level && j.height == ball.R;
     }
     if (level) return {false, "f_c = 0 and the noses at ball height: smooth"};
+    const BallParams& p = f.balls();
+    const std::string friction = p.f_c_more == 0.0
+                                     ? fmt::format("f_c = {}", p.f_c)
+                                     : fmt::format("f_c = {} + {} exp(-{} u)", p.f_c, p.f_c_more, p.f_c_fall);
     return {true, &straight == &jaw
-                      ? fmt::format("model {}, f_c = {}", straight.name, f.balls().f_c)
-                      : fmt::format("model {}, jaws {}, f_c = {}", straight.name, jaw.name, f.balls().f_c)};
+                      ? fmt::format("model {}, {}", straight.name, friction)
+                      : fmt::format("model {}, jaws {}, {}", straight.name, jaw.name, friction)};
 }
 
 Need pockets(const Facts& f) {

@@ -27,24 +27,28 @@ bool rounded_by_jaw(const Vec2& end, const std::vector<Jaw>& jaws) {
 }
 
 void add_geometry(const Table& table, Plan& plan) {
+    const auto inset = [&](double height) {
+        return nose_inset(plan.scene.physics.cushion_touch, plan.sizes.front().R, height);
+    };
     for (std::size_t i = 0; i < table.cushions.size(); ++i) {
         const Cushion& cushion = table.cushions[i];
         const Vec2 along = cushion.to - cushion.from;
         const double extent = length(along);
-        plan.geometry.cushions.push_back({cushion.from, along / extent, extent, cushion.height});
+        plan.geometry.cushions.push_back(
+            {cushion.from, along / extent, extent, cushion.height, inset(cushion.height)});
         for (const Vec2& end : {cushion.from, cushion.to}) {
             bool known = rounded_by_jaw(end, table.jaws);
             for (const Nose& nose : plan.geometry.noses)
                 known = known || (nose.radius == 0.0 && nose.center == end);
             if (!known)
-                plan.geometry.noses.push_back(
-                    {end, 0.0, cushion.height, EventType::kBallCushion, static_cast<int>(i)});
+                plan.geometry.noses.push_back({end, 0.0, cushion.height, EventType::kBallCushion,
+                                               static_cast<int>(i), inset(cushion.height)});
         }
     }
     for (std::size_t i = 0; i < table.jaws.size(); ++i) {
         const Jaw& jaw = table.jaws[i];
-        plan.geometry.noses.push_back(
-            {jaw.center, jaw.radius, jaw.height, EventType::kBallJaw, static_cast<int>(i)});
+        plan.geometry.noses.push_back({jaw.center, jaw.radius, jaw.height, EventType::kBallJaw,
+                                       static_cast<int>(i), inset(jaw.height)});
     }
     plan.geometry.pockets = table.pockets;
 }
@@ -69,6 +73,10 @@ void choose_search(Plan& plan) {
 }
 
 }  // namespace
+
+double nose_inset(CushionTouch touch, double R, double height) {
+    return touch == CushionTouch::kRadius ? 0.0 : R - std::sqrt(height * (2.0 * R - height));
+}
 
 Plan make_plan(const Scene& scene, kernel::Isa isa) {
     Plan plan;

@@ -124,12 +124,12 @@ class Checker {
             for (const CushionLine& line : plan_.geometry.cushions) {
                 const Vec2 offset = r - line.from;
                 const double foot = dot(line.direction, offset);
-                const double gap = std::abs(cross(line.direction, offset)) - R(i);
+                const double gap = std::abs(cross(line.direction, offset)) - (R(i) - line.inset);
                 if (foot >= 0.0 && foot <= line.length && gap < -kTouchTolerance)
                     report("U3", "ball {} is {:.3g} m deep in a cushion", record_.tracks[i].id, -gap);
             }
             for (const Nose& nose : plan_.geometry.noses) {
-                const double gap = length(r - nose.center) - nose.radius - R(i);
+                const double gap = length(r - nose.center) - (R(i) + nose.radius - nose.inset);
                 if (gap < -kTouchTolerance)
                     report("U3", "ball {} is {:.3g} m deep in a jaw or cushion end", record_.tracks[i].id,
                            -gap);

@@ -8,6 +8,7 @@
 
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
+#include "carom/engine/geometry.h"
 #include "carom/engine/tolerances.h"
 #include "scene/sections.h"
 
@@ -60,12 +61,15 @@ void check_reach(const Section& top, const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
         const Vec2 p = planar(ball.position);
         const double touch = touch_tolerance(p), R = scene.size_of(ball).R;
+        const auto reach = [&](double height) {
+            return R - nose_inset(scene.physics.cushion_touch, R, height);
+        };
         for (const Cushion& c : scene.table.cushions) {
-            const double depth = R - distance_to_segment(p, c.from, c.to);
+            const double depth = reach(c.height) - distance_to_segment(p, c.from, c.to);
             if (depth > touch) refuse(ball, "cushion", c.id, depth);
         }
         for (const Jaw& j : scene.table.jaws) {
-            const double depth = R + j.radius - (p - j.center).norm();
+            const double depth = reach(j.height) + j.radius - (p - j.center).norm();
             if (depth > touch) refuse(ball, "jaw", j.id, depth);
         }
     }
@@ -92,6 +96,9 @@ void check_noses(const Section& top, const Scene& scene) {
 /// Refuses balls of different size where the models of the scene have no formula for them.
 void check_sizes(const Section& top, const Scene& scene) {
     if (scene.alike()) return;
+    if (scene.physics.cushion_touch == CushionTouch::kNose)
+        top.fail(top.where("physics", "cushion_touch"),
+                 "physics.cushion_touch = \"nose\" takes balls that are alike; leave it out");
     const BallBallModelInfo& model = *scene.physics.ball_ball;
     const bool rough = model.reads_friction && scene.balls.ball_friction();
     const BallSize first = scene.size_of(scene.ball.front());
@@ -128,11 +135,11 @@ void check_cushion_model(const Section& top, const Scene& scene) {
         if (model.accepts == nullptr) return;
         for (const BallStart& ball : scene.ball) {
             const BallSize size = scene.size_of(ball);
-            if (model.accepts({size.R, size.m, p.mu_s, p.e_c, p.f_c, height})) continue;
+            if (model.accepts({size.R, size.m, p.mu_s, p.e_c, p.most_cushion_friction(), height})) continue;
             top.fail(top.has("physics") ? "physics" : "balls",
                      "with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the "
                      "model {}; lower one of them or use another cushion model",
-                     p.f_c, p.mu_s, kind, id, model.name);
+                     p.most_cushion_friction(), p.mu_s, kind, id, model.name);
         }
     };
     for (const Cushion& c : scene.table.cushions) check(*scene.physics.cushion, "cushion", c.id, c.height);
@@ -142,7 +149,7 @@ void check_cushion_model(const Section& top, const Scene& scene) {
 /// Whether impacts with the table can give a ball vertical spin.
 bool cushions_twist(const Scene& scene) {
     const auto twists = [&](const CushionModelInfo* model) {
-        return model->reads_friction && scene.balls.f_c > 0.0;
+        return model->reads_friction && scene.balls.most_cushion_friction() > 0.0;
     };
     return (!scene.table.cushions.empty() && twists(scene.physics.cushion)) ||
            (!scene.table.jaws.empty() && twists(scene.physics.jaw_model()));

@@ -64,8 +64,12 @@ void read_balls(const Section& top, Scene& scene) {
     use_balls(scene, scene.ball_preset);
     if (!s) return;
     s->read(kBallFields, scene.balls);
-    if (s->has("mu_b") && s->has("mu_b_fit"))
-        s->fail("mu_b_fit", "balls.mu_b and balls.mu_b_fit are two values for one friction; remove one");
+    for (const auto& [number, fit] :
+         {std::pair{"mu_b", "mu_b_fit"}, std::pair{"e_c", "e_c_fit"}, std::pair{"f_c", "f_c_fit"}})
+        if (s->has(number) && s->has(fit))
+            s->fail(fit, "balls.{} and balls.{} are two values for one coefficient; remove one", number, fit);
+    if (scene.balls.e_c > 1.0)
+        s->fail("e_c_fit", "balls.e_c_fit starts at a restitution of {}; give 0 to 1", scene.balls.e_c);
 }
 
 void read_ball_list(const Section& top, Scene& scene) {

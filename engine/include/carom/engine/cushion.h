@@ -8,6 +8,9 @@
 
 namespace carom {
 
+struct BallParams;
+struct BallSize;
+
 /// What an impact of one ball with a cushion or jaw reads.
 struct CushionContact {
     double R;       ///< ball radius [m]
@@ -17,6 +20,11 @@ struct CushionContact {
     double f_c;     ///< friction
     double height;  ///< of the nose above the cloth [m], 0 < height < 2 R
 };
+
+/// What an impact of a ball that comes with v and w reads: the friction is that of its slip at the nose, and the restitution
+/// that of its speed along the normal (BallParams::f_c_more, e_c_fall), both taken once, before the impact.
+CushionContact cushion_contact(const BallParams& balls, const BallSize& size, double height,
+                               const Vec2& normal, const Vec3& v, const Vec3& w);
 
 /// Velocities after the impact, in place. v_z is 0 before and afterwards (planar).
 ///

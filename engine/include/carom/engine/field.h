@@ -224,6 +224,42 @@ constexpr Field<detail::ClassOf<kFirst>> field(const char* key, const Interval& 
             }};
 }
 
+/// The rows of a coefficient that may be a number or a fit of three: `number` is the first of them alone, and takes the place of a
+/// fit; `fit` is the list of all three, in scene files and where one of the others is not 0.
+template <auto kFirst, auto... kOthers>
+constexpr Field<detail::ClassOf<kFirst>> number_or_fit(const char* key, const Interval& range,
+                                                       const char* meaning) {
+    using T = detail::ClassOf<kFirst>;
+    return {{key, Key::Kind::kNumber, range, meaning, {}, false, 1, nullptr},
+            [](const T& object) -> FieldValue { return object.*kFirst; },
+            [](T& object, const FieldValue& value) {
+                object.*kFirst = std::get<double>(value);
+                ((object.*kOthers = 0.0), ...);
+            }};
+}
+template <auto kFirst, auto kSecond, auto kThird>
+constexpr Field<detail::ClassOf<kFirst>> fit(const char* key, const Interval& range, const char* meaning,
+                                             const char* shape, const char* instead_of) {
+    using T = detail::ClassOf<kFirst>;
+    return {{key,
+             Key::Kind::kNumbers,
+             range,
+             meaning,
+             {.shape = shape, .files = Files::kScene, .instead_of = instead_of},
+             true,
+             0,
+             nullptr},
+            [](const T& object) {
+                return object.*kSecond == 0.0 && object.*kThird == 0.0
+                           ? FieldValue()
+                           : std::vector<double>{object.*kFirst, object.*kSecond, object.*kThird};
+            },
+            [](T& object, const FieldValue& value) {
+                const auto& list = std::get<std::vector<double>>(value);
+                object.*kFirst = list[0], object.*kSecond = list[1], object.*kThird = list[2];
+            }};
+}
+
 /// The keys of some rows, as far as these files have them.
 template <class T, std::size_t kRows>
 std::vector<std::string_view> keys_of(const Field<T> (&fields)[kRows], Files files) {

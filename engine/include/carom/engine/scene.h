@@ -74,8 +74,16 @@ struct BallParams {
     /// mu_b + mu_b_more exp(-mu_b_fall u). 0: mu_b at every speed.
     double mu_b_more = 0.0;
     double mu_b_fall = 0.0;  ///< [s/m]
+    /// Cushion friction that falls with the slip u [m/s] at the nose: f_c + f_c_more exp(-f_c_fall u).
+    double f_c_more = 0.0;
+    double f_c_fall = 0.0;  ///< [s/m]
+    /// Cushion restitution that falls with the speed v_n [m/s] towards the cushion: above e_c_above by e_c_fall for
+    /// each m/s, and not below 0.
+    double e_c_fall = 0.0;   ///< [s/m]
+    double e_c_above = 0.0;  ///< [m/s]
     BallSize size() const { return {R, m}; }
     bool ball_friction() const { return mu_b != 0.0 || mu_b_more != 0.0; }
+    double most_cushion_friction() const { return f_c + f_c_more; }
     bool operator==(const BallParams&) const = default;
 };
 inline constexpr Field<BallParams> kBallFields[] = {
@@ -84,42 +92,46 @@ inline constexpr Field<BallParams> kBallFields[] = {
     field<&BallParams::mu_s>("mu_s", kFriction, "sliding friction on the cloth"),
     field<&BallParams::mu_r>("mu_r", kFriction, "rolling friction"),
     field<&BallParams::mu_sp>("mu_sp", kFriction, "spinning friction"),
-    // A number takes the place of a fit. Records give the rest of the fit in rows that follow.
-    {field<&BallParams::mu_b>("mu_b", kFriction,
-                              "ball-ball friction, at any slip; replaces the fit of a preset"),
-     [](const BallParams& p) -> FieldValue { return p.mu_b; },
-     [](BallParams& p, const FieldValue& value) {
-         p.mu_b = std::get<double>(value), p.mu_b_more = p.mu_b_fall = 0.0;
-     }},
+    // Records give the rest of a fit in rows of its own.
+    number_or_fit<&BallParams::mu_b, &BallParams::mu_b_more, &BallParams::mu_b_fall>(
+        "mu_b", kFriction, "ball-ball friction, at any slip; replaces the fit of a preset"),
     field<&BallParams::mu_b_more>(
         "mu_b_more", kFriction,
         "at a slip of u m/s the ball-ball friction is `mu_b` + `mu_b_more` exp(-`mu_b_fall` u)",
         {.files = Files::kRecord, .since = 2}),
     field<&BallParams::mu_b_fall>("mu_b_fall", at_least(0.0, kMaxFriction, "s/m"), "see `mu_b_more`",
                                   {.files = Files::kRecord, .since = 2}),
-    // Three members that have rows of their own, written as one list where the friction falls at all.
-    {{"mu_b_fit",
-      Key::Kind::kNumbers,
-      kFriction,
-      "ball-ball friction a + b exp(-c u) at the slip u in m/s, in an impact of two balls the slip before "
-      "it; `[0.009951, 0.108, 1.088]` "
-      "is the fit of Alciatore's TP A.14",
-      {.shape = "[a, b, c] for a + b exp(-c u)", .files = Files::kScene, .instead_of = "mu_b"},
-      true,
-      0,
-      nullptr},
-     [](const BallParams& p) {
-         return p.mu_b_more == 0.0 && p.mu_b_fall == 0.0
-                    ? FieldValue()
-                    : std::vector<double>{p.mu_b, p.mu_b_more, p.mu_b_fall};
-     },
-     [](BallParams& p, const FieldValue& value) {
-         const auto& fit = std::get<std::vector<double>>(value);
-         p.mu_b = fit[0], p.mu_b_more = fit[1], p.mu_b_fall = fit[2];
-     }},
+    fit<&BallParams::mu_b, &BallParams::mu_b_more, &BallParams::mu_b_fall>(
+        "mu_b_fit", kFriction,
+        "ball-ball friction a + b exp(-c u) at the slip u in m/s, in an impact of two balls the slip before "
+        "it; `[0.009951, 0.108, 1.088]` is the fit of Alciatore's TP A.14",
+        "[a, b, c] for a + b exp(-c u)", "mu_b"),
     field<&BallParams::e_b>("e_b", kRestitution, "ball-ball restitution"),
-    field<&BallParams::e_c>("e_c", kRestitution, "cushion restitution"),
-    field<&BallParams::f_c>("f_c", kFriction, "cushion friction"),
+    number_or_fit<&BallParams::e_c, &BallParams::e_c_fall, &BallParams::e_c_above>(
+        "e_c", kRestitution, "cushion restitution, at any speed"),
+    field<&BallParams::e_c_fall>("e_c_fall", at_least(0.0, kMaxFriction, "s/m"),
+                                 "above a speed of `e_c_above` towards the cushion the restitution is `e_c` - "
+                                 "`e_c_fall` (speed - `e_c_above`), and not below 0",
+                                 {.files = Files::kRecord, .since = 2}),
+    field<&BallParams::e_c_above>("e_c_above", at_least(0.0, kMaxSpeed, "m/s"), "see `e_c_fall`",
+                                  {.files = Files::kRecord, .since = 2}),
+    fit<&BallParams::e_c, &BallParams::e_c_fall, &BallParams::e_c_above>(
+        "e_c_fit", kFriction,
+        "cushion restitution that falls with the speed v in m/s towards the cushion: e up to v0, e - c (v - v0) "
+        "above, and not below 0; `[1, 0.08, 1.7]` with `mathavan_2010` meets the snooker cushion of 2009",
+        "[e, c, v0] for e - c max(0, v - v0)", "e_c"),
+    number_or_fit<&BallParams::f_c, &BallParams::f_c_more, &BallParams::f_c_fall>(
+        "f_c", kFriction, "cushion friction, at any slip"),
+    field<&BallParams::f_c_more>(
+        "f_c_more", kFriction,
+        "at a slip of u m/s at the nose the cushion friction is `f_c` + `f_c_more` exp(-`f_c_fall` u)",
+        {.files = Files::kRecord, .since = 2}),
+    field<&BallParams::f_c_fall>("f_c_fall", at_least(0.0, kMaxFriction, "s/m"), "see `f_c_more`",
+                                 {.files = Files::kRecord, .since = 2}),
+    fit<&BallParams::f_c, &BallParams::f_c_more, &BallParams::f_c_fall>(
+        "f_c_fit", kFriction,
+        "cushion friction a + b exp(-c u) at the slip u in m/s at the nose before the impact",
+        "[a, b, c] for a + b exp(-c u)", "f_c"),
 };
 
 /// Friction between two balls whose surfaces slip by `slip` [m/s] at the contact. Source of the form: D.
@@ -233,6 +245,11 @@ enum class ClothSlipSign : std::uint8_t { kConsistent, kAsPublished };
 constexpr auto names_of(ClothSlipSign) {
     return std::array{"consistent", "as_published"};
 }
+/// Where a ball touches a cushion.
+enum class CushionTouch : std::uint8_t { kRadius, kNose };
+constexpr auto names_of(CushionTouch) {
+    return std::array{"radius", "nose"};
+}
 enum class ClusterModel : std::uint8_t { kCompliant, kSequential, kRigid };
 constexpr auto names_of(ClusterModel) {
     return std::array{"compliant", "sequential", "rigid"};
@@ -259,6 +276,7 @@ struct Physics {
     ClusterModel clusters = ClusterModel::kCompliant;
     double tolerance = 1e-6;
     std::optional<int> substeps;  ///< set: the published march with N of them, instead of the tolerance
+    CushionTouch cushion_touch = CushionTouch::kRadius;
     bool operator==(const Physics&) const = default;
 };
 inline constexpr Field<Physics> kPhysicsFields[] = {
@@ -282,6 +300,11 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
                                "speed; frictions up to 1"),
     field<&Physics::substeps>("substeps", at_least(1.0, kMaxSubsteps), "the published march with this N",
                               {.instead_of = "tolerance"}),
+    field<&Physics::cushion_touch>(
+        "cushion_touch",
+        "distance of a ball's centre from a nose line that it touches: its `radius` R, as most simulators have "
+        "it, or sqrt(R^2 - (height - R)^2), where its sphere meets the `nose`; that is 0.6 to 2.2 mm less",
+        {.since = 2}),
 };
 
 /// What a plan computes or leaves out. The keywords of [effects], and when one is left out: effect_table() in plan.h, in this

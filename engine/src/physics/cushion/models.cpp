@@ -1,8 +1,13 @@
-// The list of cushion models. Each is a file beside this one, with its row.
+// The list of cushion models, each a file beside this one with its row, and the laws of friction and restitution that they share.
 #include "carom/engine/cushion.h"
 
+#include <algorithm>
 #include <span>
 #include <string_view>
+
+#include "carom/engine/math.h"
+#include "carom/engine/scene.h"
+#include "physics/cushion/nose.h"
 
 namespace carom {
 
@@ -22,6 +27,21 @@ const CushionModelInfo* cushion_model(std::string_view name) {
     for (const CushionModelInfo* model : all_of(&kHan2005))
         if (name == model->name) return model;
     return nullptr;
+}
+
+CushionContact cushion_contact(const BallParams& balls, const BallSize& size, double height,
+                               const Vec2& normal, const Vec3& v, const Vec3& w) {
+    CushionContact contact{
+        .R = size.R, .m = size.m, .mu_s = balls.mu_s, .e_c = balls.e_c, .f_c = balls.f_c, .height = height};
+    if (balls.f_c_more != 0.0) {
+        const double slip = detail::nose_contact(contact, normal, v, w).speed_t;
+        contact.f_c += balls.f_c_more * exponential(-balls.f_c_fall * slip);
+    }
+    if (balls.e_c_fall != 0.0) {
+        const double beyond = std::max(0.0, detail::approach_speed(normal, v) - balls.e_c_above);
+        contact.e_c = std::max(0.0, balls.e_c - balls.e_c_fall * beyond);
+    }
+    return contact;
 }
 
 }  // namespace carom
