@@ -193,7 +193,7 @@ TEST(ImpactLine, SaysWhatIsWrong) {
     const Json cushion = cushion_line();
     std::string models;
     for (const CushionModelInfo* model : all_of(&kHan2005))
-        models += (models.empty() ? "" : ", ") + std::string(name(model));
+        models += (models.empty() ? "" : ", ") + std::string(model->name);
     EXPECT_EQ(error_of(changed(cushion, "/model", "rubber")),
               "\"model\": this is no cushion model of this version; there are: " + models);
     EXPECT_EQ(error_of(changed(cushion, "/normal", {2, 0})),
