@@ -20,7 +20,7 @@ def navigation():
     paths = list(dict.fromkeys(re.findall(r"\]\(((?:%s)/[a-z0-9_-]+\.md)" % "|".join(SECTIONS), index, re.I)))
     sections = [{name.capitalize(): [f"docs/{path}" for path in paths if path.startswith(name + "/")]} for name in SECTIONS]
     return [{"carom": "README.md"}, {"Documents": "docs/README.md"}, *sections,
-            {"Contributing": "CONTRIBUTING.md"}, {"Changes": "CHANGELOG.md"}]
+            {"Contributing": "CONTRIBUTING.md"}, {"What is asserted": "tests/README.md"}, {"Changes": "CHANGELOG.md"}]
 
 
 def configure(path):

@@ -43,7 +43,7 @@ struct Comer {
     Vec2 r, v;
 };
 
-/// The rule of the cluster model as docs/design/hard_cases.md has it, told by looking at every ball.
+/// The rule of the cluster model as docs/reference/physics.md has it, told by looking at every ball.
 class FullScan {
   public:
     FullScan(const Record& record, double R) : R_(R), now_(record.tracks.size()), tracks_(record.tracks) {}

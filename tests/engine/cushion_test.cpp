@@ -272,7 +272,7 @@ TEST(Cushion, WithoutFrictionAtBallHeightTheClosedFormsAreSmoothBitForBit) {
     }
 }
 
-// Signs that every model with friction owes (docs/design/oracles.md): running side widens the rebound,
+// Signs that every model with friction owes (tests/README.md): running side widens the rebound,
 // check side narrows it; topspin keeps a rolling ball from coming straight back as fast as e.
 TEST(Cushion, RunningAndCheckSide) {
     for (const CushionModelInfo* model : kCushionModels) {

@@ -1,4 +1,4 @@
-// H38 of docs/design/hard_cases.md: seeded eight-ball breaks.
+// H38 of tests/README.md: seeded eight-ball breaks.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Hard cases of several contacts at once, through the engine: H1 to H3, H6 of docs/design/hard_cases.md.
+// Hard cases of several contacts at once, through the engine: H1 to H3, H6 of tests/README.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Hard cases that take long: H32 of docs/design/hard_cases.md.
+// Hard cases that take long: H32 of tests/README.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Hard cases of detection and geometry, through the engine: H10 to H21 of docs/design/hard_cases.md.
+// Hard cases of detection and geometry, through the engine: H10 to H21 of tests/README.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Hard cases of whole runs: H33 to H36, H39, H40 of docs/design/hard_cases.md.
+// Hard cases of whole runs: H33 to H36, H39, H40 of tests/README.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>

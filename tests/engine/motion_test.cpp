@@ -1,4 +1,4 @@
-// Closed-form motion: truth data T1..T5 of docs/design/oracles.md and the reference vectors of motion.json.
+// Closed-form motion: truth data T1..T5 of tests/README.md and the reference vectors of motion.json.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Resting contacts: H4, H5, H7 to H9 of docs/design/hard_cases.md with the numbers of the design notes (clusters,
+// Resting contacts: H4, H5, H7 to H9 of tests/README.md with the numbers of the design notes (clusters,
 // sections 7 and 9).
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Throw, spin transfer and curved paths in whole shots (docs/design/oracles.md: T10, T11, the throw table 7b, masse).
+// Throw, spin transfer and curved paths in whole shots (tests/README.md: T10, T11, the throw table 7b, masse).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ TEST(Throw, FollowsTheFormulaForAnySpeedCutAndSide) {
                 }
 }
 
-// The table of docs/design/oracles.md, 7b, as printed.
+// The table of tests/README.md, 7b, as printed.
 TEST(Throw, Table7b) {
     const double speeds[] = {0.447, 1.341, 3.129};
     const double table[][7] = {{10, 1.443, .760, 1.443, .349, 1.443, .135},

@@ -1,4 +1,4 @@
-// Statements of docs/design/oracles.md in whole shots: T6 to T9, and what a cushion owes a ball
+// Statements of tests/README.md in whole shots: T6 to T9, and what a cushion owes a ball
 // that rolls on afterwards.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Physical truths that the march must show (docs/design/oracles.md): T6 to T8, T12, T13, T15. An Euler
+// Physical truths that the march must show (tests/README.md): T6 to T8, T12, T13, T15. An Euler
 // march of N steps errs by up to (1 + e) v_n / N, so those that are limits are asked within that.
 #include <gtest/gtest.h>
 

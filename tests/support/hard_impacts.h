@@ -1,4 +1,4 @@
-// The impacts that broke the published code, H22 to H31 of docs/design/hard_cases.md, and what every march must answer.
+// The impacts that broke the published code, H22 to H31 of tests/README.md, and what every march must answer.
 #pragma once
 
 #include <cmath>

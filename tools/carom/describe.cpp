@@ -124,7 +124,7 @@ std::string code_list(const std::vector<std::string>& words) {
 /// The description of an option; what the page says of all flags and files at its top is left out.
 std::string page_meaning(const Option& row) {
     std::string text = meaning(row);
-    for (const char* known : {" (default: off)", " (default: not written)"})
+    for (const char* known : {" (default: off)", " (default: not written)", " (default: not drawn)"})
         text = replaced(std::move(text), known, "");
     return markdown(text);
 }
@@ -137,7 +137,7 @@ void page_command(std::string& out, const Options& command, const std::string& p
         fmt::format("\n## {}\n\n`{}`\n\n{}.\n\n", name, synopsis_of(command, name), markdown(command.text));
     for (const bool by_place : {true, false}) {
         for (const Option& row : rows_of(command, by_place)) {
-            if (row.names.back() == "--help") continue;
+            if (row.names.back() == "--help" || row.text == "Scene file (TOML)") continue;
             out += fmt::format("* `{}{}{}`: {}", joined(row.names, ", "), row.value.empty() ? "" : " ",
                                row.value, page_meaning(row));
             if (!row.choices.empty()) out += fmt::format("; one of {}", code_list(row.choices));
@@ -156,10 +156,10 @@ std::string command_line_page(const Options& program) {
     for (const auto& [status, text] : kStatuses)
         statuses += fmt::format("{}{} {}", statuses.empty() ? "" : ", ", status, text);
     return "# The command line\n\n"
-           "Every command with its options, printed by `carom describe command-line` from the table that the "
-           "program "
-           "parses. `--help` behind a command says the same. A flag is off, and a file is not written, "
-           "unless it is "
+           "Every command with its options, as `--help` behind a command says them; `carom describe "
+           "command-line` "
+           "prints this page. SCENE is a scene file (TOML). A flag is off, and a file is not written, unless "
+           "it is "
            "named.\n\n"
            "* Exit status: " +
            statuses + ".\n* `CAROM_ISA` in the environment: " + kIsaText + "\n" + commands;

@@ -219,9 +219,7 @@ void add_render(Options& program) {
     command.option("--to", &args.to, "S", "Last instant in s (default: the end of the shot)");
     command.option("--frame", &args.frame, "K", "Only frame K (default: all)");
     command.option("--at", &args.at, "S", "Only this instant in s, as frame 0 (default: all)");
-    command
-        .option("--camera", &args.camera, "NAME",
-                "Camera (default: the scene's, which is top unless it says otherwise)")
+    command.option("--camera", &args.camera, "NAME", "Camera (default: the scene's, else top)")
         .one_of({"top", "rail", "player", "follow"});
     command.option("--eye", &args.eye, "X,Y,Z",
                    "Free camera: where the eye is, in m (default: a named camera)");

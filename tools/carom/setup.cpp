@@ -32,10 +32,8 @@ void add_gl(Options& command, std::string& gl) {
 }
 
 void add_picture(Options& command, std::optional<double>& fps, std::string& size) {
-    command.option("--fps", &fps, "F",
-                   "Frames per second (default: the scene's, which is 60 unless it says otherwise)");
-    command.option("--size", &size, "WxH",
-                   "Pixels (default: the scene's, which is 1280x720 unless it says otherwise)");
+    command.option("--fps", &fps, "F", "Frames per second (default: the scene's, else 60)");
+    command.option("--size", &size, "WxH", "Pixels (default: the scene's, else 1280x720)");
 }
 
 void add_repeat(Options& command, int& rounds, std::string description) {

@@ -1,5 +1,5 @@
 // Resting contacts: balls that stay in contact and push each other, or a cushion. Accelerations are constant over an
-// interval, so that motions remain polynomials. Source: docs/reference/physics.md, docs/design/hard_cases.md H5, H7.
+// interval, so that motions remain polynomials. Source: docs/reference/physics.md, tests/README.md H5, H7.
 //
 // Forces per contact (normal force N >= 0, n from the ball to the other one or into the cushion): -N n on the ball,
 // +N n on the other, and the vertical share of the friction between two balls, which loads the cloth and slows the

@@ -22,7 +22,7 @@ class RestingContacts {
     bool has(const Contact& contact) const {
         return !contacts_.empty() && balls_.segment(contact.ball).held && find(contact);
     }
-    /// Begins a resting contact instead of a bounce if the conditions hold (docs/design/hard_cases.md, H5 and H7).
+    /// Begins a resting contact instead of a bounce if the conditions hold (tests/README.md, H5 and H7).
     /// @param restitution  of the bounce
     /// @return whether it is a resting contact now
     /// @throws SimulationError if two balls of different size would form a resting contact
