@@ -34,7 +34,8 @@ Pages pages_of(const std::string& folder) {
 
 Pages all_pages() {
     Pages pages = pages_of("");
-    for (const char* name : {"README.md", "CONTRIBUTING.md", "tests/README.md"}) pages[name] = read_source(name);
+    for (const char* name : {"README.md", "CONTRIBUTING.md", "tests/README.md"})
+        pages[name] = read_source(name);
     return pages;
 }
 
