@@ -187,7 +187,8 @@ TEST(ClusterSearch, TheSizeIsThatOfTheBallsThemselves) {
 double looks_per_impact(const Scene& scene) {
     const Plan plan = plan_of(scene);
     const SimulateOptions options;
-    Run run(plan, options);
+    RunBuffers::Memory memory;
+    Run run(plan, options, memory);
     const Record record = run.simulate(nullptr);
     const auto impacts = std::count_if(record.events.begin(), record.events.end(),
                                        [](const Event& e) { return balls_collide(e.type); });

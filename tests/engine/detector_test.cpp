@@ -7,6 +7,7 @@
 
 #include "contact/detect.h"
 #include "loop/detector.h"
+#include "loop/run.h"
 #include "physics/motion.h"
 #include "support/engine_cases.h"
 #include "support/random_scenes.h"
@@ -20,10 +21,10 @@ using namespace test;
 struct Parts {
     explicit Parts(const Scene& scene, Search search = Search::kDirect)
         : plan(plan_by(scene, search)),
-          balls(plan),
-          log(plan, options, balls),
-          resting(plan, balls, log),
-          detector(plan, balls, resting, nullptr) {
+          balls(plan, memory.balls),
+          log(plan, options, balls, memory.log, Keep::kRecord),
+          resting(plan, balls, log, memory.resting),
+          detector(plan, balls, resting, nullptr, memory.detector) {
         for (int i = 0; i < balls.count(); ++i) {
             const BallStart& b = scene.ball[static_cast<std::size_t>(i)];
             log.begin(i, start_segment(0.0, b.position, b.velocity, b.spin, balls.motion(i)));
@@ -43,6 +44,7 @@ struct Parts {
 
     Plan plan;
     SimulateOptions options;
+    RunBuffers::Memory memory;
     Balls balls;
     Log log;
     RestingContacts resting;

@@ -1,12 +1,15 @@
 // What the event loop takes from the heap: operator new is replaced here and counts.
 #include <box2d/b2_dynamic_tree.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
 #include <string>
 
+#include "base/splitmix64.h"
+#include "carom/engine/batch.h"
 #include "support/gas.h"
 
 namespace {
@@ -116,6 +119,47 @@ TEST(Memory, NoAllocationInTheLoopOfAShot) {
         const LoopCount count(
             plan_of(read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + file + ".toml")));
         EXPECT_EQ(count.in_loop(), 0) << file;
+    }
+}
+
+bool has_resting_contacts(const Record& record) {
+    return std::any_of(record.events.begin(), record.events.end(),
+                       [](const Event& e) { return kind(e.type).phase == EventPhase::kHold; });
+}
+
+// Of a batch: what the first shots took is enough for the others, unless balls rest against something.
+TEST(Memory, NoAllocationInABatchAfterTheFirstShots) {
+    for (const char* file : {"draw", "three_cushion", "side_bank", "eight_ball_break"}) {
+        const Scene scene = read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + file + ".toml");
+        const SceneNumber aim(scene, "cue.aim_deg"), speed(scene, "cue.speed"),
+            side(scene, "cue.offset.side"), mu_r(scene, "balls.mu_r"),
+            x(scene, "ball." + scene.cue->ball + ".position.x");
+        Simulator simulator(scene, kernel::Isa::kScalar);
+        SplitMix64 random(1);
+        const double own = scene.ball[0].position.x();
+        int results = 0, without_memory = 0;
+        for (int shot = 0; shot < 200; ++shot) {
+            Scene& s = simulator.scene();
+            SimulateOptions options;
+            options.hash = shot % 3 == 0;
+            const long before = allocations;
+            Change change = aim.put(s, 80.0 + 20.0 * random.uniform());
+            change = std::max(change, speed.put(s, 1.0 + 5.0 * random.uniform()));
+            change = std::max(change, side.put(s, shot % 2 * 0.1));
+            change = std::max(change, mu_r.put(s, 0.008 + 0.004 * random.uniform()));
+            change = std::max(change, x.put(s, own + 0.001 * random.uniform()));
+            results += has_result(simulator.play(change, options));
+            if (shot < 20) continue;
+            without_memory += allocations == before;
+            if (allocations == before) continue;
+            // A longer shot, or a larger cluster, than all before needs longer lists: not when it is played again.
+            const long once_more = allocations;
+            simulator.play(change, options);
+            const long more = allocations - once_more;
+            EXPECT_TRUE(more == 0 || has_resting_contacts(simulate(plan_of(s)))) << file << ' ' << shot;
+        }
+        EXPECT_EQ(results, 200) << file;
+        EXPECT_GT(without_memory, 120) << file;
     }
 }
 

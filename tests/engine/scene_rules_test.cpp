@@ -14,6 +14,7 @@
 #include "carom/engine/scene.h"
 #include "carom/engine/tolerances.h"
 #include "support/scene_errors.h"
+#include "support/scene_files.h"
 
 namespace {
 
@@ -23,37 +24,9 @@ using carom::SceneError;
 using carom::Vec2;
 using carom::Vec3;
 using carom::test::error_of;
-
-std::string read_file(const std::filesystem::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    EXPECT_TRUE(in) << path;
-    std::ostringstream out;
-    out << in.rdbuf();
-    return out.str();
-}
-
-/// `*` in the pattern stands for any text.
-bool matches(const std::string& pattern, const std::string& text, std::size_t p = 0, std::size_t t = 0) {
-    for (; p < pattern.size(); ++p, ++t) {
-        if (pattern[p] == '*') {
-            for (std::size_t rest = t; rest <= text.size(); ++rest) {
-                if (matches(pattern, text, p + 1, rest)) return true;
-            }
-            return false;
-        }
-        if (t >= text.size() || pattern[p] != text[t]) return false;
-    }
-    return t == text.size();
-}
-
-std::vector<std::filesystem::path> toml_files(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> out;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        if (entry.path().extension() == ".toml") out.push_back(entry.path());
-    }
-    std::sort(out.begin(), out.end());
-    return out;
-}
+using carom::test::matches;
+using carom::test::read_file;
+using carom::test::toml_files;
 
 const std::string kBall = "[[ball]]\nposition = [0.6, 0.5]\n";
 

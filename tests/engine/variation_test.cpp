@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -115,6 +116,87 @@ TEST_F(VariationTest, InvalidValuesAreNoScene) {
         EXPECT_EQ(shot.error.find("s.toml"), std::string::npos) << shot.error;
     }
     EXPECT_GT(bad, 5);
+}
+
+/// What shot() makes has no places in a file: toml++ does not copy them.
+Scene without_places(Scene scene) {
+    for (BallStart& ball : scene.ball) ball.where = {};
+    if (scene.cue) scene.cue->where = {};
+    return scene;
+}
+
+// The quick way makes the scene that the file would, or says that it cannot.
+TEST_F(VariationTest, PutMakesTheSceneOfTheFile) {
+    const auto expect_same = [&](const std::vector<std::string>& rules, int quick) {
+        const Variation v = vary(rules);
+        Scene scene = v.base();
+        std::vector<std::string> values;
+        int made = 0;
+        for (std::uint64_t i = 0; i < 60; ++i) {
+            const VariedShot shot = v.shot(i);
+            const std::optional<Change> change = v.put(i, scene, values);
+            if (!change) continue;
+            ++made;
+            EXPECT_EQ(values, shot.values);
+            if (shot.scene) {
+                EXPECT_EQ(without_places(scene), without_places(*shot.scene)) << i;
+                EXPECT_NO_THROW(validate_change(scene, *change));
+                continue;
+            }
+            try {
+                validate(scene);
+                ADD_FAILURE() << shot.error;
+            } catch (const SceneError& error) {
+                EXPECT_EQ(error.message(), shot.error);
+            }
+            EXPECT_THROW(validate_change(scene, *change), SceneError) << shot.error;
+        }
+        EXPECT_EQ(made, quick) << rules.front();
+    };
+    expect_same({"cue.speed=uniform(-1,3)", "cue.offset.side=uniform(-0.6,0.6)", "cue.end_mass=uniform(0,1)",
+                 "cue.elevation_deg=normal(80,10)"},
+                60);
+    expect_same({"ball.cue.position.y=uniform(-0.1,2.5)", "ball.cue.position.0=uniform(0,1.3)",
+                 "balls.mu_s=uniform(0,1.2)", "balls.mu_b=list(0, 0.5, 1.5)", "balls.e_c=uniform(0.5,1.1)"},
+                60);
+    expect_same({"physics.gravity=list(0,9.81)", "physics.tolerance=uniform(1e-9,1e-5)",
+                 "stop.time=uniform(-1,5)", "stop.events=integer(1,9)"},
+                60);
+    expect_same({"physics.cushion=list(\"stronge\",\"smooth\")", "cue.speed=uniform(1,2)"}, 0);
+    expect_same({"balls.radius=uniform(0.028,0.029)"}, 0);
+    expect_same({"ball.ball.2.mass=uniform(0.16,0.18)", "balls.mu_b=list(0)",
+                 "physics.ball_ball=list(\"inelastic\")"},
+                0);
+    expect_same({"table.pocket.p1.radius=uniform(0.05,0.07)"}, 0);
+    text_ =
+        "[balls]\nmu_r = 0.02\n[table]\ncloth = \"club\"\n[[ball]]\nposition = [0.6, 0.5]\n[rack]\ngame = "
+        "\"eight_ball\"\n[cue]\n";
+    expect_same({"rack.seed=integer(1,100)", "rack.jitter=uniform(0,0.0001)", "rack.gap=uniform(0,0.001)",
+                 "rack.angle_deg=uniform(-5,5)", "balls.mu_r=uniform(0.01,0.02)"},
+                60);
+    expect_same({"rack.spot_ball=integer(1,15)"}, 0);
+}
+
+TEST_F(VariationTest, PutLeavesWhatTheReaderHasToRefuse) {
+    text_ = "[[ball]]\nposition = [0.6, 0.5]\n[rack]\ngame = \"eight_ball\"\n[cue]\n";
+    for (const char* rule : {"rack.seed=integer(-50,50)", "rack.gap=uniform(-0.001,0.001)",
+                             "stop.events=list(5, 1.5)", "cue.speed=list(1, \"fast\")"}) {
+        const Variation v = vary({rule});
+        Scene scene = v.base();
+        std::vector<std::string> values;
+        int left = 0;
+        for (std::uint64_t i = 0; i < 60; ++i) {
+            const VariedShot shot = v.shot(i);
+            const bool made = v.put(i, scene, values).has_value();
+            EXPECT_EQ(made, shot.scene.has_value()) << rule << ' ' << shot.error;
+            if (made) {
+                EXPECT_EQ(without_places(scene), without_places(*shot.scene));
+            }
+            left += !made;
+        }
+        EXPECT_GT(left, 10) << rule;
+        EXPECT_LT(left, 50) << rule;
+    }
 }
 
 TEST_F(VariationTest, AllShotsHaveTheSameBalls) {

@@ -27,7 +27,7 @@ struct Rooms {
 };
 const std::array<Rooms, 3> kRooms = {{
     {"kernel/src", {}, {"march", "tolerance", "contact_phase"}},
-    {"engine/src", {"base", "physics", "contact"}, {"scene", "plan", "loop", "record"}},
+    {"engine/src", {"base", "physics", "contact"}, {"scene", "plan", "loop", "record", "batch"}},
     {"render/src", {"font", "gl"}, {"stage", "draw", "frames"}},
 }};
 /// Public headers that say what a station made or does. A toolbox knows none of them.

@@ -57,6 +57,15 @@ std::string printable(std::string_view text) {
     return out;
 }
 
+bool is_utf8(std::string_view text) {
+    for (std::size_t at = 0, size = 0; at < text.size(); at += size) {
+        std::uint32_t code = 0;
+        size = character(text.substr(at), code);
+        if (size == 0) return false;
+    }
+    return true;
+}
+
 std::string in_quotes(std::string_view text) {
     std::string out = "\"";
     out += printable(text);

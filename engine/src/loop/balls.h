@@ -6,12 +6,19 @@
 
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
+#include "loop/memory.h"
 
 namespace carom {
 
-class Balls {
+struct BallsMemory {
+    std::vector<Segment> segments_;
+};
+
+class Balls : private Borrowed<BallsMemory> {
   public:
-    explicit Balls(const Plan& plan) : plan_(plan), segments_(plan.sizes.size()) {}
+    Balls(const Plan& plan, BallsMemory& memory) : Borrowed(memory), plan_(plan) {
+        segments_.assign(plan.sizes.size(), Segment());
+    }
 
     int count() const { return static_cast<int>(segments_.size()); }
     /// The present motion of the ball.
@@ -33,7 +40,6 @@ class Balls {
   private:
     const Plan& plan_;
     double now_ = 0.0;
-    std::vector<Segment> segments_;
 };
 
 }  // namespace carom

@@ -57,7 +57,7 @@ void BoxSearch::set_up(int count, Search kind) {
     if (kind != Search::kTree) return;
     tree_ = std::make_unique<b2DynamicTree>();
     slot_.resize(boxes);
-    index_.resize(size, -1);
+    index_.assign(size, -1);
     sorted_.resize(boxes);
     proxy_.assign(size / kBlock, -1);
     for (std::size_t i = 0; i < boxes; ++i) slot_[i] = index_[i] = static_cast<int>(i);

@@ -36,8 +36,8 @@ Gap gap_of(const ClusterBall& p, const ClusterBall& q, double R) {
 
 }  // namespace
 
-Clusters::Clusters(const Plan& plan, const Balls& balls, const Detector& detector)
-    : plan_(plan), balls_(balls), detector_(detector) {}
+Clusters::Clusters(const Plan& plan, const Balls& balls, const Detector& detector, ClustersMemory& memory)
+    : Borrowed(memory), plan_(plan), balls_(balls), detector_(detector) {}
 
 ClusterBall Clusters::member(int ball) const {
     return {ball, balls_.position(ball), balls_.velocity(ball), balls_.spin(ball)};

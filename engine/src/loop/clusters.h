@@ -6,13 +6,20 @@
 
 #include "loop/balls.h"
 #include "loop/detector.h"
+#include "loop/memory.h"
 #include "physics/cluster.h"
 
 namespace carom {
 
-class Clusters {
+struct ClustersMemory {
+    ClusterMap map_;
+    std::vector<ClusterBall> members_;
+    std::vector<ClusterContact> contacts_;
+};
+
+class Clusters : private Borrowed<ClustersMemory> {
   public:
-    Clusters(const Plan& plan, const Balls& balls, const Detector& detector);
+    Clusters(const Plan& plan, const Balls& balls, const Detector& detector, ClustersMemory& memory);
 
     /// Finds the cluster of two balls that meet at v_n [m/s]. @return the fastest approach in it [m/s]
     double collect(int a, int b, double v_n);
@@ -37,9 +44,6 @@ class Clusters {
     const Plan& plan_;
     const Balls& balls_;
     const Detector& detector_;
-    ClusterMap map_;
-    std::vector<ClusterBall> members_;
-    std::vector<ClusterContact> contacts_;
     std::int64_t looks_ = 0;
 };
 

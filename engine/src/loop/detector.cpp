@@ -14,16 +14,19 @@ int rank(With with) {
 
 }  // namespace
 
-// Allocates all memory of the search.
-Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& resting, Costs* costs)
-    : plan_(plan),
+// Allocates all memory of the search that earlier runs did not need.
+Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& resting, Costs* costs,
+                   DetectorMemory& memory)
+    : Borrowed(memory),
+      plan_(plan),
       balls_(balls),
       resting_(resting),
       detect_ns_(costs != nullptr ? &costs->event.detect_ns : nullptr),
       search_ns_(costs != nullptr ? &costs->search_ns : nullptr) {
     const auto count = static_cast<std::size_t>(balls_.count());
     key_.assign(count, kNever);
-    mover_.resize(count);
+    mover_.assign(count, Mover());
+    changed_.clear();
     changed_.reserve(count);
     queue_.set_up(balls_.count());
     ball_boxes_.set_up(plan_.pairs ? balls_.count() : 0, plan_.ball_search);

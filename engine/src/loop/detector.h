@@ -13,6 +13,7 @@
 #include "loop/balls.h"
 #include "loop/box_search.h"
 #include "loop/event_queue.h"
+#include "loop/memory.h"
 #include "loop/resting_contacts.h"
 #include "loop/stopwatch.h"
 #include "physics/motion.h"
@@ -26,10 +27,39 @@ struct Candidate {
     std::uint32_t stamp = 0;  ///< for a pair: Mover::stamp of the partner when this was found
 };
 
-class Detector {
+/// The data of a ball besides its segment: two cache lines.
+struct alignas(64) Mover {
+    double until = kNever;    ///< the box is valid until this time; contacts after it have not been searched
+    double own = kNever;      ///< time of the ball's transition
+    double surface = 0.0;     ///< R |w| at the start of the segment [m/s]
+    std::uint32_t stamp = 0;  ///< incremented with every new segment
+    std::uint32_t round = 0;  ///< last search in which the ball was new
+    /// First contact with another ball. It stays until it is the next candidate, even if the motion of the partner
+    /// has changed: it is then not later than the true first contact.
+    Candidate pair;
+    Candidate table;  ///< first contact with the table
+    /// Time at which the box expires; kNever if an event of the ball itself is earlier
+    double refresh = kNever;
+    double travel = 0.0;  ///< [m] distance that the next box covers
+    bool straight = false, queued = false;
+};
+
+struct DetectorMemory {
+    std::vector<Mover> mover_;
+    std::vector<double> key_;   // per ball: time of its first candidate or of the expiry of its box
+    std::vector<int> changed_;  // balls whose position in the queue must be updated
+    EventQueue queue_;
+    BoxSearch ball_boxes_,
+        table_boxes_;             // of balls until their own next event, and of the parts of the table
+    std::vector<Contact> parts_;  // cushions, then noses, then pockets; without a ball
+    std::vector<int> near_;       // parts that a ball can reach
+};
+
+class Detector : private Borrowed<DetectorMemory> {
   public:
     /// @param costs  receives the costs of a profiled run; otherwise nullptr
-    Detector(const Plan& plan, const Balls& balls, const RestingContacts& resting, Costs* costs);
+    Detector(const Plan& plan, const Balls& balls, const RestingContacts& resting, Costs* costs,
+             DetectorMemory& memory);
 
     /// Searches the contacts of the balls whose motion has changed, and clears the list. At first it needs all balls.
     void update(std::vector<int>& touched);
@@ -45,24 +75,6 @@ class Detector {
     double fastest() const { return fastest_; }
 
   private:
-    /// The data of a ball besides its segment: two cache lines.
-    struct alignas(64) Mover {
-        double until =
-            kNever;            ///< the box is valid until this time; contacts after it have not been searched
-        double own = kNever;   ///< time of the ball's transition
-        double surface = 0.0;  ///< R |w| at the start of the segment [m/s]
-        std::uint32_t stamp = 0;  ///< incremented with every new segment
-        std::uint32_t round = 0;  ///< last search in which the ball was new
-        /// First contact with another ball. It stays until it is the next candidate, even if the motion of the partner
-        /// has changed: it is then not later than the true first contact.
-        Candidate pair;
-        Candidate table;  ///< first contact with the table
-        /// Time at which the box expires; kNever if an event of the ball itself is earlier
-        double refresh = kNever;
-        double travel = 0.0;  ///< [m] distance that the next box covers
-        bool straight = false, queued = false;
-    };
-
     // detector.cpp
     bool before(const Candidate& x, const Candidate& y) const {
         return x.time != y.time ? x.time < y.time : x.time != kNever && before_at_once(x, y);
@@ -101,14 +113,6 @@ class Detector {
     const Balls& balls_;
     const RestingContacts& resting_;
     double *detect_ns_, *search_ns_;  // sums of a profiled run; otherwise nullptr
-    std::vector<Mover> mover_;
-    std::vector<double> key_;   // per ball: time of its first candidate or of the expiry of its box
-    std::vector<int> changed_;  // balls whose position in the queue must be updated
-    EventQueue queue_;
-    BoxSearch ball_boxes_,
-        table_boxes_;             // of balls until their own next event, and of the parts of the table
-    std::vector<Contact> parts_;  // cushions, then noses, then pockets; without a ball
-    std::vector<int> near_;       // parts that a ball can reach
     std::uint32_t round_ = 0;
     double fastest_ = 0.0;
 };

@@ -17,75 +17,59 @@ constexpr std::size_t kRoom = 256;
 
 }  // namespace
 
-Log::Log(const Plan& plan, const SimulateOptions& options, Balls& balls)
-    : options_(options),
-      balls_(balls),
-      geometry_(plan.geometry),
-      has_clusters_(plan.clusters != ClusterModel::kSequential) {
-    const Scene& scene = plan.scene;
-    record_.table = scene.table;
-    record_.balls = plan.balls;
-    record_.gravity = plan.gravity;
-    record_.render = scene.render;
-    record_.start_time = options.start_time;
-    record_.tracks.reserve(scene.ball.size());
-    for (const BallStart& ball : scene.ball) {
-        BallTrack track;
-        track.id = ball.id;
-        track.own = ball.own;
-        record_.tracks.push_back(std::move(track));
-    }
-    if (options.profile) costs_.emplace();
-    touched_.reserve(scene.ball.size() + 1);
+Log::Log(const Plan& plan, const SimulateOptions& options, Balls& balls, LogMemory& memory, Keep keep)
+    : Borrowed(memory), plan_(plan), options_(options), balls_(balls), geometry_(plan.geometry), keep_(keep) {
+    if (options.profile && keep == Keep::kRecord) costs_.emplace();
+    events_.clear();
+    segments_.clear();
+    cluster_ball_.clear();
+    cluster_end_.clear();
+    touched_.clear();
     reserve();
 }
 
 void Log::reserve() {
-    segments_.reserve(static_cast<std::size_t>(balls_.count()) + kRoom);
-    if (has_clusters_) {
+    touched_.reserve(plan_.scene.ball.size() + 1);
+    if (keep_ != Keep::kOutcome) segments_.reserve(static_cast<std::size_t>(balls_.count()) + kRoom);
+    if (plan_.clusters != ClusterModel::kSequential) {
         cluster_ball_.reserve(kRoom);
         cluster_end_.reserve(kRoom);
     }
-    record_.events.reserve(record_.events.size() + kRoom);
+    events_.reserve(events_.size() + kRoom);
 }
 
 void Log::resume(const Record& so_far) {
-    record_ = so_far;
-    record_.costs.clear();
-    record_.start_time = options_.start_time;
-    for (std::size_t i = 0; i < record_.tracks.size(); ++i)
-        balls_.set(static_cast<int>(i), record_.tracks[i].segments.back());
-    balls_.advance_to(record_.duration);
+    so_far_ = &so_far;
+    events_ = so_far.events;
+    for (std::size_t i = 0; i < so_far.tracks.size(); ++i)
+        balls_.set(static_cast<int>(i), so_far.tracks[i].segments.back());
+    balls_.advance_to(so_far.duration);
     reserve();
 }
 
 void Log::cluster(int a, int b, const std::vector<ClusterBall>& balls) {
-    event(EventType::kBallCluster, a, b, static_cast<int>(record_.clusters.size() + cluster_end_.size()));
-    for (const ClusterBall& ball : balls) cluster_ball_.push_back(ball.ball);
+    const std::size_t before = so_far_ != nullptr ? so_far_->clusters.size() : 0;
+    event(EventType::kBallCluster, a, b, static_cast<int>(before + cluster_end_.size()));
+    cluster_ball_.insert(cluster_ball_.end(), balls.begin(), balls.end());
     cluster_end_.push_back(cluster_ball_.size());
-}
-
-void Log::pocketed(int ball, int pocket) {
-    record_.tracks[ball].pocket = pocket;
-    event(EventType::kBallPocket, ball, pocket);
 }
 
 void Log::end_set_up(double set_up_ns) {
     if (!costs_) return;
-    record_.costs.resize(record_.events.size());
-    if (!record_.costs.empty() && record_.events.front().type == EventType::kCueStrike)
-        record_.costs.front().method = "point";
-    record_.setup_detect_ns = set_up_ns;
+    event_costs_.resize(events_.size());
+    if (!event_costs_.empty() && events_.front().type == EventType::kCueStrike)
+        event_costs_.front().method = "point";
+    setup_detect_ns_ = set_up_ns;
     *costs_ = {};
 }
 
 // An iteration can cause several events: the first one gets the cost. If it causes none, the next event gets it.
 void Log::book_costs() {
-    record_.costs.resize(record_.events.size());
+    event_costs_.resize(events_.size());
     EventCost& cost = costs_->event;
-    if (record_.events.size() > events_before_) {
+    if (events_.size() > events_before_) {
         cost.queue_ns = cost.detect_ns - costs_->search_ns;
-        record_.costs[events_before_] = cost;
+        event_costs_[events_before_] = cost;
         *costs_ = {};
     } else {
         cost.steps = 0;  // of an impact that caused no event
@@ -97,7 +81,7 @@ void Log::tell_progress() {
     if (++rounds_untold_ < options_.progress_rounds && !long_round_) return;
     rounds_untold_ = 0;
     long_round_ = false;
-    options_.progress(record_.events.size(), balls_.now());
+    options_.progress(events_.size(), balls_.now());
 }
 
 void Log::fail_crowded() const {
@@ -108,12 +92,13 @@ void Log::fail_crowded() const {
 
 void Log::fail(const std::string& why) const {
     std::string text = fmt::format("simulation stopped at t = {:.17g} s after {} events: {}\n", balls_.now(),
-                                   record_.events.size(), why);
-    const std::size_t count = record_.events.size();
+                                   events_.size(), why);
+    const std::size_t count = events_.size();
+    const Record record = record_so_far();
     text += "last events:\n";
     for (std::size_t i = count > 8 ? count - 8 : 0; i < count; ++i) {
-        const Event& e = record_.events[i];
-        text += fmt::format("  {:.17g} {} {} {}\n", e.time, name(e.type), id(e.a), record_.partner_id(e));
+        const Event& e = events_[i];
+        text += fmt::format("  {:.17g} {} {} {}\n", e.time, name(e.type), id(e.a), record.partner_id(e));
     }
     text += "balls that move (id state x y vx vy wx wy wz):\n";
     for (int i = 0; i < balls_.count(); ++i) {
@@ -128,21 +113,51 @@ void Log::fail(const std::string& why) const {
     throw SimulationError(text);
 }
 
-Record Log::finish(StopReason why) {
-    std::vector<std::size_t> count(record_.tracks.size());
-    for (std::size_t i = 0; i < count.size(); ++i) count[i] = record_.tracks[i].segments.size();
-    for (const BallSegment& s : segments_) ++count[s.ball];
-    for (std::size_t i = 0; i < count.size(); ++i) record_.tracks[i].segments.reserve(count[i]);
-    for (const BallSegment& s : segments_) record_.tracks[s.ball].segments.push_back(s.segment);
-    auto begin = cluster_ball_.begin();
-    for (const std::size_t end : cluster_end_) {
-        const auto to = cluster_ball_.begin() + static_cast<std::ptrdiff_t>(end);
-        record_.clusters.emplace_back(begin, to);
-        begin = to;
+// All of the record that no event and no segment of this run says.
+Record Log::record_so_far() const {
+    if (so_far_ != nullptr) {
+        Record record = *so_far_;
+        record.costs.clear();
+        record.start_time = options_.start_time;
+        return record;
     }
-    record_.duration = balls_.now();
-    record_.stopped = why;
-    return std::move(record_);
+    const Scene& scene = plan_.scene;
+    Record record;
+    record.table = scene.table;
+    record.balls = plan_.balls;
+    record.gravity = plan_.gravity;
+    record.render = scene.render;
+    record.start_time = options_.start_time;
+    record.tracks.reserve(scene.ball.size());
+    for (const BallStart& ball : scene.ball) {
+        BallTrack& track = record.tracks.emplace_back();
+        track.id = ball.id;
+        track.own = ball.own;
+    }
+    return record;
+}
+
+Record Log::record(StopReason why) {
+    Record record = record_so_far();
+    std::vector<std::size_t> count(record.tracks.size());
+    for (std::size_t i = 0; i < count.size(); ++i) count[i] = record.tracks[i].segments.size();
+    for (const BallSegment& s : segments_) ++count[s.ball];
+    for (std::size_t i = 0; i < count.size(); ++i) record.tracks[i].segments.reserve(count[i]);
+    for (const BallSegment& s : segments_) record.tracks[s.ball].segments.push_back(s.segment);
+    auto member = cluster_ball_.begin();
+    for (const std::size_t end : cluster_end_) {
+        std::vector<int>& cluster = record.clusters.emplace_back();
+        for (const auto to = cluster_ball_.begin() + static_cast<std::ptrdiff_t>(end); member != to; ++member)
+            cluster.push_back(member->ball);
+    }
+    for (const Event& e : events_)
+        if (e.type == EventType::kBallPocket) record.tracks[e.a].pocket = e.b;
+    record.events = std::move(events_);
+    record.costs = std::move(event_costs_);
+    record.setup_detect_ns = setup_detect_ns_;
+    record.duration = balls_.now();
+    record.stopped = why;
+    return record;
 }
 
 }  // namespace carom

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,17 +11,34 @@
 #include "carom/engine/tolerances.h"
 #include "contact/contact.h"
 #include "loop/balls.h"
+#include "loop/memory.h"
 #include "loop/stopwatch.h"
 #include "physics/cluster.h"
 
 namespace carom {
 
-class Log {
+/// What a run is for: a record, which has every segment, an outcome, or an outcome with the hash of the record.
+enum class Keep : std::uint8_t { kRecord, kOutcome, kHash };
+
+struct LogMemory {
+    struct BallSegment {
+        Segment segment;
+        int ball;
+    };
+    std::vector<Event> events_;  // of a resumed run from its beginning
+    // Segments and clusters of this run in chronological order.
+    std::vector<BallSegment> segments_;
+    std::vector<ClusterBall> cluster_ball_;
+    std::vector<std::size_t> cluster_end_;
+    std::vector<int> touched_;
+};
+
+class Log : private Borrowed<LogMemory> {
     /// [-] Most consecutive iterations without an event; more are reported as a stalled simulation.
     static constexpr int kQuietCap = 1000000;
 
   public:
-    Log(const Plan& plan, const SimulateOptions& options, Balls& balls);
+    Log(const Plan& plan, const SimulateOptions& options, Balls& balls, LogMemory& memory, Keep keep);
 
     /// Continues after this record; the balls get the last motions in it.
     void resume(const Record& so_far);
@@ -28,11 +46,11 @@ class Log {
     /// Starts a new motion of the ball at the present time.
     void begin(int ball, const Segment& segment) {
         balls_.set(ball, segment);
-        segments_.push_back({segment, ball});
+        if (keep_ != Keep::kOutcome) segments_.push_back({segment, ball});
         touched_.push_back(ball);
     }
     void event(EventType type, int ball, int partner = -1, int detail = -1) {
-        record_.events.push_back({balls_.now(), type, ball, partner, detail});
+        events_.push_back({balls_.now(), type, ball, partner, detail});
         quiet_rounds_ = 0;
     }
     /// An event of a ball and a part of the table, or of two balls.
@@ -41,19 +59,18 @@ class Log {
     }
     /// A simultaneous impact of several balls, begun by a and b; `balls` are ordered by position.
     void cluster(int a, int b, const std::vector<ClusterBall>& balls);
-    void pocketed(int ball, int pocket);
 
-    const std::vector<Event>& events() const { return record_.events; }
+    const std::vector<Event>& events() const { return events_; }
     /// Balls whose motion has changed; Detector::update() clears the list.
     std::vector<int>& touched() { return touched_; }
-    const std::string& id(int ball) const { return record_.tracks[ball].id; }
+    const std::string& id(int ball) const { return plan_.scene.ball[ball].id; }
 
     /// Costs of a profiled run; otherwise nullptr.
     Costs* costs() { return costs_ ? &*costs_ : nullptr; }
     /// Ends the preparation before the first iteration, which took set_up_ns [ns].
     void end_set_up(double set_up_ns);
     void begin_round() {
-        events_before_ = record_.events.size();
+        events_before_ = events_.size();
         ++quiet_rounds_;
     }
     /// Books the costs and calls SimulateOptions::progress. @throws SimulationError if there are too many events in
@@ -70,33 +87,31 @@ class Log {
     [[noreturn]] void fail(const std::string& why) const;
 
     /// The record; the log is empty afterwards.
-    Record finish(StopReason why);
+    Record record(StopReason why);
+    void outcome(StopReason why, Outcome& outcome) const;
 
   private:
-    struct BallSegment {
-        Segment segment;
-        int ball;
-    };
     void reserve();
+    Record record_so_far() const;
+    int first_hit(int struck) const;
+    std::uint64_t hash() const;
     bool is_crowded() const {
-        const std::vector<Event>& e = record_.events;
+        const std::vector<Event>& e = events_;
         return e.size() > kEventCap && balls_.now() - e[e.size() - 1 - kEventCap].time < kEventCapSpan;
     }
     [[noreturn]] void fail_crowded() const;
     void book_costs();
     void tell_progress();
 
+    const Plan& plan_;
     const SimulateOptions& options_;
     Balls& balls_;
     const Geometry& geometry_;
-    bool has_clusters_;
-    Record record_;
-    // Segments and clusters of this run in chronological order; finish() distributes them to the balls.
-    std::vector<BallSegment> segments_;
-    std::vector<int> cluster_ball_;
-    std::vector<std::size_t> cluster_end_;
-    std::vector<int> touched_;
+    Keep keep_;
+    const Record* so_far_ = nullptr;  // of a resumed run
     std::optional<Costs> costs_;
+    std::vector<EventCost> event_costs_;
+    double setup_detect_ns_ = 0.0;
     std::size_t events_before_ = 0;  // number of events before this iteration
     int quiet_rounds_ = 0;           // consecutive iterations without an event
     int rounds_untold_ = 0;          // iterations since the last call of options_.progress

@@ -25,12 +25,12 @@ Vec3 vec(const double (&x)[3]) {
 }  // namespace
 
 Resolver::Resolver(const Plan& plan, const Balls& balls, Log& log, RestingContacts& resting,
-                   const Detector& detector)
+                   const Detector& detector, ClustersMemory& memory)
     : plan_(plan),
       balls_(balls),
       log_(log),
       resting_(resting),
-      clusters_(plan, balls, detector),
+      clusters_(plan, balls, detector, memory),
       cost_(log.costs() != nullptr ? &log.costs()->event : nullptr),
       resolve_ns_(cost_ != nullptr ? &cost_->resolve_ns : nullptr),
       kernel_ns_(cost_ != nullptr ? &cost_->kernel_ns : nullptr) {}
@@ -213,7 +213,7 @@ void Resolver::cushion(const Contact& contact) {
 void Resolver::pocket(const Contact& contact) {
     resting_.release(contact.ball);
     log_.begin(contact.ball, pocketed_segment(balls_.now(), plan_.geometry.pockets[contact.other]));
-    log_.pocketed(contact.ball, contact.other);
+    log_.event(EventType::kBallPocket, contact.ball, contact.other);
 }
 
 void Resolver::transition(int ball) {

@@ -13,7 +13,7 @@ namespace carom {
 class Resolver {
   public:
     Resolver(const Plan& plan, const Balls& balls, Log& log, RestingContacts& resting,
-             const Detector& detector);
+             const Detector& detector, ClustersMemory& memory);
 
     /// Resolves the event at Balls::now(). @throws SimulationError if a model finds no solution
     void resolve(const Contact& contact);

@@ -46,8 +46,10 @@ bool touches(const RestingContact& c, int ball) {
 
 }  // namespace
 
-RestingContacts::RestingContacts(const Plan& plan, const Balls& balls, Log& log)
-    : plan_(plan), balls_(balls), log_(log) {}
+RestingContacts::RestingContacts(const Plan& plan, const Balls& balls, Log& log, RestingMemory& memory)
+    : Borrowed(memory), plan_(plan), balls_(balls), log_(log) {
+    contacts_.clear();
+}
 
 bool RestingContacts::find(const Contact& contact) const {
     return std::any_of(contacts_.begin(), contacts_.end(),

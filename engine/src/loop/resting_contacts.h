@@ -9,12 +9,17 @@
 #include "loop/approach.h"
 #include "loop/balls.h"
 #include "loop/log.h"
+#include "loop/memory.h"
 
 namespace carom {
 
-class RestingContacts {
+struct RestingMemory {
+    std::vector<RestingContact> contacts_;
+};
+
+class RestingContacts : private Borrowed<RestingMemory> {
   public:
-    RestingContacts(const Plan& plan, const Balls& balls, Log& log);
+    RestingContacts(const Plan& plan, const Balls& balls, Log& log, RestingMemory& memory);
 
     /// Restores the contacts that these events have begun and not ended.
     void restore(std::span<const Event> events);
@@ -52,7 +57,6 @@ class RestingContacts {
     const Plan& plan_;
     const Balls& balls_;
     Log& log_;
-    std::vector<RestingContact> contacts_;
 };
 
 }  // namespace carom

@@ -9,19 +9,31 @@
 
 namespace carom {
 
+struct RunBuffers::Memory {
+    BallsMemory balls;
+    LogMemory log;
+    RestingMemory resting;
+    DetectorMemory detector;
+    ClustersMemory clusters;
+};
+
 class Run {
   public:
-    Run(const Plan& plan, const SimulateOptions& options);
+    /// @param keep  what becomes of the run: what the log has to keep
+    Run(const Plan& plan, const SimulateOptions& options, RunBuffers::Memory& memory,
+        Keep keep = Keep::kRecord);
 
     /// @param so_far  the record to continue from, or nullptr
     Record simulate(const Record* so_far);
+    void simulate(Outcome& outcome);
 
     const Clusters& clusters() const { return resolver_.clusters(); }
 
   private:
+    StopReason run(const Record* so_far);
     void start_balls();
     bool is_full() const;
-    Record finish(double next);
+    StopReason stop(double next);
 
     const Plan& plan_;
     double stop_;  // [s] end of the simulated time

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 
 #include "loop/run.h"
 #include "physics/cue.h"
@@ -10,16 +11,26 @@
 
 namespace carom {
 
-Run::Run(const Plan& plan, const SimulateOptions& options)
+Run::Run(const Plan& plan, const SimulateOptions& options, RunBuffers::Memory& memory, Keep keep)
     : plan_(plan),
       stop_(std::min(plan.scene.stop.time.value_or(kNever), options.until.value_or(kNever))),
-      balls_(plan),
-      log_(plan, options, balls_),
-      resting_(plan, balls_, log_),
-      detector_(plan, balls_, resting_, log_.costs()),
-      resolver_(plan, balls_, log_, resting_, detector_) {}
+      balls_(plan, memory.balls),
+      log_(plan, options, balls_, memory.log, keep),
+      resting_(plan, balls_, log_, memory.resting),
+      detector_(plan, balls_, resting_, log_.costs(), memory.detector),
+      resolver_(plan, balls_, log_, resting_, detector_, memory.clusters) {}
 
 Record Run::simulate(const Record* so_far) {
+    const StopReason why = run(so_far);
+    return log_.record(why);
+}
+
+void Run::simulate(Outcome& outcome) {
+    const StopReason why = run(nullptr);
+    log_.outcome(why, outcome);
+}
+
+StopReason Run::run(const Record* so_far) {
     double set_up_ns = 0.0;
     {
         const Stopwatch watch(log_.costs() != nullptr ? &set_up_ns : nullptr);
@@ -37,13 +48,13 @@ Record Run::simulate(const Record* so_far) {
     while (!is_full()) {
         log_.begin_round();
         const Candidate next = detector_.next();
-        if (next.time > stop_ || next.time == kNever) return finish(next.time);
+        if (next.time > stop_ || next.time == kNever) return stop(next.time);
         balls_.advance_to(next.time);
         resolver_.resolve(next.contact);
         detector_.update(log_.touched());
         log_.end_round();
     }
-    return log_.finish(StopReason::kEvents);
+    return StopReason::kEvents;
 }
 
 void Run::start_balls() {
@@ -66,24 +77,39 @@ bool Run::is_full() const {
 }
 
 // Called if the next event is later than the end of the simulated time, or if there is none.
-Record Run::finish(double next) {
+StopReason Run::stop(double next) {
     bool moves = false;
     for (int i = 0; i < balls_.count(); ++i) {
         const MotionState state = balls_.segment(i).state;
         moves = moves || (state != MotionState::kStationary && state != MotionState::kPocketed);
     }
-    if (next == kNever && !moves) return log_.finish(StopReason::kAtRest);
-    if (stop_ == kNever) return log_.finish(StopReason::kEndless);
+    if (next == kNever && !moves) return StopReason::kAtRest;
+    if (stop_ == kNever) return StopReason::kEndless;
     balls_.advance_to(stop_);
-    return log_.finish(StopReason::kTime);
+    return StopReason::kTime;
+}
+
+RunBuffers::RunBuffers() : memory_(std::make_unique<Memory>()) {}
+RunBuffers::~RunBuffers() = default;
+RunBuffers::RunBuffers(RunBuffers&&) noexcept = default;
+RunBuffers& RunBuffers::operator=(RunBuffers&&) noexcept = default;
+
+Record simulate(const Plan& plan, RunBuffers& buffers, const SimulateOptions& options) {
+    return Run(plan, options, buffers.memory()).simulate(nullptr);
+}
+
+void simulate(const Plan& plan, RunBuffers& buffers, Outcome& outcome, const SimulateOptions& options) {
+    Run(plan, options, buffers.memory(), options.hash ? Keep::kHash : Keep::kOutcome).simulate(outcome);
 }
 
 Record simulate(const Plan& plan, const SimulateOptions& options) {
-    return Run(plan, options).simulate(nullptr);
+    RunBuffers::Memory memory;
+    return Run(plan, options, memory).simulate(nullptr);
 }
 
 Record resume(const Plan& plan, const Record& so_far, const SimulateOptions& options) {
-    return Run(plan, options).simulate(&so_far);
+    RunBuffers::Memory memory;
+    return Run(plan, options, memory).simulate(&so_far);
 }
 
 }  // namespace carom

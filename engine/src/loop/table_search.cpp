@@ -21,6 +21,7 @@ void Detector::set_up_table() {
     const Geometry& g = plan_.geometry;
     const std::size_t count = g.cushions.size() + g.noses.size() + g.pockets.size();
     table_boxes_.set_up(static_cast<int>(count), plan_.table_search);
+    parts_.clear();
     parts_.reserve(count);
     near_.reserve(count);
     const auto add = [this](With with, std::size_t index, const Box& box) {

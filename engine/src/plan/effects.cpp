@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "plan/reach.h"
+#include "plan/words.h"
 
 namespace carom {
 
@@ -15,6 +17,7 @@ struct EffectFacts {
     const Scene& scene;
     const Plan& plan;
     const Reach& reach;
+    Words say;  ///< the reasons
 
     const BallParams& balls() const { return scene.balls; }
     bool has_cushions() const { return !scene.table.cushions.empty() || !scene.table.jaws.empty(); }
@@ -25,34 +28,32 @@ namespace {
 
 using Facts = EffectFacts;
 
-Need coefficient(const char* symbol, double value) {
-    return {value != 0.0, fmt::format("{} = {}", symbol, value)};
+Need coefficient(const Facts& f, const char* symbol, double value) {
+    return {value != 0.0, f.say("{} = {}", symbol, value)};
 }
 
 Need no_two_balls_meet(const Facts& f) {
-    return {false, "no two balls can meet: " + f.reach.why};
+    return {false, f.say("no two balls can meet: {}", f.reach.why)};
 }
 
 Need sliding(const Facts& f) {
-    if (f.scene.physics.gravity == 0.0) return {false, "gravity = 0: no friction on the cloth"};
+    if (f.scene.physics.gravity == 0.0) return {false, f.say("gravity = 0: no friction on the cloth")};
     if (f.balls().mu_s != 0.0 && !f.reach.slips && !f.impacts())
-        return {false, "no ball ever slips: none does at the start, and none meets anything"};
-    return coefficient("mu_s", f.balls().mu_s);
+        return {false, f.say("no ball ever slips: none does at the start, and none meets anything")};
+    return coefficient(f, "mu_s", f.balls().mu_s);
 }
 
 Need rolling(const Facts& f) {
-    if (f.scene.physics.gravity == 0.0) return {false, "gravity = 0: no resistance of the cloth"};
-    if (f.balls().mu_r != 0.0 && !f.reach.moves) return {false, "no ball ever moves"};
-    return coefficient("mu_r", f.balls().mu_r);
+    if (f.scene.physics.gravity == 0.0) return {false, f.say("gravity = 0: no resistance of the cloth")};
+    if (f.balls().mu_r != 0.0 && !f.reach.moves) return {false, f.say("no ball ever moves")};
+    return coefficient(f, "mu_r", f.balls().mu_r);
 }
 
 Need spin_decay(const Facts& f) {
     const double mu_sp = f.balls().mu_sp;
-    if (f.scene.physics.gravity == 0.0) return {false, "gravity = 0: no friction on the cloth"};
-    if (mu_sp == 0.0) return coefficient("mu_sp", mu_sp);
-    const auto needed = [&](const char* why) {
-        return Need{true, fmt::format("mu_sp = {}; {}", mu_sp, why)};
-    };
+    if (f.scene.physics.gravity == 0.0) return {false, f.say("gravity = 0: no friction on the cloth")};
+    if (mu_sp == 0.0) return coefficient(f, "mu_sp", mu_sp);
+    const auto needed = [&](const char* why) { return Need{true, f.say("mu_sp = {}; {}", mu_sp, why)}; };
     bool side = f.scene.cue && f.scene.cue->side != 0.0 && f.scene.cue->speed != 0.0;
     for (const BallStart& ball : f.scene.ball) side = side || ball.spin.z() != 0.0;
     if (side) return needed("a ball starts with vertical spin");
@@ -60,80 +61,79 @@ Need spin_decay(const Facts& f) {
     const bool rough = f.balls().most_cushion_friction() != 0.0 &&
                        (f.plan.cushion->reads_friction || f.plan.jaw->reads_friction);
     if (rough && f.plan.in_force(Effect::kCushions)) return needed("cushion friction makes vertical spin");
-    return {false, "no ball can ever have vertical spin: none at the start, no friction in impacts"};
+    return {false, f.say("no ball can ever have vertical spin: none at the start, no friction in impacts")};
 }
 
 Need ball_friction_needed(const Facts& f) {
     const BallParams& p = f.balls();
-    if (f.scene.ball.size() < 2) return {false, "one ball only"};
+    if (f.scene.ball.size() < 2) return {false, f.say("one ball only")};
     if (!f.plan.ball_ball->reads_friction)
-        return {false, fmt::format("model {} has no friction", f.plan.ball_ball->name)};
-    if (!p.ball_friction()) return coefficient("mu_b", 0.0);
+        return {false, f.say("model {} has no friction", f.plan.ball_ball->name)};
+    if (!p.ball_friction()) return coefficient(f, "mu_b", 0.0);
     if (!f.plan.pairs) return no_two_balls_meet(f);
-    if (p.mu_b_more == 0.0) return coefficient("mu_b", p.mu_b);
-    return {true, fmt::format("mu_b = {} + {} exp(-{} u)", p.mu_b, p.mu_b_more, p.mu_b_fall)};
+    if (p.mu_b_more == 0.0) return coefficient(f, "mu_b", p.mu_b);
+    return {true, f.say("mu_b = {} + {} exp(-{} u)", p.mu_b, p.mu_b_more, p.mu_b_fall)};
 }
 
 Need cloth_in_impact(const Facts& f) {
     const BallParams& p = f.balls();
-    if (f.scene.ball.size() < 2) return {false, "one ball only"};
+    if (f.scene.ball.size() < 2) return {false, f.say("one ball only")};
     if (!f.plan.ball_ball->reads_cloth)
-        return {false, fmt::format("model {} does not read the cloth", f.plan.ball_ball->name)};
-    if (p.mu_s == 0.0 || !p.ball_friction()) return {false, p.mu_s == 0.0 ? "mu_s = 0" : "mu_b = 0"};
+        return {false, f.say("model {} does not read the cloth", f.plan.ball_ball->name)};
+    if (p.mu_s == 0.0 || !p.ball_friction()) return {false, f.say("{} = 0", p.mu_s == 0.0 ? "mu_s" : "mu_b")};
     if (!f.plan.pairs) return no_two_balls_meet(f);
-    return {true, "mu_s and mu_b > 0; without vertical slip it is 0 at that impact"};
+    return {true, f.say("mu_s and mu_b > 0; without vertical slip it is 0 at that impact")};
 }
 
 Need cushions(const Facts& f) {
-    if (!f.has_cushions()) return {false, "the table has none"};
-    if (!f.reach.cushions) return {false, "none within reach: " + f.reach.why};
-    return {true,
-            fmt::format("{} cushions, {} jaws", f.scene.table.cushions.size(), f.scene.table.jaws.size())};
+    if (!f.has_cushions()) return {false, f.say("the table has none")};
+    if (!f.reach.cushions) return {false, f.say("none within reach: {}", f.reach.why)};
+    return {true, f.say("{} cushions, {} jaws", f.scene.table.cushions.size(), f.scene.table.jaws.size())};
 }
 
 Need cushion_friction(const Facts& f) {
     const Table& table = f.scene.table;
-    if (!f.has_cushions()) return {false, "the table has no cushions"};
-    if (!f.reach.cushions) return {false, "no cushion within reach: " + f.reach.why};
+    if (!f.has_cushions()) return {false, f.say("the table has no cushions")};
+    if (!f.reach.cushions) return {false, f.say("no cushion within reach: {}", f.reach.why)};
     const CushionModelInfo &straight = *f.plan.cushion, &jaw = *f.plan.jaw;
-    if (&straight == &kSmooth && (&jaw == &kSmooth || table.jaws.empty())) return {false, "model smooth"};
+    if (&straight == &kSmooth && (&jaw == &kSmooth || table.jaws.empty()))
+        return {false, f.say("model smooth")};
     bool level =
         f.balls().most_cushion_friction() == 0.0 && straight.reflects_when_level && jaw.reflects_when_level;
     for (const BallSize& ball : f.plan.sizes) {
         for (const Cushion& c : table.cushions) level = level && c.height == ball.R;
         for (const Jaw& j : table.jaws) level = level && j.height == ball.R;
     }
-    if (level) return {false, "f_c = 0 and the noses at ball height: smooth"};
+    if (level) return {false, f.say("f_c = 0 and the noses at ball height: smooth")};
     const BallParams& p = f.balls();
     const std::string friction = p.f_c_more == 0.0
-                                     ? fmt::format("f_c = {}", p.f_c)
-                                     : fmt::format("f_c = {} + {} exp(-{} u)", p.f_c, p.f_c_more, p.f_c_fall);
-    return {true, &straight == &jaw
-                      ? fmt::format("model {}, {}", straight.name, friction)
-                      : fmt::format("model {}, jaws {}, {}", straight.name, jaw.name, friction)};
+                                     ? f.say("f_c = {}", p.f_c)
+                                     : f.say("f_c = {} + {} exp(-{} u)", p.f_c, p.f_c_more, p.f_c_fall);
+    return {true, &straight == &jaw ? f.say("model {}, {}", straight.name, friction)
+                                    : f.say("model {}, jaws {}, {}", straight.name, jaw.name, friction)};
 }
 
 Need pockets(const Facts& f) {
-    if (f.scene.table.pockets.empty()) return {false, "the table has none"};
-    if (!f.reach.pockets) return {false, "none within reach: " + f.reach.why};
-    return {true, fmt::format("{} pockets", f.scene.table.pockets.size())};
+    if (f.scene.table.pockets.empty()) return {false, f.say("the table has none")};
+    if (!f.reach.pockets) return {false, f.say("none within reach: {}", f.reach.why)};
+    return {true, f.say("{} pockets", f.scene.table.pockets.size())};
 }
 
 Need squirt(const Facts& f) {
-    if (!f.scene.cue) return {false, "no cue"};
+    if (!f.scene.cue) return {false, f.say("no cue")};
     if (f.scene.cue->side == 0.0 || f.scene.cue->end_mass == 0.0)
-        return {false, "no side offset, or end mass 0"};
-    return {true, "the cue strikes off centre"};
+        return {false, f.say("no side offset, or end mass 0")};
+    return {true, f.say("the cue strikes off centre")};
 }
 
 Need clusters(const Facts& f) {
     const ClusterModel model = f.scene.physics.clusters;
-    if (f.scene.ball.size() < 3) return {false, "fewer than three balls"};
-    if (model == ClusterModel::kSequential) return {false, "clusters = \"sequential\": pair by pair"};
+    if (f.scene.ball.size() < 3) return {false, f.say("fewer than three balls")};
+    if (model == ClusterModel::kSequential) return {false, f.say("clusters = \"sequential\": pair by pair")};
     if (!f.plan.pairs) return no_two_balls_meet(f);
-    return {true, fmt::format("clusters = \"{}\"; decided per impact: no third ball within reach means the "
-                              "pair alone",
-                              name(model))};
+    return {true, f.say("clusters = \"{}\"; decided per impact: no third ball within reach means the "
+                        "pair alone",
+                        name(model))};
 }
 
 // In the order of Effect, in which people know them.
@@ -193,9 +193,9 @@ constexpr EffectInfo kTable[kEffects] = {
 };
 
 /// What the plan decides, with what [effects] says about it.
-EffectDecision decide(const EffectInfo& info, const Facts& facts) {
-    const Need need = info.need(facts);
-    EffectDecision decision{info.keyword, need.needed, need.reason};
+void decide(const EffectInfo& info, const Facts& facts, EffectDecision& decision) {
+    Need need = info.need(facts);
+    decision.in_force = need.needed;
     for (const EffectOverride& o : facts.scene.effects) {
         if (o.keyword != info.keyword || o.in_force == need.needed) continue;
         if (need.needed)
@@ -203,9 +203,9 @@ EffectDecision decide(const EffectInfo& info, const Facts& facts) {
                              fmt::format("effects.{} = false, but the scene needs it: {}; remove the line",
                                          info.keyword, need.reason));
         decision.in_force = true;
-        decision.reason = "forced on; not needed: " + need.reason;
+        need.reason = facts.say("forced on; not needed: {}", need.reason);
     }
-    return decision;
+    decision.reason = std::move(need.reason);
 }
 
 }  // namespace
@@ -214,22 +214,26 @@ std::span<const EffectInfo> effect_table() {
     return kTable;
 }
 
-void decide_effects(const Scene& scene, Plan& plan) {
-    const Reach reach = reach_of(scene);
+void decide_effects(Plan& plan, ReachMemory& memory, const Words& say) {
+    const Scene& scene = plan.scene;
+    const Reach reach = reach_of(scene, memory, say);
     plan.pairs = scene.ball.size() > 1 && reach.pairs;
     plan.clusters = scene.physics.clusters;
-    plan.effects.resize(kEffects);
+    plan.skipped.reset();
+    if (plan.effects.empty()) {
+        for (const EffectInfo& info : kTable) plan.effects.push_back({info.keyword, true, {}});
+        plan.effects.push_back({"airborne", false, "not simulated: the model is planar"});
+    }
     for (const bool last : {false, true}) {
         for (const EffectInfo& info : kTable) {
             if (info.last != last) continue;
             const std::ptrdiff_t i = &info - kTable;
-            plan.effects[i] = decide(info, {scene, plan, reach});
+            decide(info, {scene, plan, reach, say}, plan.effects[i]);
             if (plan.effects[i].in_force) continue;
             plan.skip(static_cast<Effect>(i));
             if (info.leave_out != nullptr) info.leave_out(plan);
         }
     }
-    plan.effects.push_back({"airborne", false, "not simulated: the model is planar"});
 }
 
 }  // namespace carom

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "carom/engine/tolerances.h"
 #include "physics/cue.h"
 #include "physics/motion.h"
 #include "plan/effects.h"
+#include "plan/reach.h"
+#include "plan/words.h"
 
 namespace carom {
 
@@ -26,31 +29,33 @@ bool rounded_by_jaw(const Vec2& end, const std::vector<Jaw>& jaws) {
     });
 }
 
-void add_geometry(const Table& table, Plan& plan) {
-    const auto inset = [&](double height) {
-        return nose_inset(plan.scene.physics.cushion_touch, plan.sizes.front().R, height);
-    };
+Geometry geometry_of(const Scene& scene) {
+    const Table& table = scene.table;
+    const double R = scene.size_of(scene.ball.front()).R;
+    const auto inset = [&](double height) { return nose_inset(scene.physics.cushion_touch, R, height); };
+    Geometry geometry;
     for (std::size_t i = 0; i < table.cushions.size(); ++i) {
         const Cushion& cushion = table.cushions[i];
         const Vec2 along = cushion.to - cushion.from;
         const double extent = length(along);
-        plan.geometry.cushions.push_back(
+        geometry.cushions.push_back(
             {cushion.from, along / extent, extent, cushion.height, inset(cushion.height)});
         for (const Vec2& end : {cushion.from, cushion.to}) {
             bool known = rounded_by_jaw(end, table.jaws);
-            for (const Nose& nose : plan.geometry.noses)
+            for (const Nose& nose : geometry.noses)
                 known = known || (nose.radius == 0.0 && nose.center == end);
             if (!known)
-                plan.geometry.noses.push_back({end, 0.0, cushion.height, EventType::kBallCushion,
-                                               static_cast<int>(i), inset(cushion.height)});
+                geometry.noses.push_back({end, 0.0, cushion.height, EventType::kBallCushion,
+                                          static_cast<int>(i), inset(cushion.height)});
         }
     }
     for (std::size_t i = 0; i < table.jaws.size(); ++i) {
         const Jaw& jaw = table.jaws[i];
-        plan.geometry.noses.push_back({jaw.center, jaw.radius, jaw.height, EventType::kBallJaw,
-                                       static_cast<int>(i), inset(jaw.height)});
+        geometry.noses.push_back({jaw.center, jaw.radius, jaw.height, EventType::kBallJaw,
+                                  static_cast<int>(i), inset(jaw.height)});
     }
-    plan.geometry.pockets = table.pockets;
+    geometry.pockets = table.pockets;
+    return geometry;
 }
 
 // The friction that moves a ball of this radius, without the effects that the plan skips.
@@ -64,6 +69,8 @@ MotionParams motion_of(const Plan& plan, double R) {
 
 // Chooses a tree of boxes where it is faster than a loop through all of them.
 void choose_search(Plan& plan) {
+    plan.table_search = plan.ball_search = Search::kDirect;
+    plan.box_travel = std::numeric_limits<double>::infinity();
     const std::size_t parts =
         plan.geometry.cushions.size() + plan.geometry.noses.size() + plan.geometry.pockets.size();
     if (parts >= kTreeFromParts) plan.table_search = Search::kTree;
@@ -72,35 +79,34 @@ void choose_search(Plan& plan) {
     if (balls >= kShortBoxesFromBalls) plan.box_travel = kBoxTravel;
 }
 
-}  // namespace
-
-double nose_inset(CushionTouch touch, double R, double height) {
-    return touch == CushionTouch::kRadius ? 0.0 : R - std::sqrt(height * (2.0 * R - height));
-}
-
-Plan make_plan(const Scene& scene, kernel::Isa isa) {
-    Plan plan;
-    plan.scene = scene;
+// Fills in all that follows from the scene of the plan, which has its instruction set.
+void fill(Plan& plan, const Geometry& geometry, ReachMemory& memory, const Words& say) {
+    const Scene& scene = plan.scene;
     plan.balls = scene.balls;
     plan.gravity = scene.physics.gravity;
+    plan.sizes.clear();
     for (const BallStart& ball : scene.ball) plan.sizes.push_back(scene.size_of(ball));
     plan.alike = scene.alike();
-    add_geometry(scene.table, plan);
+    plan.geometry = geometry;
     plan.ball_ball = scene.physics.ball_ball;
     plan.cushion = scene.physics.cushion;
     plan.jaw = scene.physics.jaw_model();
-    decide_effects(scene, plan);
+    decide_effects(plan, memory, say);
+    plan.motion.clear();
     for (const BallSize& size : plan.sizes) plan.motion.push_back(motion_of(plan, size.R));
     choose_search(plan);
-    plan.isa = isa;
-    plan.contact_phase = kernel::contact_phase_function(isa);
+    plan.impact = {};
     plan.impact.tolerance = scene.physics.tolerance;
     if (scene.physics.substeps) {
-        plan.impact.march = kernel::march_function(isa);
+        plan.impact.march = kernel::march_function(plan.isa);
         plan.impact.substeps = *scene.physics.substeps;
     } else {
-        plan.impact.by_tolerance = kernel::tolerance_function(isa);
+        plan.impact.by_tolerance = kernel::tolerance_function(plan.isa);
     }
+}
+
+void warn(Plan& plan) {
+    const Scene& scene = plan.scene;
     for (const BallStart& ball : scene.ball) {
         if (!scene.cue || scene.cue->ball != ball.id) continue;
         const double vertical = strike(*scene.cue, scene.size_of(ball)).dropped_vertical;
@@ -110,7 +116,57 @@ Plan make_plan(const Scene& scene, kernel::Isa isa) {
                             "is planar and drops it",
                             vertical));
     }
+}
+
+Plan bare_plan(const Scene& scene, kernel::Isa isa) {
+    Plan plan;
+    plan.scene = scene;
+    plan.isa = isa;
+    plan.contact_phase = kernel::contact_phase_function(isa);
     return plan;
+}
+
+}  // namespace
+
+double nose_inset(CushionTouch touch, double R, double height) {
+    return touch == CushionTouch::kRadius ? 0.0 : R - std::sqrt(height * (2.0 * R - height));
+}
+
+Plan make_plan(const Scene& scene, kernel::Isa isa) {
+    Plan plan = bare_plan(scene, isa);
+    ReachMemory memory;
+    fill(plan, geometry_of(scene), memory, Words(true));
+    warn(plan);
+    return plan;
+}
+
+struct Planner::Memory {
+    bool has_geometry = false;
+    Geometry geometry;  // with all that balls may meet
+    ReachMemory reach;
+};
+
+Planner::Planner(const Scene& scene, kernel::Isa isa)
+    : plan_(bare_plan(scene, isa)), memory_(std::make_unique<Memory>()) {}
+Planner::~Planner() = default;
+Planner::Planner(Planner&&) noexcept = default;
+Planner& Planner::operator=(Planner&&) noexcept = default;
+
+const Plan& Planner::plan(bool same_table) {
+    Geometry& geometry = memory_->geometry;
+    if (!same_table || !memory_->has_geometry) {
+        geometry = geometry_of(plan_.scene);
+        memory_->has_geometry = true;
+        // The loop names pockets by their index. A name that the copies of a shot would carry takes memory.
+        for (Pocket& pocket : geometry.pockets) pocket.name.clear();
+    }
+    try {
+        fill(plan_, geometry, memory_->reach, Words(false));
+    } catch (const SceneError&) {  // an effect that is refused; the error has to say why
+        fill(plan_, geometry, memory_->reach, Words(true));
+        throw;
+    }
+    return plan_;
 }
 
 }  // namespace carom

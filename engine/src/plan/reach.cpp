@@ -19,21 +19,17 @@ constexpr double kReachMargin = 1e-9;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-// A ball at the start. Where the cue strikes it, the velocities are those after the strike.
-struct Start {
-    Vec2 place;
-    Vec3 v, w;
-    Segment segment;
-    BallSize size;
-};
-
 class Bounds {
   public:
-    explicit Bounds(const Scene& scene)
+    Bounds(const Scene& scene, ReachMemory& memory, const Words& say)
         : scene_(scene),
+          say_(say),
+          starts_(memory.starts),
+          radius_(memory.radius),
           motion_(motion_params(scene.balls, scene.physics.gravity, scene.balls.R)),
           time_(scene.stop.time.value_or(kUnbounded)) {
         motion_.sliding = motion_.rolling = motion_.spin_decay = false;  // only the states are asked for
+        starts_.clear();
         for (const BallStart& ball : scene.ball) {
             Vec3 v = ball.velocity, w = ball.spin;
             if (scene.cue && scene.cue->ball == ball.id) {
@@ -58,21 +54,21 @@ class Bounds {
             mover = static_cast<int>(i);
         }
         reach.moves = movers > 0;
-        std::vector<double> radius(starts_.size(), 0.0);
-        reach.why = "nothing moves";
+        std::vector<double>& radius = radius_;
+        radius.assign(starts_.size(), 0.0);
+        reach.why = say_("nothing moves");
         if (movers == 1) {
             const std::size_t m = static_cast<std::size_t>(mover);
             radius[m] = alone(starts_[m]);
-            reach.why = fmt::format("ball {}, the only one that moves, goes no farther than {:.3g} m",
-                                    scene_.ball[m].id, radius[m]);
+            reach.why = say_("ball {}, the only one that moves, goes no farther than {:.3g} m",
+                             scene_.ball[m].id, radius[m]);
         }
         // The bound of a ball that meets nothing holds as long as it indeed meets nothing.
         if (movers > 1 || meets_cushion(radius) || meets_ball(radius)) {
             const double far = by_energy();
             std::fill(radius.begin(), radius.end(), far);
-            reach.why = far < kUnbounded
-                            ? fmt::format("no ball goes farther than {:.3g} m until the stop", far)
-                            : std::string("nothing bounds how far a ball can go");
+            reach.why = far < kUnbounded ? say_("no ball goes farther than {:.3g} m until the stop", far)
+                                         : say_("nothing bounds how far a ball can go");
         }
         reach.pairs = meets_ball(radius);
         reach.cushions = meets_cushion(radius);
@@ -142,15 +138,17 @@ class Bounds {
     }
 
     const Scene& scene_;
+    const Words& say_;
+    std::vector<Start>& starts_;
+    std::vector<double>& radius_;
     MotionParams motion_;
     double time_;
-    std::vector<Start> starts_;
 };
 
 }  // namespace
 
-Reach reach_of(const Scene& scene) {
-    return Bounds(scene).find();
+Reach reach_of(const Scene& scene, ReachMemory& memory, const Words& say) {
+    return Bounds(scene, memory, say).find();
 }
 
 }  // namespace carom

@@ -8,7 +8,7 @@
 #include <limits>
 #include <mutex>
 
-#include "base/fnv.h"
+#include "base/record_hash.h"
 #include "carom/engine/math.h"
 #include "physics/motion.h"
 
@@ -152,25 +152,14 @@ Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
 }
 
 std::string Record::hash() const {
-    Fnv fnv;
+    RecordHash hash;
     for (const BallTrack& track : tracks) {
-        fnv.add(static_cast<std::uint64_t>(track.segments.size()));
-        for (const Segment& s : track.segments) {
-            for (const double x :
-                 {s.start, s.r.x(), s.r.y(), s.r.z(), s.v.x(), s.v.y(), s.v.z(), s.w.x(), s.w.y(), s.w.z(),
-                  s.a.x(), s.a.y(), s.dw.x(), s.dw.y(), s.spin_decay, s.duration})
-                fnv.add(x);
-            fnv.add(static_cast<std::uint64_t>(s.state) + (s.held ? 256u : 0u));
-        }
+        hash.ball(track.segments.size());
+        for (const Segment& s : track.segments) hash.segment(s);
     }
-    for (const Event& e : events) {
-        fnv.add(e.time);
-        fnv.add(static_cast<std::uint64_t>(e.type));
-        fnv.add(static_cast<std::uint64_t>(e.a) + 1);
-        fnv.add(static_cast<std::uint64_t>(e.b) + 1);
-    }
-    fnv.add(duration);
-    return fmt::format("{:016x}", fnv.value());
+    for (const Event& e : events) hash.event(e);
+    hash.duration(duration);
+    return fmt::format("{:016x}", hash.value());
 }
 
 std::string Record::partner_id(const Event& event) const {

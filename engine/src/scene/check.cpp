@@ -30,8 +30,9 @@ void check_ids(const Section& top, const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
         const auto [first, fresh] = seen.emplace(ball.id, ball.where);
         if (fresh) continue;
-        top.fail(ball.where, "ball id {} is already used in line {}; give each ball an id of its own",
-                 in_quotes(ball.id), first->second.line);
+        const bool in_file = top.has("ball") || top.has("rack");
+        top.fail(ball.where, "ball id {} is already used{}; give each ball an id of its own",
+                 in_quotes(ball.id), in_file ? fmt::format(" in line {}", first->second.line) : "");
     }
 }
 
@@ -200,17 +201,31 @@ void check_rest(const Section& top, const Scene& scene) {
     if (scene.balls.mu_sp == 0.0 && m.twist) refuse("balls", "balls.mu_sp", "balls spin");
 }
 
+void check_numbers(const Section& top, const Scene& scene, Change change) {
+    check_noses(top, scene);
+    check_sizes(top, scene);
+    check_cushion_model(top, scene);
+    if (change != Change::kNumbers) {
+        check_overlaps(top, scene);
+        check_reach(top, scene);
+    }
+    check_rest(top, scene);
+}
+
 }  // namespace
 
 void check_scene(const Section& top, const Scene& scene) {
     if (scene.ball.empty()) top.fail(SourceLocation{}, "there is no ball; add a [[ball]] or a [rack]");
     check_ids(top, scene);
-    check_noses(top, scene);
-    check_sizes(top, scene);
-    check_cushion_model(top, scene);
-    check_overlaps(top, scene);
-    check_reach(top, scene);
-    check_rest(top, scene);
+    check_numbers(top, scene, Change::kAnything);
+}
+
+void check_again(const Section& top, const Scene& scene, Change change) {
+    check_friction(top, scene);
+    if (scene.cue) check_cue(top, scene, *scene.cue);
+    if (change >= Change::kTable)
+        for (const Cushion& cushion : scene.table.cushions) check_cushion(top, cushion);
+    check_numbers(top, scene, change);
 }
 
 }  // namespace carom::detail

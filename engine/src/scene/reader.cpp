@@ -40,7 +40,7 @@ SourceLocation place(const toml::source_region& region) {
 
 Section::Section(const toml::table& table, const std::string& file, std::string path,
                  const std::vector<std::string_view>& keys)
-    : table_(table), file_(file), path_(std::move(path)), where_(place(table.source())) {
+    : table_(&table), file_(file), path_(std::move(path)), where_(place(table.source())) {
     // toml++ sorts its keys; report the unknown one that comes first in the file.
     const toml::key* unknown = nullptr;
     for (auto&& [key, value] : table) {
@@ -61,18 +61,60 @@ std::string Section::full(std::string_view key) const {
 }
 
 SourceLocation Section::where(std::string_view key) const {
-    const toml::node* node = table_.get(key);
+    const toml::node* node = table_ != nullptr ? table_->get(key) : nullptr;
     return node ? where(*node) : where_;
+}
+
+std::string Section::element(const Key& key, std::size_t k) const {
+    return fmt::format("{}[{}]", full(key.key), k);
+}
+
+void Section::check_number(SourceLocation at, const std::string& what, double x,
+                           const Interval& allowed) const {
+    if (x - x != 0.0) fail(at, "{} must be a finite number", what);
+    if (!contains(allowed, x)) fail(at, "{} = {} is out of range; it must be {}", what, x, describe(allowed));
+}
+
+void Section::check_integer(SourceLocation at, std::int64_t x, const Key& key) const {
+    const std::int64_t low = static_cast<std::int64_t>(key.range.low);
+    const std::int64_t high =
+        key.range.high < kAnyInteger ? static_cast<std::int64_t>(key.range.high) : INT64_MAX;
+    if (x < low || x > high) {
+        fail(at, "{} = {} is out of range; it must be at least {} and at most {}", full(key.key), x, low,
+             high);
+    }
+}
+
+void Section::check_text(SourceLocation at, const std::string& x, const Key& key) const {
+    const std::vector<const char*> names = key.names();
+    if (!names.empty() && std::find(names.begin(), names.end(), x) == names.end())
+        fail(at, "unknown {} {}; use {}", full(key.key), in_quotes(x), listed(names));
+}
+
+void Section::check_whole(SourceLocation at, const std::vector<double>& list, const Key& key) const {
+    if (key.kind == Key::Kind::kIntegers &&
+        std::any_of(list.begin(), list.end(), [](double x) { return x != std::floor(x); }))
+        fail(at, "{} must be whole {}; drop the fraction", full(key.key), key.range.unit);
+}
+
+void Section::check(const Key& key, const FieldValue& value) const {
+    if (const auto* number = std::get_if<double>(&value)) {
+        check_number({}, full(key.key), *number, key.range);
+    } else if (const auto* whole = std::get_if<std::int64_t>(&value)) {
+        check_integer({}, *whole, key);
+    } else if (const auto* text = std::get_if<std::string>(&value)) {
+        check_text({}, *text, key);
+    } else if (const auto* list = std::get_if<std::vector<double>>(&value)) {
+        for (std::size_t k = 0; k < list->size(); ++k)
+            check_number({}, element(key, k), (*list)[k], key.range);
+        check_whole({}, *list, key);
+    }
 }
 
 double Section::number(const toml::node& node, const std::string& what, const Interval& allowed) const {
     if (!node.is_number()) fail(node, "{} must be a number, not {}", what, type_name(node));
     const double x = *node.value<double>();
-    if (x - x != 0.0) fail(node, "{} must be a finite number", what);
-    const bool high_enough = allowed.low_open ? x > allowed.low : x >= allowed.low;
-    const bool low_enough = allowed.high_open ? x < allowed.high : x <= allowed.high;
-    if (!high_enough || !low_enough)
-        fail(node, "{} = {} is out of range; it must be {}", what, x, describe(allowed));
+    check_number(where(node), what, x, allowed);
     return x;
 }
 
@@ -81,13 +123,8 @@ std::int64_t Section::integer(const toml::node& node, const Key& key) const {
         const char* got = node.is_floating_point() ? "a number with a decimal point" : type_name(node);
         fail(node, "{} must be an integer, not {}", full(key.key), got);
     }
-    const std::int64_t x = *node.value<std::int64_t>(), low = static_cast<std::int64_t>(key.range.low);
-    const std::int64_t high =
-        key.range.high < kAnyInteger ? static_cast<std::int64_t>(key.range.high) : INT64_MAX;
-    if (x < low || x > high) {
-        fail(node, "{} = {} is out of range; it must be at least {} and at most {}", full(key.key), x, low,
-             high);
-    }
+    const std::int64_t x = *node.value<std::int64_t>();
+    check_integer(where(node), x, key);
     return x;
 }
 
@@ -95,9 +132,7 @@ std::string Section::text(const toml::node& node, const Key& key) const {
     if (!node.is_string())
         fail(node, "{} must be a string in quotes, not {}", full(key.key), type_name(node));
     std::string got = *node.value<std::string>();
-    const std::vector<const char*> names = key.names();
-    if (!names.empty() && std::find(names.begin(), names.end(), got) == names.end())
-        fail(node, "unknown {} {}; use {}", full(key.key), in_quotes(got), listed(names));
+    check_text(where(node), got, key);
     return got;
 }
 
@@ -108,13 +143,12 @@ std::vector<double> Section::numbers(const toml::node& node, const Key& key) con
     if (array->size() != key.count())
         fail(node, "{} has {} values; write {} = {}", full(key.key), array->size(), key.key, shape);
     std::vector<double> out;
-    for (const toml::node& element : *array)
-        out.push_back(number(element, fmt::format("{}[{}]", full(key.key), out.size()), key.range));
+    for (const toml::node& value : *array) out.push_back(number(value, element(key, out.size()), key.range));
     return out;
 }
 
 FieldValue Section::value(const Key& key) const {
-    const toml::node* node = table_.get(key.key);
+    const toml::node* node = table_->get(key.key);
     if (!node) {
         if (!key.options.needed) return {};
         fail(where_, "[{}] needs {} = {}", path_, key.key,
@@ -131,22 +165,20 @@ FieldValue Section::value(const Key& key) const {
         case Key::Kind::kIntegers:
             break;
     }
-    const std::vector<double> list = numbers(*node, key);
-    if (key.kind == Key::Kind::kIntegers &&
-        std::any_of(list.begin(), list.end(), [](double x) { return x != std::floor(x); }))
-        fail(*node, "{} must be whole {}; drop the fraction", full(key.key), key.range.unit);
+    std::vector<double> list = numbers(*node, key);
+    check_whole(where(*node), list, key);
     return list;
 }
 
 std::optional<bool> Section::boolean(std::string_view key) const {
-    const toml::node* node = table_.get(key);
+    const toml::node* node = table_->get(key);
     if (!node) return std::nullopt;
     if (!node->is_boolean()) fail(key, "{} must be true or false, not {}", full(key), type_name(*node));
     return *node->value<bool>();
 }
 
 std::optional<Section> Section::section(const char* key, const std::vector<std::string_view>& keys) const {
-    const toml::node* node = table_.get(key);
+    const toml::node* node = table_->get(key);
     if (!node) return std::nullopt;
     if (!node->is_table()) {
         const char* hint = node->is_array_of_tables() ? " (single brackets, once)" : "";
@@ -156,7 +188,7 @@ std::optional<Section> Section::section(const char* key, const std::vector<std::
 }
 
 std::optional<std::vector<const toml::table*>> Section::tables(std::string_view key) const {
-    const toml::node* node = table_.get(key);
+    const toml::node* node = table_->get(key);
     if (!node) return std::nullopt;
     const std::string name = full(key);
     const toml::array* array = node->as_array();

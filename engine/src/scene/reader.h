@@ -21,21 +21,26 @@ using carom::in_quotes;
 SourceLocation place(const toml::source_region& region);
 
 /// Reads one table of the file. `path` names it in messages ("cue", "table.cushion"); the file as a whole is "".
+/// A section of a scene that was built in code has no table: it only checks, and its errors have no place.
 class Section {
   public:
+    Section(const std::string& file, std::string path) : file_(file), path_(std::move(path)) {}
+
     /// @throws SceneError for a key that is not in `keys`
     Section(const toml::table& table, const std::string& file, std::string path,
             const std::vector<std::string_view>& keys);
 
     SourceLocation where() const { return where_; }
     const std::string& file() const { return file_; }
-    bool has(std::string_view key) const { return table_.contains(key); }
+    bool has(std::string_view key) const { return table_ != nullptr && table_->contains(key); }
     /// Where a key's value stands, or the section if the key is absent.
     SourceLocation where(std::string_view key) const;
     /// The same of a key in a section inside this one.
-    bool has(std::string_view section, std::string_view key) const { return bool(table_[section][key]); }
+    bool has(std::string_view section, std::string_view key) const {
+        return table_ != nullptr && bool((*table_)[section][key]);
+    }
     SourceLocation where(std::string_view section, std::string_view key) const {
-        return has(section, key) ? where(*table_[section][key].node()) : where(section);
+        return has(section, key) ? where(*(*table_)[section][key].node()) : where(section);
     }
     static SourceLocation where(const toml::node& node) { return place(node.source()); }
     static SourceLocation where(SourceLocation known) { return known; }
@@ -50,6 +55,17 @@ class Section {
         }
     }
     std::optional<bool> boolean(std::string_view key) const;
+
+    /// Refuses what a file could not say, in the order of the rows.
+    template <class T, std::size_t kRows>
+    void check(const Field<T> (&fields)[kRows], const T& object) const {
+        for (const Field<T>& f : fields) {
+            if (f.fits != nullptr && f.fits(object, f)) continue;
+            if (is_written(fields, f, object)) check(f, f.value(object));
+        }
+    }
+    /// The same for one value.
+    void check(const Key& key, const FieldValue& value) const;
 
     /// A section inside this one, if it is there.
     std::optional<Section> section(const char* key, const std::vector<std::string_view>& keys) const;
@@ -77,8 +93,13 @@ class Section {
     std::int64_t integer(const toml::node& node, const Key& key) const;
     std::string text(const toml::node& node, const Key& key) const;
     std::vector<double> numbers(const toml::node& node, const Key& key) const;
+    std::string element(const Key& key, std::size_t k) const;
+    void check_number(SourceLocation at, const std::string& what, double x, const Interval& allowed) const;
+    void check_integer(SourceLocation at, std::int64_t x, const Key& key) const;
+    void check_text(SourceLocation at, const std::string& x, const Key& key) const;
+    void check_whole(SourceLocation at, const std::vector<double>& list, const Key& key) const;
 
-    const toml::table& table_;
+    const toml::table* table_ = nullptr;
     const std::string& file_;
     std::string path_;
     SourceLocation where_;

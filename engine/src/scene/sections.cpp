@@ -18,24 +18,6 @@
 namespace carom::detail {
 namespace {
 
-// [ball radii] Cue offsets beyond this from the centre are refused: with chalk, a tip slips off at about
-// half a radius (static friction of about 0.6 between tip and ball gives sin(atan 0.6) = 0.51), and a miscue
-// is not simulated.
-constexpr double kMiscueOffset = 0.5;
-
-/// Ids go into CSV files and messages as they are.
-void check_id(const Section& section, const std::string& id) {
-    if (id.empty()) section.fail("id", "a ball's id is empty; give it a name");
-    if (id.size() > kMaxIdLength)
-        section.fail("id", "the ball id {} is longer than {} bytes; shorten it", in_quotes(id), kMaxIdLength);
-    for (const char c : id) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"') {
-            section.fail("id", "the ball id {} holds a comma, a quote or a control character; leave it out",
-                         in_quotes(id));
-        }
-    }
-}
-
 BallStart read_ball(const Section& s, const BallSize& common) {
     BallStart ball;
     BallSize size = common;
@@ -68,8 +50,7 @@ void read_balls(const Section& top, Scene& scene) {
          {std::pair{"mu_b", "mu_b_fit"}, std::pair{"e_c", "e_c_fit"}, std::pair{"f_c", "f_c_fit"}})
         if (s->has(number) && s->has(fit))
             s->fail(fit, "balls.{} and balls.{} are two values for one coefficient; remove one", number, fit);
-    if (scene.balls.e_c > 1.0)
-        s->fail("e_c_fit", "balls.e_c_fit starts at a restitution of {}; give 0 to 1", scene.balls.e_c);
+    check_fits(*s, scene.balls);
 }
 
 void read_ball_list(const Section& top, Scene& scene) {
@@ -122,29 +103,7 @@ void read_cue(const Section& top, Scene& scene) {
     const auto s = top.read("cue", kCueFields, cue);
     if (!s) return;
     cue.where = s->where();
-    const Vec2 offset(cue.side, cue.height);
-    if (offset.squaredNorm() > kMiscueOffset * kMiscueOffset) {
-        s->fail("offset",
-                "cue.offset is {:.4g} ball radii from the centre, where the tip slips off; keep it within {}",
-                offset.norm(), kMiscueOffset);
-    }
-    if (cue.end_mass > cue.mass) {
-        s->fail("end_mass", "cue.end_mass = {} is more than the whole cue, cue.mass = {}; make it smaller",
-                cue.end_mass, cue.mass);
-    }
-    const BallStart* struck = nullptr;
-    for (const BallStart& ball : scene.ball) {
-        if (ball.id == cue.ball) struck = &ball;
-    }
-    if (!struck) {
-        s->fail("ball", "cue.ball: there is no ball {}; add a [[ball]] with this id or name another",
-                in_quotes(cue.ball));
-    }
-    if (!struck->velocity.isZero(0.0) || !struck->spin.isZero(0.0)) {
-        s->fail(struck->where,
-                "ball {} has a velocity or spin of its own and is struck by the cue; remove one of the two",
-                in_quotes(struck->id));
-    }
+    check_cue(*s, scene, cue);
     scene.cue = cue;
 }
 
@@ -153,17 +112,7 @@ void read_physics(const Section& top, Scene& scene) {
     if (s && s->has("substeps") && s->has("tolerance"))
         s->fail("substeps",
                 "physics.substeps and physics.tolerance exclude each other; remove one of the two");
-    const BallParams& p = scene.balls;
-    for (const auto& [key, value] :
-         {std::pair{"mu_s", p.mu_s},
-          std::pair{p.mu_b_more > 0.0 ? "mu_b_fit" : "mu_b", p.mu_b + p.mu_b_more}}) {
-        if (value > kernel::kLargestFriction && scene.physics.ball_ball->reads_tolerance &&
-            !scene.physics.substeps)
-            top.fail(top.where("balls", key),
-                     "balls.{} = {}: the impact by tolerance takes frictions up to {}; lower it, or set "
-                     "physics.substeps = 1000",
-                     key, value, kernel::kLargestFriction);
-    }
+    check_friction(top, scene);
 }
 
 void read_effects(const Section& top, Scene& scene) {
@@ -185,12 +134,7 @@ void read_render(const Section& top, Scene& scene) {
     RenderSettings& r = scene.render;
     const auto s = top.read("render", kRenderFields, r);
     if (!s) return;
-    if (r.eye.has_value() != r.target.has_value())
-        s->fail(r.eye ? "eye" : "target", "render.eye and render.target go together; give both or neither");
-    if (r.eye && s->has("camera"))
-        s->fail("camera", "render.camera and render.eye exclude each other; remove one of the two");
-    if (r.eye && *r.eye == *r.target)
-        s->fail("target", "render.target is where the eye is; move one of the two");
+    check_camera(*s, r);
 }
 
 }  // namespace carom::detail

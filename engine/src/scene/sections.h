@@ -1,8 +1,10 @@
 // One reader per section of a scene file. Each takes the file's top level and fills its part of the scene.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
+#include "carom/engine/scene_number.h"
 #include "carom/engine/tolerances.h"
 #include "scene/reader.h"
 
@@ -27,9 +29,21 @@ void read_effects(const Section& top, Scene& scene);
 void read_stop(const Section& top, Scene& scene);
 void read_render(const Section& top, Scene& scene);
 
+/// Rules about one section, for files and for scenes that were built in code. @throws SceneError
+void check_id(const Section& section, const std::string& id);
+void check_fits(const Section& section, const BallParams& balls);
+void check_cushion(const Section& section, const Cushion& cushion);
+/// Also that the ball is there and at rest.
+void check_cue(const Section& section, const Scene& scene, const Cue& cue);
+/// Whether the kernel takes the friction of the balls.
+void check_friction(const Section& top, const Scene& scene);
+void check_camera(const Section& section, const RenderSettings& render);
+
 /// What no single section can see: ids that are used twice, balls that overlap or reach into a cushion, noses
 /// no ball can meet, a run that would never end. @throws SceneError
 void check_scene(const Section& top, const Scene& scene);
+/// All that changed numbers can break, of the rules of sections and of check_scene(). @throws SceneError
+void check_again(const Section& top, const Scene& scene, Change change);
 
 /// A file as toml++ reads it. @throws SceneError where it cannot be read or is no TOML
 toml::table read_toml(const std::string& path);

@@ -85,12 +85,7 @@ void read_table(const Section& top, Scene& scene) {
     const double height = kNoseShare * scene.balls.R;
     const auto any = [](const Section&, const auto&) {};
     read_parts(*s, "cushion", kCushionFields, Cushion{"", {}, {}, height}, scene.table.cushions,
-               [](const Section& section, const Cushion& c) {
-                   if (c.from == c.to)
-                       section.fail("to",
-                                    "a cushion ends where it begins; move one end, or use a "
-                                    "[[table.jaw]] of radius 0 for a post");
-               });
+               check_cushion);
     read_parts(*s, "jaw", kJawFields, Jaw{"", {}, 0.0, height}, scene.table.jaws, any);
     read_parts(*s, "pocket", kPocketFields, Pocket{"", {}, 0.0, kPocketDepth}, scene.table.pockets, any);
     number_parts(scene.table);

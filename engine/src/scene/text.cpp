@@ -1,4 +1,4 @@
-// From a scene back to a scene file, and the check of scenes that were built in code.
+// From a scene back to a scene file.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -81,18 +81,6 @@ void write_table(Out out, const Table& table) {
     for (const Pocket& p : table.pockets) write_fields(out, "[[table.pocket]]\n", kPocketFields, p);
 }
 
-/// Refuses a ball that is not on the cloth, which no file can describe.
-void check_heights(const Scene& scene) {
-    for (const BallStart& ball : scene.ball) {
-        if (ball.position.z() == scene.size_of(ball).R && ball.velocity.z() == 0.0) continue;
-        throw SceneError(
-            scene.file, {},
-            fmt::format("ball {} has its centre at z = {} m and rises at {} m/s; balls roll on the "
-                        "cloth: z has to be the radius, {} m, and the speed 0",
-                        quote(ball.id), ball.position.z(), ball.velocity.z(), scene.size_of(ball).R));
-    }
-}
-
 }  // namespace
 
 std::string scene_text(const Scene& scene) {
@@ -113,16 +101,6 @@ std::string scene_text(const Scene& scene) {
     write_fields(out, "[stop]\n", kStopFields, scene.stop);
     write_fields(out, "[render]\n", kRenderFields, scene.render);
     return fmt::to_string(buffer);
-}
-
-void validate(const Scene& scene) {
-    check_heights(scene);
-    try {
-        parse_scene(scene_text(scene), scene.file);
-    } catch (const SceneError& error) {
-        // The error has a line in a text that nobody wrote, so the line is left out.
-        throw SceneError(scene.file, {}, error.message());
-    }
 }
 
 }  // namespace carom

@@ -1,6 +1,7 @@
 #include "carom/engine/variation.h"
 
 #include <fmt/format.h>
+#include <iterator>
 
 #include <algorithm>
 #include <charconv>
@@ -10,6 +11,8 @@
 #include "base/fnv.h"
 #include "carom/engine/tolerances.h"
 #include "scene/distribution.h"
+#include "scene/keys.h"
+#include "scene/rack.h"
 #include "scene/sections.h"
 
 namespace carom {
@@ -17,8 +20,10 @@ namespace {
 
 using detail::Distribution;
 using detail::Drawn;
+using detail::element_index;
 using detail::fail;
-using detail::in_quotes;
+using detail::take;
+using detail::take_part;
 
 /// One step of a path: into a table by its name, or, where the name is empty, into an array by its index.
 struct Step {
@@ -31,6 +36,18 @@ struct Rule {
     std::string key;
     std::vector<Step> path;
     Distribution distribution;
+    // What the key is where it can be set without the file; neither where it cannot.
+    std::optional<SceneNumber> number;
+    const Field<Rack>* rack = nullptr;
+
+    Drawn draw(std::uint64_t seed, std::uint64_t index) const {
+        Fnv hash;
+        hash.add(seed);
+        hash.add(index);
+        hash.add(key);
+        SplitMix64 random(hash.value());
+        return distribution(random);
+    }
 };
 
 toml::node* follow(toml::node& from, const Step& step) {
@@ -52,7 +69,7 @@ toml::node* follow(toml::node& from, const std::vector<Step>& path) {
 }
 
 /// Puts a value at the end of the path. All places before the last step exist.
-void put(toml::table& file, const std::vector<Step>& path, const Drawn& value) {
+void put_value(toml::table& file, const std::vector<Step>& path, const Drawn& value) {
     toml::node* parent = follow(file, std::vector<Step>(path.begin(), path.end() - 1));
     const auto place = [&](const auto& v) {
         const Step& last = path.back();
@@ -71,23 +88,30 @@ void put(toml::table& file, const std::vector<Step>& path, const Drawn& value) {
         place(std::get<double>(value));
 }
 
-std::string text_of(const Drawn& value) {
-    if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
-    if (const auto* whole = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *whole);
+void write(const Drawn& value, std::string& text) {
+    text.clear();
+    const auto add = [&text](const auto& x) { fmt::format_to(std::back_inserter(text), "{}", x); };
+    if (const auto* number = std::get_if<double>(&value)) return add(*number);
+    if (const auto* whole = std::get_if<std::int64_t>(&value)) return add(*whole);
     const toml::node& node = *std::get<const toml::node*>(value);
-    if (node.is_string()) return *node.value<std::string>();
-    if (node.is_floating_point()) return fmt::format("{}", *node.value<double>());
+    if (node.is_string()) return add(*node.value<std::string>());
+    if (node.is_floating_point()) return add(*node.value<double>());
     std::ostringstream out;
     node.visit([&out](const auto& v) { out << v; });
-    return out.str();
+    text = out.str();
 }
 
-/// Takes "name." from the front of a key; false where the key does not begin so.
-bool take(std::string_view& key, std::string_view name) {
-    if (key.size() <= name.size() || key.substr(0, name.size()) != name || key[name.size()] != '.')
-        return false;
-    key.remove_prefix(name.size() + 1);
-    return true;
+/// The drawn number, if it is one.
+std::optional<double> number_of(const Drawn& value) {
+    if (const auto* number = std::get_if<double>(&value)) return *number;
+    if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
+    const toml::node& node = *std::get<const toml::node*>(value);
+    return node.is_number() ? node.value<double>() : std::nullopt;
+}
+
+bool is_whole(const Drawn& value) {
+    const auto* const* node = std::get_if<const toml::node*>(&value);
+    return std::holds_alternative<std::int64_t>(value) || (node != nullptr && (*node)->is_integer());
 }
 
 /// Takes the id of a written ball from the front of a key, and returns its place in the list.
@@ -102,35 +126,6 @@ std::size_t take_ball(toml::table& file, std::string_view& key) {
     }
     fail("it names no [[ball]] of the scene; write ball.ID.position.x with one of these ids: {}",
          ids.empty() ? "none is written" : ids);
-}
-
-/// Takes the name of a part of the table from the front of a key ("c2" in the list "cushion"), and returns its place in the
-/// list.
-std::size_t take_part(std::string_view& key, const std::string& list) {
-    const char letter = list.front();
-    std::size_t number = 0;
-    const char* const end = key.data() + key.size();
-    const bool lettered = !key.empty() && key[0] == letter;
-    const auto [rest, error] = std::from_chars(key.data() + (lettered ? 1 : 0), end, number);
-    if (!lettered || error != std::errc() || rest == end || *rest != '.' || number < 1)
-        fail("name the part by its number, as in table.{}.{}1.radius", list, letter);
-    key.remove_prefix(static_cast<std::size_t>(rest + 1 - key.data()));
-    return number - 1;
-}
-
-/// Returns the place in an array that "x", "side" or "0" stands for; the names are those of docs/reference/scene_format.md.
-std::size_t element_index(std::string_view name) {
-    constexpr struct {
-        const char* name;
-        std::size_t index;
-    } kNames[] = {{"x", 0}, {"y", 1}, {"z", 2}, {"side", 0}, {"height", 1}, {"width", 0}};
-    for (const auto& known : kNames)
-        if (name == known.name) return known.index;
-    std::size_t index = 0;
-    const auto [rest, error] = std::from_chars(name.data(), name.data() + name.size(), index);
-    if (error != std::errc() || rest != name.data() + name.size())
-        fail("{} is no element of an array; use x, y, z, side, height or its number from 0", in_quotes(name));
-    return index;
 }
 
 /// Finds the section that a key begins with. A missing one that holds only settings is added without a key.
@@ -191,6 +186,40 @@ bool overlap(const Rule& a, const Rule& b) {
     return std::equal(a.path.begin(), a.path.begin() + static_cast<std::ptrdiff_t>(common), b.path.begin());
 }
 
+/// Whether a key of the file is the same number of the scene, on which nothing else in the scene depends: noses, racks and balls of
+/// a size of their own go by the size of the balls, and the surface by the parts of the table.
+bool is_number_alone(std::string_view key) {
+    const std::string_view section = key.substr(0, key.find('.')), last = key.substr(key.rfind('.') + 1);
+    if (section == "cue" || section == "physics" || section == "stop") return true;
+    return (section == "ball" || section == "balls") && last != "radius" && last != "mass";
+}
+
+/// Finds what a rule varies in the scene itself.
+void find_number(const Scene& scene, Rule& rule) {
+    std::string_view key = rule.key;
+    try {
+        if (is_number_alone(key)) rule.number.emplace(scene, key);
+    } catch (const std::invalid_argument&) {  // a model, a list, or a mistake that shot() reports
+    }
+    if (!take(key, "rack")) return;
+    for (const Field<Rack>& f : kRackFields)
+        if (key == f.key && (key == "gap" || key == "jitter" || key == "seed" || key == "angle_deg"))
+            rule.rack = &f;
+}
+
+/// Sets a number of the rack; false where its section would refuse it.
+bool put_in_rack(const Field<Rack>& row, const Drawn& value, Rack& rack) {
+    const std::optional<double> number = number_of(value);
+    if (!number || !contains(row.range, *number)) return false;
+    if (row.kind == Key::Kind::kNumber)
+        row.set(rack, *number);
+    else if (is_whole(value))
+        row.set(rack, static_cast<std::int64_t>(*number));
+    else
+        return false;
+    return true;
+}
+
 bool same_balls(const Scene& a, const Scene& b) {
     return std::equal(a.ball.begin(), a.ball.end(), b.ball.begin(), b.ball.end(),
                       [](const BallStart& x, const BallStart& y) { return x.id == y.id; });
@@ -206,6 +235,8 @@ struct Variation::Parts {
     std::vector<std::string> keys;
     std::uint64_t seed = 0;
     std::uint64_t fingerprint = 0;
+    bool quick = true;  // every rule is a number of the scene or of its rack
+    Rack rack;          // as the file has it
 };
 
 Variation::Variation(const std::string& path, const std::vector<std::string>& rules, std::uint64_t seed) {
@@ -214,6 +245,9 @@ Variation::Variation(const std::string& path, const std::vector<std::string>& ru
     parts->seed = seed;
     parts->file = detail::read_toml(path);
     parts->base = detail::scene_from(parts->file, path);
+    if (const toml::table* rack = parts->file["rack"].as_table())
+        detail::Section(*rack, path, "rack", keys_of(kRackFields, Files::kScene))
+            .read(kRackFields, parts->rack);
     std::ostringstream content;
     content << parts->file;
     Fnv print;
@@ -224,6 +258,8 @@ Variation::Variation(const std::string& path, const std::vector<std::string>& ru
             Rule rule = parse_rule(parts->file, text);
             for (const Rule& other : parts->rules)
                 if (overlap(rule, other)) fail("{} varies this value already", other.key);
+            find_number(parts->base, rule);
+            parts->quick = parts->quick && (rule.number || rule.rack != nullptr);
             parts->keys.push_back(rule.key);
             parts->rules.push_back(std::move(rule));
         } catch (const std::invalid_argument& error) {
@@ -257,14 +293,9 @@ VariedShot Variation::shot(std::uint64_t index) const {
     VariedShot shot;
     toml::table file = parts_->file;
     for (const Rule& rule : parts_->rules) {
-        Fnv hash;
-        hash.add(parts_->seed);
-        hash.add(index);
-        hash.add(rule.key);
-        SplitMix64 random(hash.value());
-        const Drawn value = rule.distribution(random);
-        shot.values.push_back(text_of(value));
-        put(file, rule.path, value);
+        const Drawn value = rule.draw(parts_->seed, index);
+        write(value, shot.values.emplace_back());
+        put_value(file, rule.path, value);
     }
     try {
         shot.scene = detail::scene_from(file, parts_->path);
@@ -275,6 +306,40 @@ VariedShot Variation::shot(std::uint64_t index) const {
         shot.error = error.message();
     }
     return shot;
+}
+
+std::optional<Change> Variation::put(std::uint64_t index, Scene& scene,
+                                     std::vector<std::string>& values) const {
+    if (!parts_->quick) return std::nullopt;
+    values.resize(parts_->rules.size());
+    Change change = Change::kNumbers;
+    std::optional<Rack> rack;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        const Rule& rule = parts_->rules[k];
+        const Drawn value = rule.draw(parts_->seed, index);
+        write(value, values[k]);
+        if (rule.rack != nullptr) {
+            if (!rack) rack = parts_->rack;
+            if (!put_in_rack(*rule.rack, value, *rack)) return std::nullopt;
+            continue;
+        }
+        const std::optional<double> number = number_of(value);
+        if (!number || (rule.number->row().kind == Key::Kind::kInteger && !is_whole(value)))
+            return std::nullopt;
+        try {
+            change = std::max(change, rule.number->put(scene, *number));
+        } catch (const SceneError&) {
+            return std::nullopt;
+        }
+    }
+    if (rack) {
+        const std::vector<RackedBall> racked = make_rack(*rack, scene.table, scene.balls.R);
+        std::size_t ball = scene.ball.size() - racked.size();
+        for (const RackedBall& place : racked)
+            scene.ball[ball++].position = {place.position.x(), place.position.y(), scene.balls.R};
+        change = std::max(change, Change::kPlaces);
+    }
+    return change;
 }
 
 }  // namespace carom

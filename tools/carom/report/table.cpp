@@ -1,5 +1,7 @@
 #include "report/table.h"
 
+#include <iterator>
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -18,15 +20,6 @@ std::string plain(const Cell& cell) {
     if (const auto* x = std::get_if<double>(&cell.value)) return fmt::format("{}", *x);
     if (const auto* truth = std::get_if<bool>(&cell.value)) return *truth ? "1" : "0";
     return "";
-}
-
-std::string in_quotes(std::string text) {
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-    if (text.find_first_of(",\"") == text.npos) return text;
-    std::string out = "\"";
-    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return out + '"';
 }
 
 std::string aligned(const Cell& cell, const std::string& format) {
@@ -53,9 +46,27 @@ std::string table_text(const Table& table) {
     return out;
 }
 
+void append_csv(std::string& line, double x) {
+    fmt::format_to(std::back_inserter(line), "{},", x);
+}
+
+void append_csv(std::string& line, std::int64_t count) {
+    fmt::format_to(std::back_inserter(line), "{},", count);
+}
+
+void append_csv(std::string& line, std::string_view words) {
+    const bool quotes = words.find_first_of(",\"") != words.npos;
+    if (quotes) line += '"';
+    for (const char c : words) {
+        if (c == '"') line += '"';
+        line += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+    line += quotes ? "\"," : ",";
+}
+
 std::string csv_line(const std::vector<Cell>& cells) {
     std::string line;
-    for (const Cell& cell : cells) line += in_quotes(plain(cell)) + ',';
+    for (const Cell& cell : cells) append_csv(line, plain(cell));
     line.back() = '\n';
     return line;
 }

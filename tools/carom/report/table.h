@@ -1,8 +1,10 @@
 // A table of results: one list of columns, written as aligned text, as CSV or as JSON.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -67,6 +69,10 @@ std::string table_text(const Table& table);
 /// CSV needs it, and control characters in them become blanks.
 std::string table_csv(const Table& table);
 std::string csv_line(const std::vector<Cell>& cells);
+/// Appends one value as csv_line() writes it, and a comma.
+void append_csv(std::string& line, double x);
+void append_csv(std::string& line, std::int64_t count);
+void append_csv(std::string& line, std::string_view words);
 
 /// A list of objects. What has no value, or is no finite number, is null.
 nlohmann::ordered_json table_json(const Table& table);

@@ -42,6 +42,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kMostShots = 1000000000;
 constexpr std::uint64_t kMostShards = 1000000;
+/// A thread takes more shots at once as long as they last less than this, so that the queue costs nothing beside them.
+constexpr std::chrono::milliseconds kBlockTime(2);
+constexpr std::uint64_t kMostAtOnce = 256;
 /// Largest number of finished rows that wait for an earlier one; it limits the memory.
 constexpr std::uint64_t kMostWaiting = 4096;
 constexpr std::chrono::milliseconds kFlushEvery(200);
@@ -61,27 +64,30 @@ ShotRange shard_range(const std::string& text, std::uint64_t count) {
     throw UsageError(fmt::format("--shard {}: expected I/N with 1 <= I <= N, as in 2/4", text));
 }
 
-struct SweepRow {
-    std::string text;  ///< with its line end
-    ShotOutcome outcome;
+using Outcomes = std::array<std::uint64_t, kShotStatuses>;
+
+/// Rows of consecutive shots.
+struct SweepRows {
+    std::string text;  ///< with their line ends
+    std::uint64_t shots = 0;
+    Outcomes outcomes{};
+
+    void append(SweepPlayer& player, std::uint64_t index) {
+        ++outcomes[static_cast<std::size_t>(player.append(index, text))];
+        ++shots;
+    }
 };
 
 /// What makes the rows; every thread reads it.
 struct Sweep {
     const Variation& variation;
     kernel::Isa isa;
-    std::vector<SweepColumn> columns = sweep_columns(variation);
 
-    std::string header() const {
-        std::vector<Cell> cells;
-        for (const SweepColumn& column : columns) cells.emplace_back(column.key);
-        return csv_line(cells);
-    }
-    SweepRow row(std::uint64_t index) const {
-        const SweptShot shot = swept_shot(variation, index, isa);
-        std::vector<Cell> cells;
-        for (const SweepColumn& column : columns) cells.push_back(column.value(shot));
-        return {csv_line(cells), shot.outcome};
+    std::string row(std::uint64_t index) const {
+        SweepRows rows;
+        SweepPlayer player(variation, isa);
+        rows.append(player, index);
+        return rows.text;
     }
 };
 
@@ -90,30 +96,36 @@ class Queue {
   public:
     Queue(std::uint64_t first, std::uint64_t last) : next_(first), last_(last), wanted_(first) {}
 
-    /// The next shot to run; nothing when all are taken or the sweep stops.
-    std::optional<std::uint64_t> claim() {
+    struct Shots {
+        std::uint64_t first, last;
+    };
+    /// Up to `most` shots to run; nothing when all are taken or the sweep stops.
+    std::optional<Shots> claim(std::uint64_t most) {
         std::unique_lock lock(mutex_);
         room_.wait(lock, [&] { return stopped_ || next_ == last_ || next_ < wanted_ + kMostWaiting; });
         if (stopped_ || next_ == last_) return std::nullopt;
-        return next_++;
+        const std::uint64_t first = next_;
+        next_ += std::min(most, last_ - next_);
+        return Shots{first, next_};
     }
 
-    void put(std::uint64_t shot, SweepRow row) {
+    void put(std::uint64_t first, SweepRows rows) {
         const std::lock_guard lock(mutex_);
-        rows_.emplace(shot, std::move(row));
-        if (shot == wanted_) ready_.notify_one();
+        rows_.emplace(first, std::move(rows));
+        if (first == wanted_) ready_.notify_one();
     }
 
-    /// Rows that are ready and next in order; waits a tenth of a second for one.
-    std::vector<SweepRow> take() {
+    /// Rows that are ready and next in order; waits a tenth of a second for some.
+    std::vector<SweepRows> take() {
         std::unique_lock lock(mutex_);
         ready_.wait_for(lock, std::chrono::milliseconds(100),
                         [&] { return stopped_ || rows_.count(wanted_) != 0; });
         if (error_) std::rethrow_exception(error_);
-        std::vector<SweepRow> rows;
-        for (auto it = rows_.begin(); it != rows_.end() && it->first == wanted_;
-             it = rows_.erase(it), ++wanted_)
+        std::vector<SweepRows> rows;
+        for (auto it = rows_.begin(); it != rows_.end() && it->first == wanted_; it = rows_.erase(it)) {
+            wanted_ += it->second.shots;
             rows.push_back(std::move(it->second));
+        }
         if (!rows.empty()) room_.notify_all();
         return rows;
     }
@@ -129,7 +141,7 @@ class Queue {
   private:
     std::mutex mutex_;
     std::condition_variable room_, ready_;
-    std::map<std::uint64_t, SweepRow> rows_;
+    std::map<std::uint64_t, SweepRows> rows_;  // by their first shot
     std::uint64_t next_, last_, wanted_;
     bool stopped_ = false;
     std::exception_ptr error_;
@@ -157,7 +169,15 @@ class Workers {
   private:
     static void work(Queue& queue, const Sweep& sweep) noexcept {
         try {
-            while (const auto shot = queue.claim()) queue.put(*shot, sweep.row(*shot));
+            SweepPlayer player(sweep.variation, sweep.isa);
+            std::uint64_t most = 1;
+            while (const auto shots = queue.claim(most)) {
+                const Clock::time_point start = Clock::now();
+                SweepRows rows;
+                for (std::uint64_t shot = shots->first; shot < shots->last; ++shot) rows.append(player, shot);
+                queue.put(shots->first, std::move(rows));
+                if (Clock::now() - start < kBlockTime && most < kMostAtOnce) most *= 2;
+            }
         } catch (...) {
             queue.stop(std::current_exception());
         }
@@ -178,7 +198,7 @@ std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRan
     const std::uint64_t rows = static_cast<std::uint64_t>(file.lines()) - (range.header ? 1 : 0);
     std::string expected;
     if (rows <= range.last - range.first)
-        expected = rows == 0 ? sweep.header() : sweep.row(range.first + rows - 1).text;
+        expected = rows == 0 ? sweep_header(sweep.variation) : sweep.row(range.first + rows - 1);
     if (expected != file.last_line() + '\n')
         throw std::runtime_error(fmt::format(
             "{}: its last row is not what this program computes; remove it to begin anew", file.name()));
@@ -186,8 +206,6 @@ std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRan
                         range.last - range.first));
     return range.first + rows;
 }
-
-using Outcomes = std::array<std::uint64_t, kShotOutcomes>;
 
 /// Runs the shots from `from` on and writes their rows.
 Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& range, std::uint64_t from,
@@ -199,10 +217,10 @@ Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& rang
     const Workers workers(queue, sweep, jobs);
     for (std::uint64_t done = from; done < range.last;) {
         throw_if_interrupted();
-        for (const SweepRow& row : queue.take()) {
-            file.append(row.text);
-            ++outcomes[static_cast<std::size_t>(row.outcome)];
-            ++done;
+        for (const SweepRows& rows : queue.take()) {
+            file.append(rows.text);
+            for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += rows.outcomes[i];
+            done += rows.shots;
         }
         if (Clock::now() - flushed >= kFlushEvery) {
             file.flush();
@@ -219,9 +237,9 @@ std::string summary(const Outcomes& outcomes, const SweepArgs& args, unsigned jo
     std::string text =
         fmt::format("{}: {} in {:.2f} s on {}, {:.0f} a second\n", args.output, counted(shots, "shot"),
                     seconds, counted(jobs, "thread"), static_cast<double>(shots) / std::max(seconds, 1e-9));
-    for (int i = 0; i < kShotOutcomes; ++i) {
+    for (int i = 0; i < kShotStatuses; ++i) {
         const std::uint64_t n = outcomes[i];
-        if (n > 0) text += fmt::format("  {:<8}{:>10}\n", name(static_cast<ShotOutcome>(i)), n);
+        if (n > 0) text += fmt::format("  {:<8}{:>10}\n", name(static_cast<ShotStatus>(i)), n);
     }
     return text;
 }
@@ -248,7 +266,7 @@ int run(const SweepArgs& args) {
     PartialFile file(args.output, id);
     const Sweep sweep{variation, isa};
     const std::uint64_t from = take_up(file, sweep, range);
-    if (range.header && file.lines() == 0) file.append(sweep.header());
+    if (range.header && file.lines() == 0) file.append(sweep_header(sweep.variation));
     const unsigned jobs =
         args.jobs > 0 ? static_cast<unsigned>(args.jobs) : std::max(1u, std::thread::hardware_concurrency());
     const Clock::time_point start = Clock::now();
@@ -263,7 +281,7 @@ int run(const SweepArgs& args) {
     }
     file.commit();
     print(summary(outcomes, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
-    const std::uint64_t failed = outcomes[static_cast<std::size_t>(ShotOutcome::kRunFailed)];
+    const std::uint64_t failed = outcomes[static_cast<std::size_t>(ShotStatus::kFailed)];
     if (failed == 0) return kOk;
     message(fmt::format("{} failed while running; {} why", counted(failed, "shot"),
                         failed == 1 ? "its row says" : "their rows say"));

@@ -81,6 +81,10 @@ template <class T>
 struct Field : Key {
     FieldValue (*get)(const T&);
     void (*set)(T&, const FieldValue&);  ///< the value is of this kind, and one of the choices
+    /// Whether the value is one that files may have, found without memory; false also where that is not known.
+    bool (*fits)(const T&, const Key&) = nullptr;
+    /// The k-th number of a list in the struct itself; null where it is no member of its own.
+    double* (*element)(T&, std::size_t k) = nullptr;
 
     FieldValue value(const T& object) const {
         FieldValue value = get(object);
@@ -98,6 +102,13 @@ bool is_written(const Field<T> (&fields)[kRows], const Field<T>& field, const T&
         return key != nullptr && key == std::string_view(field.key) && other.value(object).index() != 0;
     });
     return field.in(Files::kScene) && !replaced && field.value(object).index() != 0;
+}
+
+/// Whether a number is finite and in its interval.
+constexpr bool contains(const Interval& range, double x) {
+    const bool high_enough = range.low_open ? x > range.low : x >= range.low;
+    const bool low_enough = range.high_open ? x < range.high : x <= range.high;
+    return x - x == 0.0 && high_enough && low_enough;
 }
 
 /// What files call a value of an enumeration.
@@ -162,6 +173,36 @@ std::vector<const char*> choice_names() {
     return names;
 }
 
+/// Whether a value is surely allowed. Of texts that is not known.
+template <class V>
+bool fits(const V& v, const Key& key) {
+    if constexpr (kIsOptional<V>)
+        return !v || fits(*v, key);
+    else if constexpr (std::is_pointer_v<V>)
+        return std::find(all_of(V{}).begin(), all_of(V{}).end(), v) != all_of(V{}).end();
+    else if constexpr (std::is_enum_v<V>)
+        return static_cast<std::size_t>(v) < names_of(V{}).size();
+    else if constexpr (std::is_floating_point_v<V>)
+        return contains(key.range, v);
+    else if constexpr (std::is_integral_v<V>)
+        return false;
+    else if constexpr (kind_of<V>() == Key::Kind::kNumbers)
+        return std::all_of(v.data(), v.data() + key.count(),
+                           [&](double x) { return contains(key.range, x); });
+    else
+        return false;
+}
+
+/// The k-th number of a vector.
+template <auto kMember>
+double* element(ClassOf<kMember>& object, std::size_t k) {
+    using V = ValueOf<kMember>;
+    if constexpr (!kIsOptional<V> && kind_of<V>() == Key::Kind::kNumbers)
+        return (object.*kMember).data() + k;
+    else
+        return nullptr;
+}
+
 template <class V>
 void put(V& v, const FieldValue& value) {
     if constexpr (kIsOptional<V>) {
@@ -197,7 +238,9 @@ constexpr Field<detail::ClassOf<kMember>> field(const char* key, const Interval&
     if constexpr (detail::kIsChoice<V>) choices = detail::choice_names<V>;
     return {{key, detail::kind_of<V>(), range, meaning, options, optional, 1, choices},
             [](const T& object) { return detail::get(object.*kMember); },
-            [](T& object, const FieldValue& value) { detail::put(object.*kMember, value); }};
+            [](T& object, const FieldValue& value) { detail::put(object.*kMember, value); },
+            [](const T& object, const Key& row) { return detail::fits(object.*kMember, row); },
+            detail::element<kMember>};
 }
 template <auto kMember>
 constexpr Field<detail::ClassOf<kMember>> field(const char* key, const char* meaning,
@@ -221,6 +264,16 @@ constexpr Field<detail::ClassOf<kFirst>> field(const char* key, const Interval& 
                 const auto& list = std::get<std::vector<double>>(value);
                 object.*kFirst = static_cast<V>(list[0]);
                 object.*kSecond = static_cast<V>(list[1]);
+            },
+            [](const T& object, const Key& row) {
+                return contains(row.range, static_cast<double>(object.*kFirst)) &&
+                       contains(row.range, static_cast<double>(object.*kSecond));
+            },
+            [](T& object, std::size_t k) -> double* {
+                if constexpr (std::is_floating_point_v<V>)
+                    return k == 0 ? &(object.*kFirst) : &(object.*kSecond);
+                else
+                    return nullptr;
             }};
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -86,5 +87,27 @@ struct Plan {
 /// @param isa must be available (kernel::isa_from_environment)
 /// @throws SceneError where [effects] refuses what the scene needs
 Plan make_plan(const Scene& scene, kernel::Isa isa);
+
+/// Plans of one scene whose numbers change: the same decisions as make_plan, in memory that is kept. The plans have no reasons,
+/// no warnings, and no names of pockets in their geometry.
+class Planner {
+  public:
+    Planner(const Scene& scene, kernel::Isa isa);
+    ~Planner();
+    Planner(Planner&& other) noexcept;
+    Planner& operator=(Planner&& other) noexcept;
+
+    /// The scene to plan; it may be changed between two plans.
+    Scene& scene() { return plan_.scene; }
+    /// Valid until the next call.
+    /// @param same_table  the table is that of the last call
+    /// @throws SceneError as make_plan
+    const Plan& plan(bool same_table = false);
+
+  private:
+    struct Memory;
+    Plan plan_;
+    std::unique_ptr<Memory> memory_;
+};
 
 }  // namespace carom

@@ -10,7 +10,9 @@ namespace carom {
 /// writing, bytes that are no UTF-8) becomes "?", and what is longer than 60 bytes is cut and ends in "...".
 std::string printable(std::string_view text);
 
-/// The same between quotes.
+bool is_utf8(std::string_view text);
+
+/// printable() between quotes.
 std::string in_quotes(std::string_view text);
 
 }  // namespace carom

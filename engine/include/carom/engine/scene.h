@@ -109,15 +109,17 @@ inline constexpr Field<BallParams> kBallFields[] = {
     field<&BallParams::e_b>("e_b", kRestitution, "ball-ball restitution"),
     number_or_fit<&BallParams::e_c, &BallParams::e_c_fall, &BallParams::e_c_above>(
         "e_c", kRestitution, "cushion restitution, at any speed"),
-    field<&BallParams::e_c_fall>("e_c_fall", at_least(0.0, kMaxFriction, "s/m"),
-                                 "above a speed of `e_c_above` towards the cushion the restitution is `e_c` - "
-                                 "`e_c_fall` (speed - `e_c_above`), and not below 0",
-                                 {.files = Files::kRecord, .since = 2}),
+    field<&BallParams::e_c_fall>(
+        "e_c_fall", at_least(0.0, kMaxFriction, "s/m"),
+        "above a speed of `e_c_above` towards the cushion the restitution is `e_c` - "
+        "`e_c_fall` (speed - `e_c_above`), and not below 0",
+        {.files = Files::kRecord, .since = 2}),
     field<&BallParams::e_c_above>("e_c_above", at_least(0.0, kMaxSpeed, "m/s"), "see `e_c_fall`",
                                   {.files = Files::kRecord, .since = 2}),
     fit<&BallParams::e_c, &BallParams::e_c_fall, &BallParams::e_c_above>(
         "e_c_fit", kFriction,
-        "cushion restitution that falls with the speed v in m/s towards the cushion: e up to v0, e - c (v - v0) "
+        "cushion restitution that falls with the speed v in m/s towards the cushion: e up to v0, e - c (v - "
+        "v0) "
         "above, and not below 0; `[1, 0.08, 1.7]` with `mathavan_2010` meets the snooker cushion of 2009",
         "[e, c, v0] for e - c max(0, v - v0)", "e_c"),
     number_or_fit<&BallParams::f_c, &BallParams::f_c_more, &BallParams::f_c_fall>(
@@ -302,7 +304,8 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
                               {.instead_of = "tolerance"}),
     field<&Physics::cushion_touch>(
         "cushion_touch",
-        "distance of a ball's centre from a nose line that it touches: its `radius` R, as most simulators have "
+        "distance of a ball's centre from a nose line that it touches: its `radius` R, as most simulators "
+        "have "
         "it, or sqrt(R^2 - (height - R)^2), where its sphere meets the `nose`; that is 0.6 to 2.2 mm less",
         {.since = 2}),
 };
@@ -399,7 +402,8 @@ Scene parse_scene(std::string_view text, const std::string& name);
 /// written ones; names that only people read, and depths of pockets, are left out).
 std::string scene_text(const Scene& scene);
 
-/// For a scene that was built in code: all that parse_scene checks. @throws SceneError without a line
+/// For a scene that was built in code: all that parse_scene checks, in the same order and words, on the struct itself.
+/// @throws SceneError without a line
 void validate(const Scene& scene);
 
 /// A preset by name. @throws std::invalid_argument for an unknown one

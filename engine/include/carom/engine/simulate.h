@@ -1,9 +1,13 @@
 // The event loop.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
@@ -21,6 +25,8 @@ struct SimulateOptions {
     /// is not called at all.
     std::function<void(std::size_t, double)> progress;
     int progress_rounds = 64;
+    bool hash =
+        false;  ///< for an outcome: Outcome::hash, which takes the segments that it has no other use for
 };
 
 /// A run that cannot go on: too many events in one simulated microsecond, or a kernel that failed. what()
@@ -37,5 +43,50 @@ Record simulate(const Plan& plan, const SimulateOptions& options = {});
 /// Goes on with a run of the same plan that stopped at its number of events or its stop time (which the plan
 /// no longer has, or has later). The result has the bits of a run that never stopped. @throws SimulationError
 Record resume(const Plan& plan, const Record& so_far, const SimulateOptions& options = {});
+
+/// What became of one ball.
+struct BallOutcome {
+    Vec3 position = Vec3::Zero();  ///< at the end [m]; of a pocketed ball the bottom of the pocket
+    int pocket = -1;               ///< index of the pocket that holds it, or -1
+    int fell = -1;                 ///< 0 for the ball that fell first, 1 for the next one, ..., or -1
+    int cushions = 0;  ///< how often it met a cushion or a jaw: bounces, and contacts that began to last
+    bool operator==(const BallOutcome&) const = default;
+};
+
+/// What became of a shot, without a record: final places and what the events come to.
+struct Outcome {
+    StopReason stopped = StopReason::kAtRest;
+    double duration = 0.0;    ///< [s]
+    std::int64_t events = 0;  ///< as many as the record would have
+    int clusters = 0;         ///< of these events
+    int struck = -1;  ///< the ball that the cue strikes, or else the first one that moves at the start; or -1
+    int first_hit = -1;              ///< the ball that it meets first: in a cluster the nearest one; or -1
+    std::vector<BallOutcome> balls;  ///< in the order of Scene::ball
+    std::uint64_t hash = 0;          ///< Record::hash() as a number, if SimulateOptions::hash asked for it
+    bool operator==(const Outcome&) const = default;
+};
+
+/// Memory that runs use one after the other, of the same plan or of others. Of one thread at a time. The results do not depend
+/// on it.
+class RunBuffers {
+  public:
+    RunBuffers();
+    ~RunBuffers();
+    RunBuffers(RunBuffers&& other) noexcept;
+    RunBuffers& operator=(RunBuffers&& other) noexcept;
+
+    struct Memory;
+    Memory& memory() { return *memory_; }
+
+  private:
+    std::unique_ptr<Memory> memory_;
+};
+
+/// simulate() in memory that is kept: only the record itself takes new memory. @throws SimulationError
+Record simulate(const Plan& plan, RunBuffers& buffers, const SimulateOptions& options = {});
+
+/// simulate() without a record. Once the buffers and the outcome have grown to what a shot needs, it takes no memory, unless
+/// balls rest against each other or against a cushion. A profile is not taken. @throws SimulationError
+void simulate(const Plan& plan, RunBuffers& buffers, Outcome& outcome, const SimulateOptions& options = {});
 
 }  // namespace carom

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "carom/engine/scene.h"
+#include "carom/engine/scene_number.h"
 
 namespace carom {
 
@@ -51,6 +52,13 @@ class Variation {
     /// Shot 0, 1, ...; any thread may ask. Where the balls are not those of the file (a rack of another
     /// size), there is no scene but an error: all shots share the columns of one table.
     VariedShot shot(std::uint64_t index) const;
+
+    /// The quick way to the same shot: puts its numbers into a scene that differs from base() in nothing but the values of these
+    /// keys. Takes no memory once `values` has its size, unless the rack varies.
+    /// @param values  receives those of VariedShot
+    /// @return what has to be checked; or nothing, and then shot() has to make this shot: a key or a value of it is no number of
+    ///         the cue, the physics, the stop, the balls' material or their state, nor gap, jitter, seed or angle of the rack
+    std::optional<Change> put(std::uint64_t index, Scene& scene, std::vector<std::string>& values) const;
 
     /// Of the file's content, the rules and the seed: the same number, the same shots.
     std::uint64_t fingerprint() const;

@@ -1,0 +1,116 @@
+// Many shots of one scene: outcomes instead of records, in memory that is taken once.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/scene_number.h"
+#include "carom/engine/simulate.h"
+
+namespace carom {
+
+/// How a shot of a batch ended: as StopReason says, or without a result.
+enum class ShotStatus : std::uint8_t {
+    kAtRest,
+    kTime,
+    kEvents,
+    kEndless,
+    kInvalid,  ///< its values make no valid scene
+    kFailed,   ///< the simulation could not go on
+};
+inline constexpr int kShotStatuses = 6;
+constexpr auto names_of(ShotStatus) {
+    return std::array{"at_rest", "time", "events", "endless", "invalid", "failed"};
+}
+constexpr bool has_result(ShotStatus status) {
+    return status < ShotStatus::kInvalid;
+}
+
+/// Plays one shot after the other; after the first ones a shot takes no memory, unless it fails or has resting contacts. One
+/// thread at a time.
+class Simulator {
+  public:
+    /// @param scene  need not be valid before the first shot changes it
+    /// @param isa    must be available
+    Simulator(const Scene& scene, kernel::Isa isa);
+
+    /// The scene of the next shot. Its numbers may be changed between shots, nothing else.
+    Scene& scene() { return planner_.scene(); }
+
+    /// Checks, plans and plays the scene.
+    /// @param change  at least what was changed since the last shot that had a result
+    /// @throws only what options.progress throws, and std::bad_alloc
+    ShotStatus play(Change change, const SimulateOptions& options = {});
+    /// The same for a scene of its own, which is valid (it comes from a reader).
+    ShotStatus play(const Scene& scene, const SimulateOptions& options = {});
+    /// Sets the message of a shot that cannot be played. @return kInvalid
+    ShotStatus refuse(std::string why);
+
+    const Outcome& outcome() const { return outcome_; }      ///< of the last shot, if it has a result
+    const std::string& message() const { return message_; }  ///< why it has none
+
+  private:
+    ShotStatus run(bool same_table, const SimulateOptions& options);
+
+    Planner planner_;
+    RunBuffers buffers_;
+    Outcome outcome_;
+    std::string message_;
+    bool checked_ = false;  // what no change of numbers can break
+};
+
+/// A number that differs from shot to shot.
+struct BatchColumn {
+    std::string key;                 ///< as SceneNumber takes it
+    std::span<const double> values;  ///< one for each shot
+};
+
+struct BatchOptions {
+    int threads = 0;             ///< 0: one for each core. The results do not depend on it.
+    bool hash = false;           ///< fill Batch::hash
+    SimulateOptions simulate{};  ///< `progress` is not called, nothing is profiled
+    /// Called by each thread between shots; true ends the batch with an exception of type BatchStopped.
+    std::function<bool()> stop{};
+};
+
+class BatchStopped : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Outcomes of n shots of b balls: arrays of n, or of n x b with the balls of a shot one after the other, in the order of
+/// Scene::ball. A shot without a result has 0 everywhere and -1 as ball and pocket.
+struct Batch {
+    std::size_t shots = 0, balls = 0;
+    std::vector<ShotStatus> status;       ///< n
+    std::vector<double> duration;         ///< n [s]
+    std::vector<std::int64_t> events;     ///< n
+    std::vector<std::int32_t> first_hit;  ///< n: the first ball that the struck ball meets, or -1
+    std::vector<double> x, y;             ///< n x b [m], at the end
+    std::vector<std::int32_t> pocket;     ///< n x b: index of the pocket that holds the ball, or -1
+    std::vector<std::int32_t> fell;       ///< n x b: 0 for the ball that fell first, 1, ..., or -1
+    std::vector<std::int32_t> cushions;   ///< n x b: how often the ball met a cushion or a jaw
+    std::vector<std::uint64_t> hash;      ///< n, if asked for: Outcome::hash
+    struct Message {
+        std::size_t shot;
+        std::string text;  ///< why the shot has no result
+    };
+    std::vector<Message> messages;  ///< in the order of the shots
+};
+
+/// Plays `shots` shots that differ in the numbers of some columns. Shot i has the results of simulate() for the scene with these
+/// numbers, bit for bit, whatever the number of threads. A shot that is invalid or fails has its status, and the others are played.
+/// @throws std::invalid_argument for a key that names no number, a key that is there twice, or a column of another length
+/// @throws std::bad_alloc, and std::system_error where the system gives no threads
+Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const BatchColumn> columns,
+                    kernel::Isa isa, const BatchOptions& options = {});
+
+}  // namespace carom

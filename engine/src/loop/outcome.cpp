@@ -1,0 +1,99 @@
+// What a log comes to where nobody wants the record.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "base/record_hash.h"
+#include "loop/log.h"
+
+namespace carom {
+
+namespace {
+
+/// The ball that is struck, or else the first one that moves; -1 if no ball moves.
+int struck_ball(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.ball.size(); ++i) {
+        const BallStart& ball = scene.ball[i];
+        const bool moves =
+            scene.cue ? ball.id == scene.cue->ball : !ball.velocity.isZero(0.0) || !ball.spin.isZero(0.0);
+        if (moves) return static_cast<int>(i);
+    }
+    return -1;
+}
+
+/// The ball of a cluster that is nearest to one of its members; -1 if that one is no member.
+int nearest(std::span<const ClusterBall> cluster, int ball) {
+    const auto self =
+        std::find_if(cluster.begin(), cluster.end(), [ball](const ClusterBall& b) { return b.ball == ball; });
+    if (self == cluster.end()) return -1;
+    int best = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (const ClusterBall& other : cluster) {
+        const double distance = other.ball == ball ? least : (other.r - self->r).norm();
+        if (distance >= least) continue;
+        least = distance;
+        best = other.ball;
+    }
+    return best;
+}
+
+}  // namespace
+
+// The first ball that the struck ball touches, or -1.
+int Log::first_hit(int struck) const {
+    if (struck < 0) return -1;
+    for (const Event& e : events_) {
+        const bool cluster = e.type == EventType::kBallCluster;
+        if (!cluster && e.type != EventType::kBallBall && e.type != EventType::kBallBallHold) continue;
+        int other = e.a == struck ? e.b : e.b == struck ? e.a : -1;
+        if (other < 0 && cluster) {
+            const auto index = static_cast<std::size_t>(e.detail);
+            const std::size_t begin = index == 0 ? 0 : cluster_end_[index - 1];
+            other = nearest(std::span(cluster_ball_).subspan(begin, cluster_end_[index] - begin), struck);
+        }
+        if (other >= 0) return other;
+    }
+    return -1;
+}
+
+std::uint64_t Log::hash() const {
+    RecordHash hash;
+    for (int ball = 0; ball < balls_.count(); ++ball) {
+        hash.ball(static_cast<std::size_t>(std::count_if(
+            segments_.begin(), segments_.end(), [ball](const BallSegment& s) { return s.ball == ball; })));
+        for (const BallSegment& s : segments_)
+            if (s.ball == ball) hash.segment(s.segment);
+    }
+    for (const Event& e : events_) hash.event(e);
+    hash.duration(balls_.now());
+    return hash.value();
+}
+
+void Log::outcome(StopReason why, Outcome& out) const {
+    out.stopped = why;
+    out.duration = balls_.now();
+    out.events = static_cast<std::int64_t>(events_.size());
+    out.clusters = static_cast<int>(cluster_end_.size());
+    out.struck = struck_ball(plan_.scene);
+    out.first_hit = first_hit(out.struck);
+    out.hash = keep_ == Keep::kHash ? hash() : 0;
+    out.balls.assign(static_cast<std::size_t>(balls_.count()), {});
+    for (int i = 0; i < balls_.count(); ++i) {
+        const Segment& s = balls_.segment(i);
+        out.balls[i].position = position_at(s, std::min(balls_.now() - s.start, s.duration));
+    }
+    int fallen = 0;
+    for (const Event& e : events_) {
+        BallOutcome& ball = out.balls[e.a];
+        const EventKind& of = kind(e.type);
+        const bool table = of.partner == Partner::kCushion || of.partner == Partner::kJaw;
+        if (table && of.phase != EventPhase::kRelease) ++ball.cushions;
+        if (e.type != EventType::kBallPocket) continue;
+        ball.pocket = e.b;
+        ball.fell = fallen++;
+    }
+}
+
+}  // namespace carom

@@ -1,0 +1,159 @@
+#include "carom/engine/scene_number.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/distribution.h"
+#include "scene/keys.h"
+#include "scene/sections.h"
+
+namespace carom {
+namespace {
+
+using detail::element_index;
+using detail::fail;
+using detail::Section;
+using detail::take;
+using detail::take_part;
+
+// [-] Integers beyond this are not all doubles.
+constexpr double kMostWhole = 0x1p53;
+
+/// Takes a number for an integer, as a scene file does.
+std::int64_t whole(const Scene& scene, const Key& row, const char* section, double value) {
+    const Section place(scene.file, section);
+    if (value != std::floor(value))
+        place.fail(SourceLocation{}, "{} must be an integer, not a number with a decimal point",
+                   place.full(row.key));
+    place.check(row, value);
+    if (std::abs(value) > kMostWhole)
+        place.fail(SourceLocation{}, "{} = {} is out of range; it must be at most {}", place.full(row.key),
+                   value, kMostWhole);
+    return static_cast<std::int64_t>(value);
+}
+
+struct Found {
+    const Key* row;
+    std::function<Change(Scene&, double)> put;
+};
+
+/// The number that `key` names in the rows of a section.
+/// @param at  from a scene to the object with the rows
+/// @param change  what has to be checked after a change within the range
+template <class T, std::size_t kRows, class At>
+Found find(const Field<T> (&fields)[kRows], const char* section, std::string_view key, Change change, At at) {
+    const std::size_t dot = key.find('.');
+    for (const Field<T>& f : fields) {
+        if (!f.in(Files::kScene) || key.substr(0, dot) != f.key) continue;
+        if (dot != key.npos) {
+            const std::size_t k = element_index(key.substr(dot + 1));
+            if (f.element == nullptr || k >= f.count()) break;
+            return {&f, [&f, at, k, change](Scene& scene, double value) {
+                        *f.element(at(scene), k) = value;
+                        return contains(f.range, value) ? change : Change::kAnything;
+                    }};
+        }
+        if (f.kind == Key::Kind::kNumber)
+            return {&f, [&f, at, change](Scene& scene, double value) {
+                        f.set(at(scene), value);
+                        return contains(f.range, value) ? change : Change::kAnything;
+                    }};
+        if (f.kind == Key::Kind::kInteger)
+            return {&f, [&f, at, change, section](Scene& scene, double value) {
+                        f.set(at(scene), whole(scene, f, section, value));
+                        return change;
+                    }};
+        break;
+    }
+    fail("it names no number in [{}]", section);
+}
+
+Found find_in_ball(const Scene& scene, std::string_view key) {
+    std::string ids;
+    for (std::size_t i = 0; i < scene.ball.size(); ++i) {
+        const std::string& id = scene.ball[i].id;
+        ids += (ids.empty() ? "" : ", ") + id;
+        if (!take(key, id)) continue;
+        const auto ball = [i](Scene& s) -> BallStart& { return s.ball[i]; };
+        if (key != "radius" && key != "mass") {
+            const bool place = key.substr(0, key.find('.')) == "position";
+            return find(kBallStartFields, "ball", key, place ? Change::kPlaces : Change::kNumbers, ball);
+        }
+        if (!scene.ball[i].own) fail("the ball has no size of its own; give it one, then vary it");
+        Found found = find(kSizeFields, "ball", key, Change::kTable,
+                           [i](Scene& s) -> BallSize& { return *s.ball[i].own; });
+        found.put = [put = std::move(found.put), i](Scene& s, double value) {
+            const Change change = put(s, value);
+            s.ball[i].position.z() = s.ball[i].own->R;
+            return change;
+        };
+        return found;
+    }
+    fail("it names no ball; write ball.ID.position.x with one of these ids: {}", ids);
+}
+
+Found find_in_balls(std::string_view key) {
+    Found found = find(kBallFields, "balls", key, key == "radius" ? Change::kTable : Change::kNumbers,
+                       [](Scene& s) -> BallParams& { return s.balls; });
+    if (key == "radius")
+        found.put = [put = std::move(found.put)](Scene& s, double value) {
+            const Change change = put(s, value);
+            for (BallStart& ball : s.ball) ball.position.z() = s.size_of(ball).R;
+            return change;
+        };
+    return found;
+}
+
+template <class Part, std::size_t kRows>
+Found find_in_parts(const Field<Part> (&fields)[kRows], const char* section, const char* list,
+                    std::vector<Part> Table::*parts, const Scene& scene, std::string_view key) {
+    const std::size_t i = take_part(key, list);
+    if (i >= (scene.table.*parts).size()) fail("the table has no such part");
+    return find(fields, section, key, Change::kTable,
+                [parts, i](Scene& s) -> Part& { return (s.table.*parts)[i]; });
+}
+
+Found find_number(const Scene& scene, std::string_view key) {
+    if (take(key, "balls")) return find_in_balls(key);
+    if (take(key, "ball")) return find_in_ball(scene, key);
+    if (take(key, "cue")) {
+        if (!scene.cue) fail("the scene has no cue; give it one, then vary it");
+        return find(kCueFields, "cue", key, Change::kNumbers, [](Scene& s) -> Cue& { return *s.cue; });
+    }
+    if (take(key, "physics"))
+        return find(kPhysicsFields, "physics", key, Change::kNumbers,
+                    [](Scene& s) -> Physics& { return s.physics; });
+    if (take(key, "stop"))
+        return find(kStopFields, "stop", key, Change::kNumbers, [](Scene& s) -> Stop& { return s.stop; });
+    if (take(key, "table")) {
+        if (take(key, "cushion"))
+            return find_in_parts(kCushionFields, "table.cushion", "cushion", &Table::cushions, scene, key);
+        if (take(key, "jaw")) return find_in_parts(kJawFields, "table.jaw", "jaw", &Table::jaws, scene, key);
+        if (take(key, "pocket"))
+            return find_in_parts(kPocketFields, "table.pocket", "pocket", &Table::pockets, scene, key);
+    }
+    fail(
+        "name a number in its section, such as cue.speed; sections are balls, ball, cue, physics, stop and "
+        "table");
+}
+
+}  // namespace
+
+SceneNumber::SceneNumber(const Scene& scene, std::string_view key) {
+    try {
+        Found found = find_number(scene, key);
+        row_ = found.row;
+        put_ = std::move(found.put);
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(fmt::format("{}: {}", key, error.what()));
+    }
+}
+
+}  // namespace carom

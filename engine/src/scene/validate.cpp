@@ -1,0 +1,143 @@
+// The check of scenes that were built in code: every rule of the reader, in its order, on the struct itself.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/tolerances.h"
+#include "scene/sections.h"
+
+namespace carom {
+namespace {
+
+using detail::in_quotes;
+using detail::Section;
+
+/// Refuses a ball that is not on the cloth, which no file can describe.
+void check_heights(const Section& top, const Scene& scene) {
+    for (const BallStart& ball : scene.ball) {
+        if (ball.position.z() == scene.size_of(ball).R && ball.velocity.z() == 0.0) continue;
+        top.fail(SourceLocation{},
+                 "ball {} has its centre at z = {} m and rises at {} m/s; balls roll on the "
+                 "cloth: z has to be the radius, {} m, and the speed 0",
+                 in_quotes(ball.id), ball.position.z(), ball.velocity.z(), scene.size_of(ball).R);
+    }
+}
+
+/// Refuses models that are missing, which no file can leave out.
+void check_models(const Section& top, const Physics& physics) {
+    for (const auto& [key, there] : {std::pair{"ball_ball", physics.ball_ball != nullptr},
+                                     std::pair{"cushion", physics.cushion != nullptr}})
+        if (!there) top.fail(SourceLocation{}, "physics.{} is no model; choose one", key);
+}
+
+template <class Part, std::size_t kRows>
+void check_parts(const Scene& scene, const char* path, const Field<Part> (&fields)[kRows],
+                 const std::vector<Part>& parts) {
+    const Section section(scene.file, path);
+    if (parts.size() > kMaxTableParts)
+        section.fail(SourceLocation{}, "{} has {} entries; at most {} are allowed", path, parts.size(),
+                     kMaxTableParts);
+    for (const Part& part : parts) {
+        section.check(fields, part);
+        if constexpr (std::is_same_v<Part, Cushion>) check_cushion(section, part);
+    }
+}
+
+/// The parts of a preset are in range, so whether they are still those of the preset does not matter.
+void check_table(const Scene& scene) {
+    Table named;
+    named.cloth = scene.table.cloth;
+    named.preset = scene.table.preset.empty() ? kStandardTable : scene.table.preset;
+    Section(scene.file, "table").check(kTableFields, named);
+    check_parts(scene, "table.cushion", kCushionFields, scene.table.cushions);
+    check_parts(scene, "table.jaw", kJawFields, scene.table.jaws);
+    check_parts(scene, "table.pocket", kPocketFields, scene.table.pockets);
+}
+
+void check_balls(const Scene& scene) {
+    const Section section(scene.file, "ball");
+    std::size_t count = 0;
+    for (const BallStart& ball : scene.ball) {
+        if (count++ == kMaxBalls)
+            section.fail(SourceLocation{}, "more than {} balls; leave some out", kMaxBalls);
+        if (ball.own) section.check(kSizeFields, *ball.own);
+        section.check(kBallStartFields, ball);
+        check_id(section, ball.id);
+    }
+}
+
+void check_effects(const Scene& scene) {
+    const Section section(scene.file, "effects");
+    const std::span<const EffectInfo> known = effect_table();
+    for (auto effect = scene.effects.begin(); effect != scene.effects.end(); ++effect) {
+        if (std::none_of(known.begin(), known.end(),
+                         [&](const EffectInfo& info) { return effect->keyword == info.keyword; })) {
+            std::vector<std::string_view> keywords;
+            for (const EffectInfo& info : known) keywords.emplace_back(info.keyword);
+            section.fail(SourceLocation{}, "unknown key {} in [effects]; the keys there are {}",
+                         in_quotes(effect->keyword), fmt::join(keywords, ", "));
+        }
+        if (std::any_of(scene.effects.begin(), effect,
+                        [&](const EffectOverride& other) { return other.keyword == effect->keyword; }))
+            section.fail(SourceLocation{}, "effects.{} is there already; keep one of the two",
+                         effect->keyword);
+    }
+}
+
+void check_all(const Scene& scene) {
+    const Section top(scene.file, "");
+    check_heights(top, scene);
+    const Section balls(scene.file, "balls");
+    balls.check(kBallPresetFields, scene);
+    balls.check(kBallFields, scene.balls);
+    check_fits(balls, scene.balls);
+    check_models(top, scene.physics);
+    Section(scene.file, "physics").check(kPhysicsFields, scene.physics);
+    check_friction(top, scene);
+    check_table(scene);
+    check_balls(scene);
+    if (scene.cue) {
+        const Section cue(scene.file, "cue");
+        cue.check(kCueFields, *scene.cue);
+        check_cue(cue, scene, *scene.cue);
+    }
+    check_effects(scene);
+    Section(scene.file, "stop").check(kStopFields, scene.stop);
+    const Section render(scene.file, "render");
+    render.check(kRenderFields, scene.render);
+    check_camera(render, scene.render);
+    check_scene(top, scene);
+}
+
+// A place that the scene remembers is that of a file which may say something else by now.
+[[noreturn]] void throw_without_place(const Scene& scene, const SceneError& error) {
+    throw SceneError(scene.file, {}, error.message());
+}
+
+}  // namespace
+
+void validate(const Scene& scene) {
+    try {
+        check_all(scene);
+    } catch (const SceneError& error) {
+        throw_without_place(scene, error);
+    }
+}
+
+void validate_change(const Scene& scene, Change change) {
+    if (change == Change::kAnything) return validate(scene);
+    try {
+        check_again(Section(scene.file, ""), scene, change);
+    } catch (const SceneError& error) {
+        throw_without_place(scene, error);
+    }
+}
+
+}  // namespace carom

@@ -1,0 +1,377 @@
+// Batches: the same bits as shot by shot, whatever the number of threads; what fails is a status; keys of numbers.
+#include "carom/engine/batch.h"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "base/splitmix64.h"
+#include "support/engine_cases.h"
+#include "support/random_scenes.h"
+
+namespace carom::test {
+namespace {
+
+constexpr kernel::Isa kIsa = kernel::Isa::kScalar;
+
+Scene scene_of(const std::string& name) {
+    return read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml");
+}
+
+/// Columns of a batch with their values.
+struct Columns {
+    std::vector<std::string> keys;
+    std::vector<std::vector<double>> values;
+    std::size_t shots = 0;
+
+    Columns(std::size_t n) : shots(n) {}
+    Columns& add(const std::string& key, SplitMix64& random, double low, double high) {
+        keys.push_back(key);
+        std::vector<double>& column = values.emplace_back();
+        for (std::size_t i = 0; i < shots; ++i) column.push_back(low + (high - low) * random.uniform());
+        return *this;
+    }
+    Batch play(const Scene& scene, int threads, bool hash = true) const {
+        std::vector<BatchColumn> columns;
+        for (std::size_t k = 0; k < keys.size(); ++k) columns.push_back({keys[k], values[k]});
+        BatchOptions options;
+        options.threads = threads;
+        options.hash = hash;
+        return simulate_many(scene, shots, columns, kIsa, options);
+    }
+    Scene shot(Scene scene, std::size_t i) const {
+        for (std::size_t k = 0; k < keys.size(); ++k) SceneNumber(scene, keys[k]).put(scene, values[k][i]);
+        return scene;
+    }
+};
+
+/// The first ball that a ball meets, found from the record alone.
+int first_hit(const Record& record, int ball) {
+    for (const Event& e : record.events) {
+        if (e.type != EventType::kBallBall && e.type != EventType::kBallBallHold &&
+            e.type != EventType::kBallCluster)
+            continue;
+        if (e.a == ball || e.b == ball) return e.a == ball ? e.b : e.a;
+        if (e.type != EventType::kBallCluster) continue;
+        const std::vector<int>& members = record.clusters.at(static_cast<std::size_t>(e.detail));
+        if (std::find(members.begin(), members.end(), ball) == members.end()) continue;
+        const Vec3 here = record.state_at(ball, e.time).position;
+        int best = -1;
+        double least = std::numeric_limits<double>::infinity();
+        for (const int other : members) {
+            const double distance = (record.state_at(other, e.time).position - here).norm();
+            if (other != ball && distance < least) least = distance, best = other;
+        }
+        return best;
+    }
+    return -1;
+}
+
+int struck(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.ball.size(); ++i)
+        if (scene.cue ? scene.ball[i].id == scene.cue->ball
+                      : scene.ball[i].velocity != Vec3::Zero() || scene.ball[i].spin != Vec3::Zero())
+            return static_cast<int>(i);
+    return -1;
+}
+
+void expect_same(const Batch& batch, std::size_t shot, const Scene& scene, const Record& record) {
+    ASSERT_EQ(static_cast<int>(batch.status[shot]), static_cast<int>(record.stopped));
+    EXPECT_EQ(fmt::format("{:016x}", batch.hash[shot]), record.hash());
+    EXPECT_EQ(batch.duration[shot], record.duration);
+    EXPECT_EQ(batch.events[shot], static_cast<std::int64_t>(record.events.size()));
+    EXPECT_EQ(batch.first_hit[shot], first_hit(record, struck(scene)));
+    std::vector<int> cushions(batch.balls), fell(batch.balls, -1);
+    int fallen = 0;
+    for (const Event& e : record.events) {
+        const std::string kind = name(e.type);
+        cushions[e.a] += kind == "ball_cushion" || kind == "ball_jaw" || kind == "ball_cushion_hold" ||
+                         kind == "ball_jaw_hold";
+        if (kind == "ball_pocket") fell[e.a] = fallen++;
+    }
+    for (std::size_t b = 0; b < batch.balls; ++b) {
+        const BallState end = record.state_at(static_cast<int>(b), record.duration);
+        const std::size_t at = shot * batch.balls + b;
+        EXPECT_EQ(batch.x[at], end.position.x());
+        EXPECT_EQ(batch.y[at], end.position.y());
+        EXPECT_EQ(batch.pocket[at], end.pocket);
+        EXPECT_EQ(batch.fell[at], fell[b]);
+        EXPECT_EQ(batch.cushions[at], cushions[b]);
+    }
+}
+
+/// Plays a batch on 1, 2 and 3 threads, and every shot by itself.
+void expect_batch(const Scene& scene, const Columns& columns, std::size_t least_valid) {
+    const Batch batch = columns.play(scene, 1);
+    std::size_t valid = 0, message = 0;
+    for (std::size_t i = 0; i < columns.shots; ++i) {
+        const Scene shot = columns.shot(scene, i);
+        std::string why;
+        try {
+            validate(shot);
+            expect_same(batch, i, shot, simulate(make_plan(shot, kIsa)));
+            ++valid;
+            continue;
+        } catch (const SceneError& error) {
+            why = error.message();
+            EXPECT_EQ(batch.status[i], ShotStatus::kInvalid);
+        } catch (const SimulationError& error) {
+            why = error.what();
+            EXPECT_EQ(batch.status[i], ShotStatus::kFailed);
+        }
+        ASSERT_LT(message, batch.messages.size());
+        EXPECT_EQ(batch.messages[message].shot, i);
+        EXPECT_EQ(batch.messages[message++].text, why);
+        EXPECT_EQ(batch.duration[i], 0.0);
+        EXPECT_EQ(batch.first_hit[i], -1);
+    }
+    EXPECT_EQ(message, batch.messages.size());
+    EXPECT_GE(valid, least_valid);
+    for (const int threads : {2, 3}) {
+        const Batch again = columns.play(scene, threads);
+        EXPECT_EQ(again.status, batch.status);
+        EXPECT_EQ(again.hash, batch.hash);
+        EXPECT_EQ(again.duration, batch.duration);
+        EXPECT_EQ(again.events, batch.events);
+        EXPECT_EQ(again.first_hit, batch.first_hit);
+        EXPECT_EQ(again.x, batch.x);
+        EXPECT_EQ(again.y, batch.y);
+        EXPECT_EQ(again.pocket, batch.pocket);
+        EXPECT_EQ(again.fell, batch.fell);
+        EXPECT_EQ(again.cushions, batch.cushions);
+        ASSERT_EQ(again.messages.size(), batch.messages.size());
+        for (std::size_t k = 0; k < batch.messages.size(); ++k) {
+            EXPECT_EQ(again.messages[k].shot, batch.messages[k].shot);
+            EXPECT_EQ(again.messages[k].text, batch.messages[k].text);
+        }
+    }
+    EXPECT_TRUE(columns.play(scene, 1, false).hash.empty());
+}
+
+TEST(Batch, HasTheBitsOfSingleShots) {
+    SplitMix64 random(3);
+    for (const char* name : {"three_cushion", "draw", "side_bank", "eight_ball_break"}) {
+        const Scene scene = scene_of(name);
+        Columns columns(name == std::string("eight_ball_break") ? 25 : 100);
+        columns.add("cue.aim_deg", random, 0.0, 360.0).add("cue.speed", random, 0.5, 6.0);
+        columns.add("cue.offset.side", random, -0.3, 0.3).add("cue.offset.1", random, -0.3, 0.3);
+        columns.add("balls.mu_r", random, 0.005, 0.02).add("balls.mu_b", random, 0.0, 0.1);
+        columns.add("physics.gravity", random, 9.7, 9.9);
+        SCOPED_TRACE(name);
+        expect_batch(scene, columns, columns.shots);
+    }
+}
+
+// Positions that overlap or lie in a cushion, values out of their ranges, speeds of a struck ball.
+TEST(Batch, WhatIsInvalidIsAStatus) {
+    SplitMix64 random(4);
+    const Scene scene = scene_of("side_bank");
+    const std::string other = scene.ball[1].id;
+    Columns columns(150);
+    columns.add("ball.cue.position.x", random, 0.0, 1.27).add("ball.cue.position.y", random, -0.05, 2.6);
+    columns.add("ball." + other + ".position.x", random, 0.2, 1.0)
+        .add("ball." + other + ".position.y", random, 0.2, 1.0);
+    columns.add("cue.speed", random, -0.3, 3.0)
+        .add("balls.f_c", random, 0.0, 0.4)
+        .add("balls.e_c", random, 0.5, 1.05);
+    columns.add("balls.mu_sp", random, -0.0005, 0.01);
+    expect_batch(scene, columns, 50);
+    Columns sizes(60);
+    sizes.add("balls.radius", random, 0.02, 0.04)
+        .add("balls.mass", random, 0.1, 0.2)
+        .add("table.pocket.p2.radius", random, 0.04, 0.08);
+    sizes.add("table.cushion.c1.height", random, 0.02, 0.05)
+        .add("table.jaw.j1.radius", random, -0.001, 0.02)
+        .add("stop.time", random, 0.0, 3.0);
+    expect_batch(scene, sizes, 20);
+}
+
+TEST(Batch, RandomScenesOfEveryKind) {
+    SplitMix64 random(5);
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        const Scene scene = RandomScene(seed).make();
+        Columns columns(6);
+        for (std::size_t i = 0; i < std::min<std::size_t>(3, scene.ball.size()); ++i) {
+            const BallStart& ball = scene.ball[i];
+            columns.add("ball." + ball.id + ".position.x", random, ball.position.x() - 0.01,
+                        ball.position.x() + 0.01);
+            if (!scene.cue) columns.add("ball." + ball.id + ".velocity.y", random, -2.0, 2.0);
+        }
+        columns.add("balls.e_b", random, 0.8, 1.0);
+        SCOPED_TRACE(seed);
+        expect_batch(scene, columns, 0);
+    }
+}
+
+// An effect that is refused is found by the plan.
+TEST(Batch, ARefusedEffectIsAStatusWithItsReason) {
+    Scene scene = scene_of("draw");
+    scene.effects = {{"squirt", false, {}}};
+    scene.cue->side = 0.0;
+    Columns columns(2);
+    columns.keys = {"cue.offset.side"};
+    columns.values = {{0.0, 0.1}};
+    const Batch batch = columns.play(scene, 1);
+    EXPECT_EQ(batch.status[0], ShotStatus::kAtRest);
+    EXPECT_EQ(batch.status[1], ShotStatus::kInvalid);
+    ASSERT_EQ(batch.messages.size(), 1u);
+    EXPECT_EQ(batch.messages[0].text,
+              "effects.squirt = false, but the scene needs it: the cue strikes off centre; remove the line");
+}
+
+TEST(Batch, AFailingRunIsAStatusAndTheOthersArePlayed) {
+    // Balls of different mass that come to rest against each other have no model.
+    Scene scene = empty_scene();
+    scene.physics.clusters = ClusterModel::kSequential;
+    scene.balls.mu_b = scene.balls.mu_b_more = 0.0;
+    scene.balls.e_b = 0.0;
+    add_ball(scene, "a", 0.0, 0.0, 0.5, 0.0);
+    add_ball(scene, "b", 0.2, 0.0);
+    scene.ball[1].own = BallSize{scene.balls.R, 2.0 * scene.balls.m};
+    Columns columns(3);
+    columns.keys = {"ball.a.velocity.x"};
+    columns.values = {{-0.5, 0.5, -0.4}};
+    const Batch batch = columns.play(scene, 2);
+    EXPECT_EQ(batch.status[0], ShotStatus::kAtRest);
+    EXPECT_EQ(batch.status[2], ShotStatus::kAtRest);
+    EXPECT_EQ(batch.status[1], ShotStatus::kFailed);
+    ASSERT_EQ(batch.messages.size(), 1u);
+    EXPECT_EQ(batch.messages[0].shot, 1u);
+    EXPECT_NE(batch.messages[0].text.find("simulation stopped at t = "), std::string::npos);
+}
+
+TEST(Batch, StopsWhenAsked) {
+    SplitMix64 random(1);
+    const Scene scene = scene_of("draw");
+    std::vector<double> speed(1000, 2.0);
+    const BatchColumn column{"cue.speed", speed};
+    BatchOptions options;
+    options.threads = 2;
+    std::atomic<int> asked{0};
+    options.stop = [&asked] { return ++asked > 20; };
+    EXPECT_THROW(simulate_many(scene, speed.size(), {&column, 1}, kIsa, options), BatchStopped);
+    EXPECT_LT(asked, 100);
+}
+
+TEST(Batch, NoShotsAndNoColumns) {
+    const Scene scene = scene_of("draw");
+    EXPECT_EQ(simulate_many(scene, 0, {}, kIsa).status.size(), 0u);
+    const Batch same = simulate_many(scene, 3, {}, kIsa);
+    const Record record = simulate(make_plan(scene, kIsa));
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(same.duration[i], record.duration);
+}
+
+TEST(Batch, BadColumnsSayWhatToDo) {
+    const Scene scene = scene_of("draw");
+    const auto error = [&](const std::string& key, std::size_t values = 2) -> std::string {
+        const std::vector<double> list(values, 1.0);
+        const BatchColumn column{key, list};
+        try {
+            simulate_many(scene, 2, {&column, 1}, kIsa);
+        } catch (const std::invalid_argument& e) {
+            return e.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(error("cue.speed"), "");
+    EXPECT_EQ(error("cue.speed", 1), "cue.speed: there are 1 values for 2 shots; give one for each");
+    EXPECT_EQ(error("cue.sped"), "cue.sped: it names no number in [cue]");
+    EXPECT_EQ(error("cue.preset"), "cue.preset: it names no number in [cue]");
+    EXPECT_EQ(error("cue.offset"), "cue.offset: it names no number in [cue]");
+    EXPECT_EQ(error("cue.offset.z"), "cue.offset.z: it names no number in [cue]");
+    EXPECT_EQ(error("ball.cue.position.z"), "ball.cue.position.z: it names no number in [ball]");
+    EXPECT_EQ(error("ball.9.position.x"),
+              "ball.9.position.x: it names no ball; write ball.ID.position.x with one of these ids: cue, 1");
+    EXPECT_EQ(error("ball.1.radius"),
+              "ball.1.radius: the ball has no size of its own; give it one, then vary it");
+    EXPECT_EQ(error("table.pocket.p9.radius"), "table.pocket.p9.radius: the table has no such part");
+    EXPECT_EQ(error("rack.seed"),
+              "rack.seed: name a number in its section, such as cue.speed; sections are balls, ball, cue, "
+              "physics, stop and table");
+    const std::vector<double> list(2, 1.0);
+    const BatchColumn twice[] = {{"cue.speed", list}, {"cue.speed", list}};
+    EXPECT_THROW(simulate_many(scene, 2, twice, kIsa), std::invalid_argument);
+}
+
+TEST(SceneNumber, IntegersAreWhole) {
+    Scene scene = scene_of("draw");
+    const SceneNumber events(scene, "stop.events"), steps(scene, "physics.substeps");
+    EXPECT_EQ(events.put(scene, 7.0), Change::kNumbers);
+    EXPECT_EQ(scene.stop.events, 7);
+    const auto error = [&](const SceneNumber& number, double value) -> std::string {
+        try {
+            number.put(scene, value);
+        } catch (const SceneError& e) {
+            return e.message();
+        }
+        return "";
+    };
+    EXPECT_EQ(error(events, 1.5), "stop.events must be an integer, not a number with a decimal point");
+    EXPECT_EQ(error(steps, 0.0),
+              "physics.substeps = 0 is out of range; it must be at least 1 and at most 10000000");
+    EXPECT_EQ(error(steps, 4294967297.0),
+              "physics.substeps = 4294967297 is out of range; it must be at least 1 and at most 10000000");
+    EXPECT_EQ(error(events, std::nan("")),
+              "stop.events must be an integer, not a number with a decimal point");
+}
+
+// The buffers of a run that failed, or of another scene, change nothing.
+TEST(RunBuffers, GiveTheSameBitsAfterAnything) {
+    RunBuffers buffers;
+    std::vector<Plan> plans;
+    for (const char* name : {"eight_ball_break", "draw", "three_cushion", "side_bank", "hello"})
+        plans.push_back(make_plan(scene_of(name), kIsa));
+    SimulateOptions options;
+    options.hash = true;
+    for (int round = 0; round < 2; ++round) {
+        for (const Plan& plan : plans) {
+            const Record want = simulate(plan);
+            EXPECT_EQ(simulate(plan, buffers), want);
+            Outcome outcome;
+            simulate(plan, buffers, outcome, options);
+            EXPECT_EQ(fmt::format("{:016x}", outcome.hash), want.hash());
+            EXPECT_EQ(outcome.clusters, static_cast<int>(want.clusters.size()));
+            SimulateOptions given_up;
+            given_up.progress_rounds = 2;
+            given_up.progress = [](std::size_t, double) { throw std::runtime_error("enough"); };
+            EXPECT_THROW(simulate(plan, buffers, outcome, given_up), std::runtime_error);
+        }
+    }
+}
+
+// A plan that is made again decides as one made anew.
+TEST(Planner, DecidesAsMakePlan) {
+    SplitMix64 random(8);
+    Scene scene = scene_of("side_bank");
+    Planner planner(scene, kIsa);
+    bool first = true;
+    for (int i = 0; i < 200; ++i) {
+        Scene& s = planner.scene();
+        s.cue->speed = random.below(3) * random.uniform();
+        s.cue->side = random.below(2) * 0.1;
+        s.balls.mu_b = s.balls.mu_b_more = random.below(2) * 0.05;
+        s.balls.f_c = random.below(2) * 0.2;
+        s.balls.mu_sp = 0.01;
+        const Plan& again = planner.plan(!first);
+        first = false;
+        const Plan fresh = make_plan(s, kIsa);
+        EXPECT_EQ(again.skipped, fresh.skipped);
+        for (std::size_t k = 0; k < fresh.effects.size(); ++k) {
+            EXPECT_EQ(again.effects[k].keyword, fresh.effects[k].keyword);
+            EXPECT_EQ(again.effects[k].in_force, fresh.effects[k].in_force);
+        }
+        EXPECT_EQ(simulate(again), simulate(fresh));
+    }
+}
+
+}  // namespace
+}  // namespace carom::test
