@@ -11,6 +11,7 @@
 #include "bench/clock.h"
 #include "bench/five_states.h"
 #include "bench/machine.h"
+#include "bench/many_shots.h"
 #include "bench/rounds.h"
 #include "bench/shot_cases.h"
 #include "carom/engine/simulate.h"
@@ -124,6 +125,29 @@ struct Gas {
     }
 };
 
+/// A shot of a batch, mean over a round; the row has the least and the most of the rounds.
+ShotRow row_of(const ManyShots& many, const std::string& name, const std::vector<double>& ns,
+               double baseline_ns) {
+    ShotRow row;
+    row.name = name;
+    row.ns_min = minimum(ns);
+    row.ns_median = median(ns);
+    row.cost_in_impacts = row.cost_least = row.ns_min / baseline_ns;
+    row.cost_most = *std::max_element(ns.begin(), ns.end()) / baseline_ns;
+    row.shots_per_cpu_s = 1e9 / row.ns_min;
+    row.events = many.events();
+    row.clusters = many.clusters();
+    row.ns_per_event = row.ns_min / row.events;
+    return row;
+}
+
+double time_round(ManyShots& many) {
+    many.rewind();  // every round plays the same shots
+    const double start = thread_ns();
+    many.play(many.shots_a_round());
+    return (thread_ns() - start) / static_cast<double>(many.shots_a_round());
+}
+
 // For more balls than this the search through all boxes is not measured: it is far slower.
 constexpr int kMostDirect = 2000;
 
@@ -180,11 +204,18 @@ ShotBench measure_shots(const BenchShotArgs& options) {
         throw_if_interrupted();
         s.time();
     }
+    std::vector<ManyShots> batches;
+    for (const std::string& name : many_names()) {
+        batches.emplace_back(name, isa);
+        time_round(batches.back());
+    }
     const kernel::Isa baseline_isa =
         kernel::available(kernel::Isa::kV3) ? kernel::Isa::kV3 : kernel::Isa::kScalar;
     std::vector<double> baseline;
-    const auto samples = interleaved("bench shot", subjects.size(), options.repeats, [&](std::size_t i) {
+    const std::size_t all = subjects.size() + batches.size();
+    const auto samples = interleaved("bench shot", all, options.repeats, [&](std::size_t i) {
         baseline.push_back(baseline_impact(baseline_isa));
+        if (i >= subjects.size()) return time_round(batches[i - subjects.size()]);
         const double ns = subjects[i].time();
         subjects[i].profile();
         return ns;
@@ -202,6 +233,9 @@ ShotBench measure_shots(const BenchShotArgs& options) {
     for (std::size_t k = 0; k < names.size(); ++k)
         bench.rows.push_back(row_of(names[k], &subjects[k * static_cast<std::size_t>(options.seeds)],
                                     options.seeds, bench.baseline_ns));
+    for (std::size_t k = 0; k < batches.size(); ++k)
+        bench.rows.push_back(
+            row_of(batches[k], many_names()[k], samples[subjects.size() + k], bench.baseline_ns));
     if (options.growth) bench.growth = growth_of(options, isa);
     return bench;
 }

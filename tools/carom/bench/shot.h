@@ -21,6 +21,7 @@ struct BenchShotArgs {
 struct ShotRow {
     std::string name;
     double cost_in_impacts = 0.0;  ///< median over the seeds, of time / one baseline impact
+    double shots_per_cpu_s = 0.0;  ///< of a batch, whose row is one shot of it, mean; 0 for a single shot
     double cost_least = 0.0, cost_most = 0.0;
     double ns_min = 0.0,
            ns_median = 0.0;               ///< of the whole shot: medians over the seeds of minimum and median

@@ -65,6 +65,47 @@ id = "1"
 position = [0.635, 1.60]
 )";
 
+// A three-cushion table with the balls of a match.
+constexpr const char* kThreeCushion = R"(
+[table]
+preset = "carom"
+[balls]
+radius = 0.03075
+mass = 0.21
+mu_s = 0.2
+mu_r = 0.0045
+mu_sp = 0.0127
+mu_b = 0.05
+e_b = 0.95
+e_c = 0.87
+f_c = 0.26
+[[ball]]
+id = "white"
+position = [0.5275, 0.71]
+[[ball]]
+id = "yellow"
+position = [0.71, 0.71]
+[[ball]]
+id = "red"
+position = [0.71, 2.13]
+[cue]
+ball = "white"
+speed = 3.0
+aim_deg = 90.0
+elevation_deg = 0.0
+offset = [0.1, 0.2]
+mass = 0.567
+end_mass = 0.00567
+restitution = 1.0
+[physics]
+gravity = 9.81
+ball_ball = "mathavan"
+cushion = "han_2005"
+cloth_slip = "consistent"
+clusters = "compliant"
+tolerance = 1e-6
+)";
+
 struct Shot {
     const char* name;
     const char* game;  // nullptr: two balls
@@ -105,6 +146,21 @@ Scene shot_scene(const std::string& name, std::uint64_t seed) {
                            name);
     }
     throw std::invalid_argument("no shot is called " + name);
+}
+
+Scene many_scene(const std::string& name) {
+    if (name == "many three_cushion") return parse_scene(kThreeCushion, name);
+    const auto scene = [&](const std::string& balls, double speed) {
+        return parse_scene(balls + fmt::format(kCoefficients, fmt::arg("speed", speed), fmt::arg("aim", 90.0),
+                                               fmt::arg("clusters", "compliant")),
+                           name);
+    };
+    if (name == "many two_ball") return scene(kTwoBalls, 3.0);
+    if (name == "many eight_ball_break")
+        return scene(fmt::format(kBreak, fmt::arg("game", "eight_ball"), fmt::arg("gap", 1e-4),
+                                 fmt::arg("seed", 1), fmt::arg("x", 0.635)),
+                     9.0);
+    throw std::invalid_argument("no batch is called " + name);
 }
 
 Scene gas_scene(int n, long events, std::uint64_t seed) {

@@ -17,11 +17,15 @@ Table shots_of(const ShotBench& bench) {
                 Column("clusters", "clusters", ">9.0f"), Column("ns_per_event", "ns/event", ">9.0f"),
                 Column("detect_ns", "detect", ">8.0f"), Column("resolve_ns", "resolve", ">8.0f"),
                 Column("kernel_ns", "kernel", ">8.0f"), Column("cluster_ns", "cluster", ">8.0f"),
-                Column("queue_ns", "queue", ">8.0f"));
-    for (const ShotRow& r : bench.rows)
+                Column("queue_ns", "queue", ">8.0f"), Column("shots_per_cpu_s", "shots/s", ">9.0f"));
+    for (const ShotRow& r : bench.rows) {
+        // A batch is not profiled, and a single shot is no batch.
+        const bool many = r.shots_per_cpu_s > 0.0;
+        const auto part = [many](double ns) { return many ? Cell() : Cell(ns); };
         table.add({r.name, r.cost_in_impacts, r.cost_least, r.cost_most, r.ns_min, r.ns_median, r.events,
-                   r.clusters, r.ns_per_event, r.detect_ns, r.resolve_ns, r.kernel_ns, r.cluster_ns,
-                   r.queue_ns});
+                   r.clusters, r.ns_per_event, part(r.detect_ns), part(r.resolve_ns), part(r.kernel_ns),
+                   part(r.cluster_ns), part(r.queue_ns), many ? Cell(r.shots_per_cpu_s) : Cell()});
+    }
     return table;
 }
 
