@@ -51,6 +51,12 @@ void need(std::initializer_list<const void*> pointers) {
         if (pointer == nullptr) throw BadArgument("a pointer is NULL that must not be");
 }
 
+void check_index(std::size_t index, std::size_t count, const char* what) {
+    if (index < count) return;
+    throw BadArgument("there is no " + std::string(what) + " " + std::to_string(index) + "; there are " +
+                      std::to_string(count));
+}
+
 kernel::Isa chosen_isa() {
     const auto [isa, problem] = kernel::isa_from_environment();
     if (*problem != '\0') throw BadArgument(problem);

@@ -1,7 +1,9 @@
 // Converts exceptions to a status and a message.
 #pragma once
 
+#include <cstddef>
 #include <initializer_list>
+#include <memory>
 #include <stdexcept>
 
 #include "carom/carom.h"
@@ -31,6 +33,21 @@ carom_status guarded(Work&& work) noexcept {
 
 /// @throws BadArgument if one of them is null
 void need(std::initializer_list<const void*> pointers);
+
+/// @throws BadArgument if there is no such index
+void check_index(std::size_t index, std::size_t count, const char* what);
+
+/// Returns a new object to the caller, or NULL on failure.
+template <class T, class Make>
+carom_status made(T** out, Make&& make) {
+    return guarded([&] {
+        need({out});
+        *out = nullptr;
+        auto object = std::make_unique<T>();
+        make(*object);
+        *out = object.release();
+    });
+}
 
 /// The instruction set in CAROM_ISA, or the widest available one. @throws BadArgument if CAROM_ISA cannot be used here
 kernel::Isa chosen_isa();

@@ -12,20 +12,15 @@
 
 #include "carom/engine/simulate.h"
 #include "guard.h"
-
-struct carom_scene {
-    carom::Scene scene;
-};
-
-struct carom_record {
-    carom::Record record;
-};
+#include "handles.h"
 
 namespace {
 
 using carom::c::BadArgument;
+using carom::c::check_index;
 using carom::c::chosen_isa;
 using carom::c::guarded;
+using carom::c::made;
 using carom::c::need;
 
 /// The row of a number of the balls.
@@ -56,24 +51,6 @@ carom::BallStart* find_ball(carom::Scene& scene, const std::string& id) {
     const auto it = std::find_if(scene.ball.begin(), scene.ball.end(),
                                  [&](const carom::BallStart& ball) { return ball.id == id; });
     return it == scene.ball.end() ? nullptr : &*it;
-}
-
-void check_index(std::size_t index, std::size_t count, const char* what) {
-    if (index < count) return;
-    throw BadArgument("there is no " + std::string(what) + " " + std::to_string(index) + "; there are " +
-                      std::to_string(count));
-}
-
-/// Returns a new object to the caller, or NULL on failure.
-template <class T, class Make>
-carom_status made(T** out, Make&& make) {
-    return guarded([&] {
-        need({out});
-        *out = nullptr;
-        auto object = std::make_unique<T>();
-        make(*object);
-        *out = object.release();
-    });
 }
 
 }  // namespace
@@ -186,6 +163,7 @@ carom_status carom_simulate(const carom_scene* scene, double until, carom_record
         carom::SimulateOptions options;
         if (until >= 0.0) options.until = until;
         r.record = carom::simulate(carom::make_plan(scene->scene, chosen_isa()), options);
+        r.scene = scene->scene;
     });
 }
 

@@ -162,6 +162,98 @@ CAROM_API carom_status carom_record_state(const carom_record* record, size_t bal
 /* Hash of all bits of the record: 16 hexadecimal digits and a final 0. */
 CAROM_API carom_status carom_record_hash(const carom_record* record, char hash[17]);
 
+/* One ball between two events that touch it, in closed form. At u = t - start, 0 <= u <= duration, its centre is at
+ * r + u (v + u a / 2); its velocity is v + u a, of a rolling ball that is not held v (1 - u / duration); its angular
+ * velocity is w + u dw in x and y, of a rolling ball that of rolling; w_z goes to 0 by spin_decay a second and stays
+ * there. */
+typedef struct carom_segment {
+    double start;      /* [s] since the start of the shot */
+    double duration;   /* until the ball's own next transition [s]; infinite if there is none */
+    double r[3], v[3]; /* centre [m] and velocity [m/s] at the start */
+    double w[3];       /* angular velocity at the start [rad/s] */
+    double a[3],
+        dw[3]; /* what they change by in a second, constant [m/s^2], [rad/s^2]; a[2] and dw[2] are 0 */
+    double spin_decay; /* of |w_z| [rad/s^2], at least 0 */
+    int32_t state;     /* a carom_motion_state */
+    int32_t held;      /* 1 in a resting contact, otherwise 0 */
+} carom_segment;
+
+typedef enum carom_motion_state {
+    CAROM_STATIONARY = 0,
+    CAROM_SPINNING = 1,
+    CAROM_SLIDING = 2,
+    CAROM_ROLLING = 3,
+    CAROM_POCKETED = 4
+} carom_motion_state;
+
+/* The segments of a ball in the order of their starts; of two with the same start the later one counts. `segments`
+ * receives carom_record_segment_count of them, which is 0 if there is no such ball. A game draws every frame from these
+ * without another call. */
+CAROM_API size_t carom_record_segment_count(const carom_record* record, size_t ball);
+CAROM_API carom_status carom_record_segments(const carom_record* record, size_t ball,
+                                             carom_segment* segments);
+
+/* States of all balls at `count` times: `rvw` receives count x balls x 9 numbers, ball after ball at the first time, then
+ * at the second. `states` receives count x balls values of carom_motion_state, or is NULL. Times before the start
+ * and after the end as in carom_record_state. */
+CAROM_API carom_status carom_record_states(const carom_record* record, size_t count, const double* times,
+                                           double* rvw, uint8_t* states);
+
+/* A new scene for the next shot: that of the record with its balls where and as they are at the end, without the balls
+ * in pockets and without the cue. On failure *scene is NULL. */
+CAROM_API carom_status carom_scene_from_record(const carom_record* record, carom_scene** scene);
+
+/* ---- Many shots ---- */
+
+typedef struct carom_batch carom_batch;
+
+typedef enum carom_shot_status {
+    CAROM_SHOT_AT_REST = 0,
+    CAROM_SHOT_TIME = 1,    /* ended at its time */
+    CAROM_SHOT_EVENTS = 2,  /* ended at its number of events */
+    CAROM_SHOT_ENDLESS = 3, /* nothing stops the balls, and nothing more happens to them */
+    CAROM_SHOT_INVALID = 4, /* no result: these values make no valid scene */
+    CAROM_SHOT_FAILED = 5   /* no result: the simulation could not go on */
+} carom_shot_status;
+
+/* Plays `shots` shots of one scene that differ in the numbers of some keys, such as "cue.speed", "cue.aim_deg",
+ * "cue.offset.side", "ball.1.position.x", "ball.1.velocity.y", "balls.mu_b" (docs/guide/sweep.md; the numbers of [cue],
+ * [balls], [[ball]], [physics], [stop] and of the parts of the table). `values` holds key_count x shots numbers: all of the
+ * first key, then all of the second. Every shot has the results of carom_simulate, bit for bit, whatever the number of
+ * threads (0: one for each core). A shot that is invalid or fails has its status, and the others are played:
+ * the call returns CAROM_OK. `hashes`: 1 if carom_batch_hash is wanted, otherwise 0. `until` as in carom_simulate. On failure
+ * (an unknown key) *batch is NULL. `scene` need not be valid before its numbers are set. */
+CAROM_API carom_status carom_simulate_many(const carom_scene* scene, size_t shots, size_t key_count,
+                                           const char* const* keys, const double* values, double until,
+                                           int threads, int hashes, carom_batch** batch);
+CAROM_API void carom_batch_free(carom_batch* batch); /* NULL is allowed */
+
+CAROM_API size_t carom_batch_shot_count(const carom_batch* batch);
+CAROM_API size_t carom_batch_ball_count(const carom_batch* batch);
+
+/* Arrays of shot_count numbers, valid as long as the batch exists. A shot without a result has 0, and -1 as ball. */
+CAROM_API const uint8_t* carom_batch_status(const carom_batch* batch);  /* a carom_shot_status */
+CAROM_API const double* carom_batch_duration(const carom_batch* batch); /* [s] */
+CAROM_API const int64_t* carom_batch_events(const carom_batch* batch);  /* number of events */
+CAROM_API const int32_t* carom_batch_first_hit(
+    const carom_batch* batch); /* ball that the struck ball meets, or -1 */
+/* The hash of carom_record_hash as a number; NULL unless it was asked for. */
+CAROM_API const uint64_t* carom_batch_hash(const carom_batch* batch);
+
+/* Arrays of shot_count x ball_count numbers: the balls of the first shot in the order of the scene, then those of the
+ * second. */
+CAROM_API const double* carom_batch_x(const carom_batch* batch); /* at the end [m] */
+CAROM_API const double* carom_batch_y(const carom_batch* batch); /* at the end [m] */
+CAROM_API const int32_t* carom_batch_pocket(
+    const carom_batch* batch); /* index of the pocket that holds it, or -1 */
+CAROM_API const int32_t* carom_batch_fell(
+    const carom_batch* batch); /* 0 for the ball that fell first, 1, ..., or -1 */
+CAROM_API const int32_t* carom_batch_cushions(
+    const carom_batch* batch); /* how often it met a cushion or a jaw */
+
+/* Why a shot has no result; "" if it has one. Valid as long as the batch exists. */
+CAROM_API const char* carom_batch_message(const carom_batch* batch, size_t shot);
+
 #ifdef __cplusplus
 }
 #endif

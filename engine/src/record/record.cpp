@@ -151,6 +151,22 @@ Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
     return segment_turn(s, std::min(t - s.start, s.duration), made.largest_step) * made.at_start[ball][i];
 }
 
+Scene scene_after(const Scene& scene, const Record& record) {
+    Scene after = scene;
+    after.cue.reset();
+    after.ball.clear();
+    for (std::size_t i = 0; i < scene.ball.size(); ++i) {
+        const BallState end = record.state_at(static_cast<int>(i), record.duration);
+        if (end.state == MotionState::kPocketed) continue;
+        BallStart& ball = after.ball.emplace_back(scene.ball[i]);
+        ball.position = end.position;
+        ball.velocity = end.velocity;
+        ball.spin = end.spin;
+        ball.where = {};
+    }
+    return after;
+}
+
 std::string Record::hash() const {
     RecordHash hash;
     for (const BallTrack& track : tracks) {

@@ -226,6 +226,11 @@ inline Vec3 velocity_at(const Segment& s, double tau) {
 }
 Vec3 spin_at(const Segment& segment, double tau, double R);
 
+/// The scene for the next shot: that of the record with its balls where and as they are at the end, without the balls in
+/// pockets, without a cue. Whoever plays says who is struck, and puts fallen balls back. It may need other [effects].
+/// @param scene  that of the record: the same balls in the same order
+Scene scene_after(const Scene& scene, const Record& record);
+
 /// Writes a record as JSON to `path` by way of a temporary name. Doubles read back to the same bits.
 /// @throws std::runtime_error naming the file
 void write_record(const Record& record, const std::string& path);

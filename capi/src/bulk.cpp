@@ -1,0 +1,187 @@
+// The C interface: many shots, and much of a record at once.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "carom/engine/batch.h"
+#include "guard.h"
+#include "handles.h"
+
+namespace {
+
+using carom::c::BadArgument;
+using carom::c::check_index;
+using carom::c::chosen_isa;
+using carom::c::guarded;
+using carom::c::made;
+using carom::c::need;
+
+static_assert(CAROM_SHOT_AT_REST == static_cast<int>(carom::ShotStatus::kAtRest));
+static_assert(CAROM_SHOT_TIME == static_cast<int>(carom::ShotStatus::kTime));
+static_assert(CAROM_SHOT_EVENTS == static_cast<int>(carom::ShotStatus::kEvents));
+static_assert(CAROM_SHOT_ENDLESS == static_cast<int>(carom::ShotStatus::kEndless));
+static_assert(CAROM_SHOT_INVALID == static_cast<int>(carom::ShotStatus::kInvalid));
+static_assert(CAROM_SHOT_FAILED == static_cast<int>(carom::ShotStatus::kFailed));
+static_assert(sizeof(carom::ShotStatus) == sizeof(uint8_t));
+
+static_assert(CAROM_STATIONARY == static_cast<int>(carom::MotionState::kStationary));
+static_assert(CAROM_SPINNING == static_cast<int>(carom::MotionState::kSpinning));
+static_assert(CAROM_SLIDING == static_cast<int>(carom::MotionState::kSliding));
+static_assert(CAROM_ROLLING == static_cast<int>(carom::MotionState::kRolling));
+static_assert(CAROM_POCKETED == static_cast<int>(carom::MotionState::kPocketed));
+
+/// The array of a batch, or NULL.
+template <class T>
+const T* array_of(const carom_batch* batch, std::vector<T> carom::Batch::*list) {
+    return batch != nullptr ? (batch->batch.*list).data() : nullptr;
+}
+
+carom_segment segment_of(const carom::Segment& s) {
+    carom_segment out{};
+    out.start = s.start;
+    out.duration = s.duration;
+    std::copy_n(s.r.data(), 3, out.r);
+    std::copy_n(s.v.data(), 3, out.v);
+    std::copy_n(s.w.data(), 3, out.w);
+    std::copy_n(s.a.data(), 2, out.a);
+    std::copy_n(s.dw.data(), 2, out.dw);
+    out.spin_decay = s.spin_decay;
+    out.state = static_cast<int32_t>(s.state);
+    out.held = s.held ? 1 : 0;
+    return out;
+}
+
+}  // namespace
+
+carom_status carom_simulate_many(const carom_scene* scene, size_t shots, size_t key_count,
+                                 const char* const* keys, const double* values, double until, int threads,
+                                 int hashes, carom_batch** batch) {
+    return made(batch, [&](carom_batch& b) {
+        need({scene});
+        if (key_count > 0) need({keys});
+        if (key_count > 0 && shots > 0) need({values});
+        if (std::isnan(until)) throw BadArgument("until is not a number");
+        if (threads < 0) throw BadArgument("threads is negative; 0 takes one for each core");
+        std::vector<carom::BatchColumn> columns;
+        for (size_t k = 0; k < key_count; ++k) {
+            need({keys[k]});
+            columns.push_back({keys[k], std::span(values + (shots > 0 ? k * shots : 0), shots)});
+        }
+        carom::BatchOptions options;
+        options.threads = threads;
+        options.hash = hashes != 0;
+        if (until >= 0.0) options.simulate.until = until;
+        try {
+            b.batch = carom::simulate_many(scene->scene, shots, columns, chosen_isa(), options);
+        } catch (const std::invalid_argument& error) {
+            throw BadArgument(error.what());
+        }
+    });
+}
+
+void carom_batch_free(carom_batch* batch) {
+    delete batch;
+}
+
+size_t carom_batch_shot_count(const carom_batch* batch) {
+    return batch != nullptr ? batch->batch.shots : 0;
+}
+
+size_t carom_batch_ball_count(const carom_batch* batch) {
+    return batch != nullptr ? batch->batch.balls : 0;
+}
+
+const uint8_t* carom_batch_status(const carom_batch* batch) {
+    return reinterpret_cast<const uint8_t*>(array_of(batch, &carom::Batch::status));
+}
+
+const double* carom_batch_duration(const carom_batch* batch) {
+    return array_of(batch, &carom::Batch::duration);
+}
+
+const int64_t* carom_batch_events(const carom_batch* batch) {
+    return array_of(batch, &carom::Batch::events);
+}
+
+const int32_t* carom_batch_first_hit(const carom_batch* batch) {
+    return array_of(batch, &carom::Batch::first_hit);
+}
+
+const double* carom_batch_x(const carom_batch* batch) {
+    return array_of(batch, &carom::Batch::x);
+}
+
+const double* carom_batch_y(const carom_batch* batch) {
+    return array_of(batch, &carom::Batch::y);
+}
+
+const int32_t* carom_batch_pocket(const carom_batch* batch) {
+    return array_of(batch, &carom::Batch::pocket);
+}
+
+const int32_t* carom_batch_fell(const carom_batch* batch) {
+    return array_of(batch, &carom::Batch::fell);
+}
+
+const int32_t* carom_batch_cushions(const carom_batch* batch) {
+    return array_of(batch, &carom::Batch::cushions);
+}
+
+const uint64_t* carom_batch_hash(const carom_batch* batch) {
+    return batch != nullptr && !batch->batch.hash.empty() ? batch->batch.hash.data() : nullptr;
+}
+
+const char* carom_batch_message(const carom_batch* batch, size_t shot) {
+    if (batch == nullptr) return "";
+    const auto& messages = batch->batch.messages;
+    const auto found =
+        std::lower_bound(messages.begin(), messages.end(), shot,
+                         [](const carom::Batch::Message& m, size_t of) { return m.shot < of; });
+    return found != messages.end() && found->shot == shot ? found->text.c_str() : "";
+}
+
+size_t carom_record_segment_count(const carom_record* record, size_t ball) {
+    return ball < carom_record_ball_count(record) ? record->record.tracks[ball].segments.size() : 0;
+}
+
+carom_status carom_record_segments(const carom_record* record, size_t ball, carom_segment* segments) {
+    return guarded([&] {
+        need({record, segments});
+        check_index(ball, record->record.tracks.size(), "ball");
+        const auto& all = record->record.tracks[ball].segments;
+        std::transform(all.begin(), all.end(), segments, segment_of);
+    });
+}
+
+carom_status carom_record_states(const carom_record* record, size_t count, const double* times, double* rvw,
+                                 uint8_t* states) {
+    return guarded([&] {
+        need({record});
+        if (count > 0) need({times, rvw});
+        if (std::any_of(times, times + count, [](double t) { return std::isnan(t); }))
+            throw BadArgument("a time is not a number");
+        const int balls = static_cast<int>(record->record.tracks.size());
+        for (size_t k = 0; k < count; ++k) {
+            for (int ball = 0; ball < balls; ++ball) {
+                const carom::BallState s = record->record.state_at(ball, times[k]);
+                for (const carom::Vec3* row : {&s.position, &s.velocity, &s.spin})
+                    rvw = std::copy_n(row->data(), 3, rvw);
+                if (states != nullptr) *states++ = static_cast<uint8_t>(s.state);
+            }
+        }
+    });
+}
+
+carom_status carom_scene_from_record(const carom_record* record, carom_scene** scene) {
+    return made(scene, [&](carom_scene& s) {
+        need({record});
+        s.scene = carom::scene_after(record->scene, record->record);
+    });
+}

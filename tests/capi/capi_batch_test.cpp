@@ -1,0 +1,207 @@
+// The C interface in bulk: batches, segments, states, the next scene; each against the call that gives one at a time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "carom/carom.h"
+
+namespace carom::test {
+namespace {
+
+using ScenePtr = std::unique_ptr<carom_scene, decltype(&carom_scene_free)>;
+using RecordPtr = std::unique_ptr<carom_record, decltype(&carom_record_free)>;
+using BatchPtr = std::unique_ptr<carom_batch, decltype(&carom_batch_free)>;
+
+ScenePtr scene_of(const std::string& name) {
+    carom_scene* scene = nullptr;
+    EXPECT_EQ(carom_scene_read((std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml").c_str(), &scene),
+              CAROM_OK)
+        << carom_last_error();
+    return {scene, carom_scene_free};
+}
+
+RecordPtr play(const carom_scene* scene, double until = -1.0) {
+    carom_record* record = nullptr;
+    EXPECT_EQ(carom_simulate(scene, until, &record), CAROM_OK) << carom_last_error();
+    return {record, carom_record_free};
+}
+
+BatchPtr many(const carom_scene* scene, const std::vector<const char*>& keys,
+              const std::vector<double>& values, std::size_t shots, int threads = 1, double until = -1.0) {
+    carom_batch* batch = nullptr;
+    EXPECT_EQ(
+        carom_simulate_many(scene, shots, keys.size(), keys.data(), values.data(), until, threads, 1, &batch),
+        CAROM_OK)
+        << carom_last_error();
+    return {batch, carom_batch_free};
+}
+
+TEST(CApiBatch, HasTheBitsOfCaromSimulate) {
+    const ScenePtr scene = scene_of("side_bank");
+    const std::vector<const char*> keys = {"cue.aim_deg", "cue.speed", "ball.1.position.x"};
+    const std::size_t shots = 40;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < shots; ++i) values.push_back(50.0 + 0.1 * static_cast<double>(i));
+    for (std::size_t i = 0; i < shots; ++i)
+        values.push_back(i == 7 ? -1.0 : 1.0 + 0.1 * static_cast<double>(i));
+    for (std::size_t i = 0; i < shots; ++i) values.push_back(0.9 + 0.001 * static_cast<double>(i));
+    for (const int threads : {1, 2, 3}) {
+        const BatchPtr batch = many(scene.get(), keys, values, shots, threads);
+        ASSERT_EQ(carom_batch_shot_count(batch.get()), shots);
+        ASSERT_EQ(carom_batch_ball_count(batch.get()), 2u);
+        for (std::size_t i = 0; i < shots; ++i) {
+            carom_cue cue;
+            carom_cue_init(&cue);
+            cue.aim_deg = values[i];
+            cue.speed = values[shots + i];
+            cue.side = cue.height = 0.0;
+            const ScenePtr shot = scene_of("side_bank");
+            ASSERT_EQ(carom_scene_set_cue(shot.get(), "cue", &cue), CAROM_OK);
+            const double one[9] = {values[2 * shots + i], 0.90, 0.028575};
+            ASSERT_EQ(carom_scene_set_ball(shot.get(), "1", one), CAROM_OK);
+            if (i == 7) {
+                EXPECT_EQ(carom_batch_status(batch.get())[i], CAROM_SHOT_INVALID);
+                EXPECT_NE(
+                    std::string(carom_batch_message(batch.get(), i)).find("cue.speed = -1 is out of range"),
+                    std::string::npos);
+                EXPECT_EQ(carom_batch_first_hit(batch.get())[i], -1);
+                continue;
+            }
+            const RecordPtr record = play(shot.get());
+            char hash[17];
+            ASSERT_EQ(carom_record_hash(record.get(), hash), CAROM_OK);
+            EXPECT_EQ(carom_batch_hash(batch.get())[i], std::stoull(hash, nullptr, 16)) << i;
+            EXPECT_EQ(carom_batch_duration(batch.get())[i], carom_record_duration(record.get()));
+            EXPECT_EQ(static_cast<std::size_t>(carom_batch_events(batch.get())[i]),
+                      carom_record_event_count(record.get()));
+            EXPECT_EQ(carom_batch_status(batch.get())[i], CAROM_SHOT_AT_REST);
+            EXPECT_STREQ(carom_batch_message(batch.get(), i), "");
+            for (std::size_t ball = 0; ball < 2; ++ball) {
+                double rvw[9];
+                const char* state = nullptr;
+                ASSERT_EQ(carom_record_state(record.get(), ball, 1e9, rvw, &state), CAROM_OK);
+                EXPECT_EQ(carom_batch_x(batch.get())[2 * i + ball], rvw[0]);
+                EXPECT_EQ(carom_batch_y(batch.get())[2 * i + ball], rvw[1]);
+                EXPECT_EQ(carom_batch_pocket(batch.get())[2 * i + ball] >= 0,
+                          std::string(state) == "pocketed");
+                EXPECT_EQ(carom_batch_fell(batch.get())[2 * i + ball] >= 0, std::string(state) == "pocketed");
+                EXPECT_GE(carom_batch_cushions(batch.get())[2 * i + ball], 0);
+            }
+        }
+    }
+    const BatchPtr cut = many(scene.get(), {}, {}, 2, 1, 0.5);
+    EXPECT_EQ(carom_batch_status(cut.get())[1], CAROM_SHOT_TIME);
+    EXPECT_EQ(carom_batch_duration(cut.get())[1], 0.5);
+}
+
+TEST(CApiBatch, BadArgumentsAreNamed) {
+    const ScenePtr scene = scene_of("draw");
+    carom_batch* batch = nullptr;
+    const char* keys[] = {"cue.sped"};
+    const double values[] = {1.0};
+    const double nan = std::nan("");
+    EXPECT_EQ(carom_simulate_many(scene.get(), 1, 1, keys, values, -1.0, 1, 0, &batch), CAROM_BAD_ARGUMENT);
+    EXPECT_STREQ(carom_last_error(), "cue.sped: it names no number in [cue]");
+    EXPECT_EQ(batch, nullptr);
+    EXPECT_EQ(carom_simulate_many(nullptr, 1, 0, nullptr, nullptr, -1.0, 1, 0, &batch), CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(carom_simulate_many(scene.get(), 1, 1, nullptr, values, -1.0, 1, 0, &batch),
+              CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(carom_simulate_many(scene.get(), 1, 1, keys, nullptr, -1.0, 1, 0, &batch), CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(carom_simulate_many(scene.get(), 1, 0, nullptr, nullptr, nan, 1, 0, &batch),
+              CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(carom_simulate_many(scene.get(), 1, 0, nullptr, nullptr, -1.0, -1, 0, &batch),
+              CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(carom_simulate_many(scene.get(), 0, 0, nullptr, nullptr, -1.0, 1, 0, &batch), CAROM_OK);
+    EXPECT_EQ(carom_batch_shot_count(batch), 0u);
+    EXPECT_EQ(carom_batch_hash(batch), nullptr);
+    carom_batch_free(batch);
+    EXPECT_EQ(carom_batch_status(nullptr), nullptr);
+    EXPECT_EQ(carom_batch_x(nullptr), nullptr);
+    EXPECT_STREQ(carom_batch_message(nullptr, 3), "");
+    carom_batch_free(nullptr);
+}
+
+TEST(CApiBatch, SegmentsAndStatesAreThoseOfTheRecord) {
+    const ScenePtr scene = scene_of("side_bank");
+    const RecordPtr record = play(scene.get());
+    std::vector<double> times;
+    for (double t = -0.1; t < carom_record_duration(record.get()) + 0.2; t += 0.01) times.push_back(t);
+    std::vector<double> rvw(times.size() * 2 * 9);
+    std::vector<std::uint8_t> states(times.size() * 2);
+    ASSERT_EQ(carom_record_states(record.get(), times.size(), times.data(), rvw.data(), states.data()),
+              CAROM_OK);
+    const char* const names[] = {"stationary", "spinning", "sliding", "rolling", "pocketed"};
+    for (std::size_t ball = 0; ball < 2; ++ball) {
+        const std::size_t count = carom_record_segment_count(record.get(), ball);
+        ASSERT_GT(count, 3u);
+        std::vector<carom_segment> segments(count);
+        ASSERT_EQ(carom_record_segments(record.get(), ball, segments.data()), CAROM_OK);
+        for (std::size_t k = 0; k < times.size(); ++k) {
+            double one[9];
+            const char* state = nullptr;
+            ASSERT_EQ(carom_record_state(record.get(), ball, times[k], one, &state), CAROM_OK);
+            const double* bulk = &rvw[(2 * k + ball) * 9];
+            for (int c = 0; c < 9; ++c) EXPECT_EQ(bulk[c], one[c]);
+            EXPECT_STREQ(names[states[2 * k + ball]], state);
+            // The closed form that the header promises.
+            const double t = std::min(std::max(times[k], 0.0), carom_record_duration(record.get()));
+            const carom_segment* s = &segments.front();
+            for (const carom_segment& next : segments)
+                if (next.start <= t) s = &next;
+            const double u = std::min(t - s->start, s->duration);
+            for (int c = 0; c < 3; ++c) EXPECT_EQ(s->r[c] + u * (s->v[c] + 0.5 * u * s->a[c]), one[c]);
+            EXPECT_STREQ(names[s->state], state);
+        }
+    }
+    EXPECT_EQ(carom_record_segment_count(record.get(), 2), 0u);
+    EXPECT_EQ(carom_record_segment_count(nullptr, 0), 0u);
+    carom_segment segment;
+    EXPECT_EQ(carom_record_segments(record.get(), 2, &segment), CAROM_BAD_ARGUMENT);
+    EXPECT_STREQ(carom_last_error(), "there is no ball 2; there are 2");
+    EXPECT_EQ(carom_record_segments(record.get(), 0, nullptr), CAROM_BAD_ARGUMENT);
+    const double nan = std::nan("");
+    EXPECT_EQ(carom_record_states(record.get(), 1, &nan, rvw.data(), nullptr), CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(carom_record_states(record.get(), 0, nullptr, nullptr, nullptr), CAROM_OK);
+}
+
+// A shot from where the last one ended; what fell is gone, and who is struck is asked anew.
+TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
+    const ScenePtr scene = scene_of("eight_ball_break");
+    const RecordPtr first = play(scene.get());
+    std::size_t fallen = 0;
+    for (std::size_t e = 0; e < carom_record_event_count(first.get()); ++e) {
+        carom_event event;
+        ASSERT_EQ(carom_record_event(first.get(), e, &event), CAROM_OK);
+        fallen += std::string(event.type) == "ball_pocket";
+    }
+    EXPECT_GT(fallen, 0u);
+    carom_scene* next = nullptr;
+    ASSERT_EQ(carom_scene_from_record(first.get(), &next), CAROM_OK) << carom_last_error();
+    const ScenePtr owner(next, carom_scene_free);
+    const RecordPtr rest = play(next);
+    EXPECT_EQ(carom_record_ball_count(rest.get()) + fallen, carom_record_ball_count(first.get()));
+    EXPECT_EQ(carom_record_duration(rest.get()), 0.0);
+    carom_cue cue;
+    carom_cue_init(&cue);
+    ASSERT_EQ(carom_scene_set_cue(next, carom_record_ball_id(rest.get(), 0), &cue), CAROM_OK);
+    EXPECT_GT(carom_record_duration(play(next).get()), 0.5);
+
+    // Cut in two: what goes on ends where the whole shot does, but for the rounding of the times.
+    const ScenePtr bank = scene_of("side_bank");
+    const RecordPtr whole = play(bank.get()), half = play(bank.get(), 0.8);
+    ASSERT_EQ(carom_scene_from_record(half.get(), &next), CAROM_OK);
+    const ScenePtr other(next, carom_scene_free);
+    const RecordPtr rest_of_it = play(next);
+    EXPECT_NEAR(carom_record_duration(rest_of_it.get()) + 0.8, carom_record_duration(whole.get()), 1e-6);
+    EXPECT_EQ(carom_scene_from_record(nullptr, &next), CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(next, nullptr);
+}
+
+}  // namespace
+}  // namespace carom::test
