@@ -1,5 +1,5 @@
 // Runs one shot, for tools/measure/callgrind_shot.py: shot_probe NAME SEED [RUNS], or shot_probe gas N EVENTS
-// (collisions pair by pair; "gas compliant" uses the default model of clusters). Prints the kind of event of every
+// (collisions pair by pair; "gas compliant" uses the default model of clusters), or shot_probe 'many two_ball' SHOTS. Prints the kind of event of every
 // iteration of the loop in the last run, one per line.
 #include <cstdint>
 #include <cstdio>
@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/many_shots.h"
 #include "bench/shot_cases.h"
 #include "carom/engine/plan.h"
 #include "carom/engine/simulate.h"
@@ -26,6 +27,12 @@ int main(int argc, char** argv) {
                third = argc > 3 ? std::strtol(argv[3], nullptr, 10) : 1;
     const auto [isa, problem] = kernel::isa_from_environment();
     if (*problem != '\0') return 2;
+    if (name.rfind("many ", 0) == 0) {  // a batch of so many shots; prints the balls pocketed
+        tools::ManyShots many(name, isa);
+        many.play(static_cast<std::size_t>(number));
+        std::printf("%ld\n", many.pocketed());
+        return 0;
+    }
     const bool gas = name == "gas" || name == "gas compliant";
     Scene scene = gas ? tools::gas_scene(static_cast<int>(number), third, 1)
                       : tools::shot_scene(name, static_cast<std::uint64_t>(number));
