@@ -49,6 +49,16 @@ class VariationTest : public testing::Test {
     std::string text_ = kScene;
 };
 
+TEST_F(VariationTest, OfATextIsThatOfAFileWithIt) {
+    const std::vector<std::string> rules = {"cue.speed=uniform(1,5)"};
+    const Variation file = vary(rules), text = Variation::from_text(kScene, "a text", rules, 1);
+    EXPECT_EQ(file.fingerprint(), text.fingerprint());
+    EXPECT_EQ(file.shot(3).values, text.shot(3).values);
+    EXPECT_EQ(text.base().file, "a text");
+    EXPECT_THROW(Variation::from_text("[[ball]", "a text", rules, 1), SceneError);
+    EXPECT_THROW(Variation::from_text(kScene, "a text", {"cue.haste=uniform(1,5)"}, 1), VariationError);
+}
+
 TEST_F(VariationTest, EveryKindOfKeyReachesItsValue) {
     const Variation v = vary({"cue.speed=list(2.5)", "cue.offset.side=list(-0.1)", "cue.offset.1=list(0.3)",
                               "ball.cue.position.x=list(0.7)", "ball.ball.2.position=list([0.5, 1.5])",

@@ -18,9 +18,8 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "a command is missing: simulate, render, margin, accuracy, sweep, check, impact, bench or describe; "
-         "see carom "
-         "--help"},
+         "a command is missing: simulate, render, margin, accuracy, sweep, validate, check, impact, bench or "
+         "describe; see carom --help"},
         {{"bench"}, "a command is missing: kernel, render or shot; see carom bench --help"},
         {{"bench", "kernel", "--seed", "x"}, "see carom bench kernel --help"},
         {{"accuracy"}, "accuracy: a scene file or the word kernel is required; see carom accuracy --help"},
@@ -78,7 +77,7 @@ TEST(CliUsage, VersionAndHelpExit0) {
     const ProcessResult help = carom({"--help"});
     EXPECT_EQ(help.status, 0);
     for (const char* command :
-         {"simulate", "render", "margin", "accuracy", "sweep", "check", "impact", "describe"}) {
+         {"simulate", "render", "margin", "accuracy", "sweep", "validate", "check", "impact", "describe"}) {
         EXPECT_TRUE(contains(help.out, command)) << command;
         const ProcessResult result = carom({command, "--help"});
         EXPECT_EQ(result.status, 0) << command;
@@ -88,7 +87,7 @@ TEST(CliUsage, VersionAndHelpExit0) {
 
 TEST(CliUsage, HelpNamesEveryDefault) {
     for (const char* command :
-         {"simulate", "render", "margin", "accuracy", "sweep", "check", "impact", "describe"}) {
+         {"simulate", "render", "margin", "accuracy", "sweep", "validate", "check", "impact", "describe"}) {
         // Options begin with two blanks and a dash; their text may go on in the lines below.
         std::string option;
         const auto has_default = [&option] {

@@ -63,6 +63,17 @@ TEST(Plot, LeavesOutWhatCannotBeDrawn) {
     EXPECT_EQ(count(svg, "inf"), 0);
 }
 
+TEST(Plot, BarsAndMarksOfItsOwn) {
+    Plot plot;
+    plot.x.marks = {{1.0, "first"}, {2.0, "second"}};
+    plot.series = {{"bars", {{1.0, 5.0}, {2.0, 6.0}, {3.0, 7.0}}, false}};
+    plot.series[0].errors = {0.5, 1.0, INFINITY};
+    const std::string svg = plot_svg(plot);
+    for (const char* mark : {">first<", ">second<"}) EXPECT_EQ(count(svg, mark), 1) << mark;
+    EXPECT_EQ(count(svg, ">1.5<"), 0);
+    EXPECT_EQ(count(svg, "stroke=\"#0072b2\""), 2) << "a bar that ends nowhere is not drawn";
+}
+
 TEST(Plot, NothingAndOnePointAreFine) {
     for (const bool logarithmic : {false, true}) {
         Plot plot;

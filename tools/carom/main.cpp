@@ -15,6 +15,7 @@ void add_render(Options& program);
 void add_margin(Options& program);
 void add_accuracy(Options& program);
 void add_sweep(Options& program);
+void add_validate(Options& program);
 void add_check(Options& program);
 void add_impact(Options& program);
 void add_bench_kernel(Options& bench);
@@ -37,6 +38,7 @@ int run(int argc, char** argv) {
     add_margin(program);
     add_accuracy(program);
     add_sweep(program);
+    add_validate(program);
     add_check(program);
     add_impact(program);
     Options& bench = program.command("bench", "Ratios measured side by side in one run");

@@ -15,21 +15,10 @@
 namespace carom {
 namespace {
 
-toml::table parse_toml(std::string_view text, const std::string& name) {
-    if (const auto deep = detail::too_deep(text)) throw SceneError(name, deep->where, deep->what);
-    try {
-        return toml::parse(text, name);
-    } catch (const toml::parse_error& error) {
-        const toml::source_position at = error.source().begin;
-        const SourceLocation where{static_cast<int>(at.line), static_cast<int>(at.column)};
-        const std::string_view what = error.description();
-        if (what.find("redefine") != std::string_view::npos) {
-            throw SceneError(
-                name, where,
-                fmt::format("this key or section is there already; keep one of the two ({})", what));
-        }
-        throw SceneError(name, where, fmt::format("not valid TOML; correct this place ({})", what));
-    }
+void check_size(std::string_view text, const std::string& name) {
+    if (text.size() <= kMaxFileSize) return;
+    throw SceneError(name, {},
+                     fmt::format("is larger than {} MiB; a scene file is a few lines", kMaxFileSize >> 20));
 }
 
 [[noreturn]] void cannot_read(const std::string& path, const std::string& why) {
@@ -51,20 +40,30 @@ std::string read_text(const std::string& path) {
     return text;
 }
 
-void check_size(std::string_view text, const std::string& name) {
-    if (text.size() <= kMaxFileSize) return;
-    throw SceneError(name, {},
-                     fmt::format("is larger than {} MiB; a scene file is a few lines", kMaxFileSize >> 20));
-}
-
 }  // namespace
 
 namespace detail {
 
+toml::table toml_from(std::string_view text, const std::string& name) {
+    check_size(text, name);
+    if (const auto deep = too_deep(text)) throw SceneError(name, deep->where, deep->what);
+    try {
+        return toml::parse(text, name);
+    } catch (const toml::parse_error& error) {
+        const toml::source_position at = error.source().begin;
+        const SourceLocation where{static_cast<int>(at.line), static_cast<int>(at.column)};
+        const std::string_view what = error.description();
+        if (what.find("redefine") != std::string_view::npos) {
+            throw SceneError(
+                name, where,
+                fmt::format("this key or section is there already; keep one of the two ({})", what));
+        }
+        throw SceneError(name, where, fmt::format("not valid TOML; correct this place ({})", what));
+    }
+}
+
 toml::table read_toml(const std::string& path) {
-    const std::string text = read_text(path);
-    check_size(text, path);
-    return parse_toml(text, path);
+    return toml_from(read_text(path), path);
 }
 
 Scene scene_from(const toml::table& file, const std::string& name) {
@@ -93,8 +92,7 @@ SceneError::SceneError(const std::string& file, SourceLocation where, const std:
       message_(message) {}
 
 Scene parse_scene(std::string_view text, const std::string& name) {
-    check_size(text, name);
-    return detail::scene_from(parse_toml(text, name), name);
+    return detail::scene_from(detail::toml_from(text, name), name);
 }
 
 Scene read_scene(const std::string& path) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "carom/engine/scene_number.h"
 #include "carom/engine/tolerances.h"
@@ -47,6 +48,8 @@ void check_again(const Section& top, const Scene& scene, Change change);
 
 /// A file as toml++ reads it. @throws SceneError where it cannot be read or is no TOML
 toml::table read_toml(const std::string& path);
+/// The same from text; `name` stands for the file in messages.
+toml::table toml_from(std::string_view text, const std::string& name);
 /// From there to a validated scene; `name` stands for the file in messages. @throws SceneError
 Scene scene_from(const toml::table& file, const std::string& name);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <sstream>
+#include <utility>
 #include <variant>
 
 #include "base/fnv.h"
@@ -228,6 +229,9 @@ bool same_balls(const Scene& a, const Scene& b) {
 }  // namespace
 
 struct Variation::Parts {
+    Parts(std::string file_name, toml::table content)
+        : path(std::move(file_name)), file(std::move(content)) {}
+
     std::string path;
     toml::table file;
     Scene base;
@@ -239,14 +243,20 @@ struct Variation::Parts {
     Rack rack;          // as the file has it
 };
 
-Variation::Variation(const std::string& path, const std::vector<std::string>& rules, std::uint64_t seed) {
-    const auto parts = std::make_shared<Parts>();
-    parts->path = path;
+Variation::Variation(const std::string& path, const std::vector<std::string>& rules, std::uint64_t seed)
+    : Variation(std::make_shared<Parts>(path, detail::read_toml(path)), rules, seed) {}
+
+Variation Variation::from_text(std::string_view text, const std::string& name,
+                               const std::vector<std::string>& rules, std::uint64_t seed) {
+    return {std::make_shared<Parts>(name, detail::toml_from(text, name)), rules, seed};
+}
+
+Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std::string>& rules,
+                     std::uint64_t seed) {
     parts->seed = seed;
-    parts->file = detail::read_toml(path);
-    parts->base = detail::scene_from(parts->file, path);
+    parts->base = detail::scene_from(parts->file, parts->path);
     if (const toml::table* rack = parts->file["rack"].as_table())
-        detail::Section(*rack, path, "rack", keys_of(kRackFields, Files::kScene))
+        detail::Section(*rack, parts->path, "rack", keys_of(kRackFields, Files::kScene))
             .read(kRackFields, parts->rack);
     std::ostringstream content;
     content << parts->file;

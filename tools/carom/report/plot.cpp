@@ -33,7 +33,7 @@ std::string escaped(const std::string& text) {
 class Scale {
   public:
     Scale(const Axis& axis, const std::vector<double>& values, double from, double to)
-        : logarithmic_(axis.logarithmic), from_(from), to_(to) {
+        : logarithmic_(axis.logarithmic), from_(from), to_(to), given_(axis.marks) {
         double low = INFINITY, high = -INFINITY;
         for (const double value : values) {
             if (!shows(value)) continue;
@@ -58,8 +58,9 @@ class Scale {
     }
     double at(double value) const { return from_ + (to_ - from_) * (place(value) - low_) / (high_ - low_); }
 
-    /// Round values, and how to write them.
+    /// Round values, or those that the axis gives, and how to write them.
     std::vector<std::pair<double, std::string>> marks() const {
+        if (!given_.empty()) return given_;
         std::vector<std::pair<double, std::string>> list;
         if (logarithmic_) {
             const int first = static_cast<int>(std::ceil(low_ - 1e-9)),
@@ -91,6 +92,7 @@ class Scale {
 
     bool logarithmic_;
     double from_, to_, low_ = 0.0, high_ = 1.0;
+    std::vector<std::pair<double, std::string>> given_;
 };
 
 class Drawing {
@@ -134,8 +136,12 @@ class Drawing {
 
     std::vector<double> values(bool x) const {
         std::vector<double> all;
-        for (const Series& series : plot_.series)
+        for (const Series& series : plot_.series) {
             for (const auto& [px, py] : series.points) all.push_back(x ? px : py);
+            for (std::size_t i = 0; i < series.errors.size() && !x; ++i)
+                for (const double side : {-1.0, 1.0})
+                    all.push_back(series.points[i].second + side * series.errors[i]);
+        }
         if (x)
             for (const Ticks& ticks : plot_.ticks) all.insert(all.end(), ticks.at.begin(), ticks.at.end());
         else
@@ -179,6 +185,12 @@ class Drawing {
         const char* dash =
             series.dashed ? "stroke-dasharray=\"5 4\" stroke-width=\"1.6\"" : "stroke-width=\"1.6\"";
         std::string path;
+        for (std::size_t i = 0; i < series.errors.size(); ++i) {
+            const auto& [x, y] = series.points[i];
+            const double low = y - series.errors[i], high = y + series.errors[i];
+            if (x_.inside(x) && y_.inside(low) && y_.inside(high))
+                stroke(x_.at(x), y_.at(low), x_.at(x), y_.at(high), colour, "stroke-width=\"1.6\"");
+        }
         for (const auto& [x, y] : series.points) {
             if (!x_.inside(x) || !y_.inside(y)) continue;
             path += fmt::format("{:.1f},{:.1f} ", x_.at(x), y_.at(y));

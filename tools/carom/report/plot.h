@@ -12,6 +12,8 @@ struct Axis {
     std::string title;
     bool logarithmic = false;
     std::optional<double> low, high;  ///< default: what the points need
+    std::vector<std::pair<double, std::string>>
+        marks{};  ///< where, and what is written there; empty: round values
 };
 
 /// Points, which may be joined by a line. Values that are not finite are not drawn, and values of 0 and below are not drawn on
@@ -20,7 +22,8 @@ struct Series {
     std::string name;  ///< in the legend; empty: not there
     std::vector<std::pair<double, double>> points;
     bool line = true, dots = true, dashed = false;
-    int colour = -1;  ///< number in the palette; -1: the next one
+    int colour = -1;               ///< number in the palette; -1: the next one
+    std::vector<double> errors{};  ///< half the height of a bar at each point; empty: no bars
 };
 
 /// A short stroke on the x axis for each value: events of one kind.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "carom/engine/scene.h"
@@ -46,6 +47,10 @@ class Variation {
     /// makes a valid scene
     Variation(const std::string& path, const std::vector<std::string>& rules, std::uint64_t seed);
 
+    /// The same of a scene given as text; `name` stands for the file in messages.
+    static Variation from_text(std::string_view text, const std::string& name,
+                               const std::vector<std::string>& rules, std::uint64_t seed);
+
     const Scene& base() const;  ///< the file as it is
     const std::vector<std::string>& keys() const;
 
@@ -65,6 +70,7 @@ class Variation {
 
   private:
     struct Parts;
+    Variation(const std::shared_ptr<Parts>& parts, const std::vector<std::string>& rules, std::uint64_t seed);
     std::shared_ptr<const Parts> parts_;
 };
 

@@ -1,0 +1,42 @@
+// Runs validation cases.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "carom/kernel/isa.h"
+#include "validate/case.h"
+
+namespace carom::tools {
+
+/// One measured number under one variant. It refers to its case.
+struct ValidationRow {
+    const ValidationCase* of;
+    const ValidationShot* shot;
+    const Variant* variant;
+    const Measured* measured;
+    std::string model;  ///< that the case is about, as the plan has it
+    Claim claim;
+    double computed;
+    /// That of the measured number; of a share with 1.96 standard deviations of the shots that were played.
+    double uncertainty;
+
+    /// computed - measured, in units of the uncertainty
+    double deviation() const;
+    bool within() const;
+    /// Whether what is claimed holds: within; or outside and within a quarter of the uncertainty of the claimed value; or a
+    /// share within three standard deviations of the claimed one.
+    bool as_claimed() const;
+};
+
+/// Plays all shots of a case under all variants: rows by shot, number and variant. `progress` is called after each run of
+/// the case with the runs so far.
+/// @throws SceneError, std::runtime_error that names case, variant and shot
+std::vector<ValidationRow> run_case(const ValidationCase& of, kernel::Isa isa,
+                                    const std::function<void(long)>& progress);
+
+/// Runs that a case takes.
+long runs_of(const ValidationCase& of);
+
+}  // namespace carom::tools
