@@ -36,7 +36,7 @@ constexpr float kNowhere = std::numeric_limits<float>::infinity();  // bound of 
 
 }  // namespace
 
-BoxSearch::Rounded BoxSearch::outward(const Box& box) {
+RoundedBox BoxSearch::outward(const Box& box) {
     return {down(box.low_x), down(box.low_y), up(box.high_x), up(box.high_y)};
 }
 
@@ -71,8 +71,7 @@ void BoxSearch::set(std::size_t slot, const Rounded& box) {
     high_y_[slot] = box.high_y;
 }
 
-void BoxSearch::place(int index, const Box& box) {
-    const Rounded rounded = outward(box);
+void BoxSearch::place(int index, const RoundedBox& rounded) {
     const std::size_t s = slot(index);
     set(s, rounded);
     if (!tree_ || proxy_[s / kBlock] < 0) return;  // there are no blocks before the first build

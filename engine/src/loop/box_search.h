@@ -26,12 +26,19 @@ struct Box {
     double low_x, low_y, high_x, high_y;
 };
 
+/// A box in the form in which boxes are compared.
+struct RoundedBox {
+    float low_x, low_y, high_x, high_y;
+};
+
 class BoxSearch {
   public:
+    static RoundedBox outward(const Box& box);
     /// Boxes are not found until they are placed.
     void set_up(int count, Search kind);
 
-    void place(int index, const Box& box);
+    void place(int index, const Box& box) { place(index, outward(box)); }
+    void place(int index, const RoundedBox& box);
     void remove(int index);
     /// Call between placing and searching: from time to time it forms the blocks again from the present neighbours.
     void settle() {
@@ -44,6 +51,10 @@ class BoxSearch {
     void overlapping(const Box& box, Found found) const {
         search(outward(box), found);
     }
+    template <class Found>
+    void overlapping(const RoundedBox& box, Found found) const {
+        search(box, found);
+    }
     /// The same for a placed box, which is not found itself.
     template <class Found>
     void neighbours(int index, Found found) const {
@@ -55,10 +66,7 @@ class BoxSearch {
 
   private:
     static constexpr std::size_t kBlock = 64;  // [-] boxes per block
-    struct Rounded {
-        float low_x, low_y, high_x, high_y;
-    };
-    static Rounded outward(const Box& box);
+    using Rounded = RoundedBox;
     static b2AABB aabb_of(const Rounded& box);
     std::size_t slot(int index) const {
         const auto i = static_cast<std::size_t>(index);

@@ -139,10 +139,11 @@ void Detector::renew(int ball) {
     mover.own = s.start + s.duration;
     mover.pair = {};
     if (plan_.clusters == ClusterModel::kCompliant && translates(s.state)) bound_speed(s);
-    search_table(ball);
+    const RoundedBox whole = BoxSearch::outward(swept(ball, s.start, s.duration));
+    search_table(ball, whole);
     if (plan_.pairs) {
         if (s.state != MotionState::kPocketed)
-            bound(ball, s.start);
+            bound(ball, s.start, &whole);
         else
             ball_boxes_.remove(ball);
     }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "contact/contact.h"
@@ -52,7 +53,9 @@ struct DetectorMemory {
     BoxSearch ball_boxes_,
         table_boxes_;             // of balls until their own next event, and of the parts of the table
     std::vector<Contact> parts_;  // cushions, then noses, then pockets; without a ball
-    std::vector<int> near_;       // parts that a ball can reach
+    Geometry table_;              // those of parts_ and table_boxes_
+    std::optional<Search> table_search_;
+    std::vector<int> near_;  // parts that a ball can reach
 };
 
 class Detector : private Borrowed<DetectorMemory> {
@@ -93,7 +96,7 @@ class Detector : private Borrowed<DetectorMemory> {
     // pair_search.cpp
     Box swept(int ball, double from, double duration) const;
     Path path(int ball, double from) const;
-    void bound(int ball, double from);
+    void bound(int ball, double from, const RoundedBox* whole = nullptr);
     void bound_speed(const Segment& segment);
     void search_pairs(int ball);
     Candidate pair(int a, const Path& mine, int b, double latest) const;
@@ -102,8 +105,8 @@ class Detector : private Borrowed<DetectorMemory> {
 
     // table_search.cpp
     void set_up_table();
-    void find_parts(int ball);
-    void search_table(int ball);
+    void find_parts(const RoundedBox& box);
+    void search_table(int ball, const RoundedBox& whole);
     double time_to(const Contact& contact, const Path& path, double window) const;
 
     /// The duration from one time to another, rounded up.

@@ -45,8 +45,8 @@ Box Detector::swept(int ball, double from, double duration) const {
 }
 
 // Places the box of a ball, valid from the time `from` until its state transition, its contact with the table, or until
-// the ball may have moved by Mover::travel.
-void Detector::bound(int ball, double from) {
+// the ball may have moved by Mover::travel. `whole`: the box of its whole segment, if that is known.
+void Detector::bound(int ball, double from, const RoundedBox* whole) {
     Mover& mover = mover_[ball];
     const Segment& s = balls_.segment(ball);
     mover.until = std::min(mover.own, mover.table.time);
@@ -59,7 +59,10 @@ void Detector::bound(int ball, double from) {
             2.0 * mover.travel / (speed + std::sqrt(speed * speed + 2.0 * pull * mover.travel));
         if (end < mover.until) mover.until = mover.refresh = end;
     }
-    ball_boxes_.place(ball, swept(ball, from, mover.until - from));
+    if (whole != nullptr && mover.until == mover.own)
+        ball_boxes_.place(ball, *whole);
+    else
+        ball_boxes_.place(ball, swept(ball, from, mover.until - from));
 }
 
 // First contact of two balls. It may be omitted if it is later than `latest` or than the next own event of one of them,

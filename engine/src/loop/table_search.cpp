@@ -15,10 +15,30 @@ bool is_inside(const Segment& s, const Pocket& pocket) {
     return length(Vec2(s.r.x(), s.r.y()) - pocket.center) < pocket.radius;
 }
 
+/// Whether the parts are in the same places.
+bool same_places(const Geometry& a, const Geometry& b) {
+    const auto same = [](const auto& x, const auto& y, auto equal) {
+        return std::equal(x.begin(), x.end(), y.begin(), y.end(), equal);
+    };
+    return same(a.cushions, b.cushions,
+                [](const CushionLine& p, const CushionLine& q) {
+                    return p.from == q.from && p.direction == q.direction && p.length == q.length;
+                }) &&
+           same(a.noses, b.noses,
+                [](const Nose& p, const Nose& q) { return p.center == q.center && p.radius == q.radius; }) &&
+           same(a.pockets, b.pockets, [](const Pocket& p, const Pocket& q) {
+               return p.center == q.center && p.radius == q.radius;
+           });
+}
+
 }  // namespace
 
+// A batch plays most of its shots on one table: its boxes stay.
 void Detector::set_up_table() {
     const Geometry& g = plan_.geometry;
+    if (table_search_ == plan_.table_search && same_places(g, table_)) return;
+    table_ = g;
+    table_search_ = plan_.table_search;
     const std::size_t count = g.cushions.size() + g.noses.size() + g.pockets.size();
     table_boxes_.set_up(static_cast<int>(count), plan_.table_search);
     parts_.clear();
@@ -42,20 +62,20 @@ void Detector::set_up_table() {
     table_boxes_.settle();
 }
 
-// Finds the parts of the table that the ball can reach during its segment, in the order of parts_.
-void Detector::find_parts(int ball) {
-    const Segment& s = balls_.segment(ball);
+// Finds the parts of the table that a ball can reach inside a box, in the order of parts_.
+void Detector::find_parts(const RoundedBox& box) {
     near_.clear();
-    table_boxes_.overlapping(swept(ball, s.start, s.duration), [this](int part) { near_.push_back(part); });
+    table_boxes_.overlapping(box, [this](int part) { near_.push_back(part); });
     if (plan_.table_search == Search::kTree) std::sort(near_.begin(), near_.end());
 }
 
-void Detector::search_table(int ball) {
+// `whole`: the box of the ball during its segment.
+void Detector::search_table(int ball, const RoundedBox& whole) {
     Candidate& first = mover_[ball].table;
     first = {};
     const Segment& s = balls_.segment(ball);
     if (s.state == MotionState::kPocketed || parts_.empty()) return;
-    find_parts(ball);
+    find_parts(whole);
     if (!translates(s.state)) {  // a ball that rests inside the circle of a pocket falls
         for (const int part : near_) {
             const Contact contact = parts_[part].of(ball);

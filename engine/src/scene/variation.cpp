@@ -1,5 +1,6 @@
 #include "carom/engine/variation.h"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 #include <iterator>
 
@@ -92,7 +93,11 @@ void put_value(toml::table& file, const std::vector<Step>& path, const Drawn& va
 void write(const Drawn& value, std::string& text) {
     text.clear();
     const auto add = [&text](const auto& x) { fmt::format_to(std::back_inserter(text), "{}", x); };
-    if (const auto* number = std::get_if<double>(&value)) return add(*number);
+    if (const auto* number = std::get_if<double>(&value)) {
+        char digits[40];  // a double takes 24
+        text.append(digits, fmt::format_to(digits, FMT_COMPILE("{}"), *number));
+        return;
+    }
     if (const auto* whole = std::get_if<std::int64_t>(&value)) return add(*whole);
     const toml::node& node = *std::get<const toml::node*>(value);
     if (node.is_string()) return add(*node.value<std::string>());

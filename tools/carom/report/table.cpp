@@ -1,7 +1,9 @@
 #include "report/table.h"
 
+#include <algorithm>
 #include <iterator>
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -47,14 +49,24 @@ std::string table_text(const Table& table) {
 }
 
 void append_csv(std::string& line, double x) {
-    fmt::format_to(std::back_inserter(line), "{},", x);
+    char text[40];  // a double takes 24 characters
+    line.append(text, fmt::format_to(text, FMT_COMPILE("{},"), x));
 }
 
 void append_csv(std::string& line, std::int64_t count) {
-    fmt::format_to(std::back_inserter(line), "{},", count);
+    line += fmt::format_int(count).c_str();
+    line += ',';
 }
 
 void append_csv(std::string& line, std::string_view words) {
+    const bool plain_words = std::none_of(words.begin(), words.end(), [](char c) {
+        return c == ',' || c == '"' || static_cast<unsigned char>(c) < 0x20;
+    });
+    if (plain_words) {
+        line += words;
+        line += ',';
+        return;
+    }
     const bool quotes = words.find_first_of(",\"") != words.npos;
     if (quotes) line += '"';
     for (const char c : words) {
