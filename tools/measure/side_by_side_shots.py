@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+"""Times whole shots beside pooltool 0.6.0, in one process, shot by shot in turns.
+
+Makes a throw-away virtual environment, installs pooltool-billiards 0.6.0 (PyPI, --no-deps: the panda3d that it asks for is not on
+PyPI) with what it imports, and plays breaks, random positions of two, 8, 12 and 16 balls with pooltool.simulate and, through
+libcarom.so, with carom_simulate (validation, plan and record each time) and carom_simulate_many (one thread). Both play the same
+positions, aims and speeds on the seven-foot table with the same coefficients and models: inelastic with Alciatore's friction, Stronge's
+cushion, pair by pair. CPU time of the thread. The first shots of pooltool, which compile it, are not counted. FastFiz is in no package
+registry; it is not compared. Needs PyPI; neither the build nor a test needs this script.
+
+    tools/measure/side_by_side_shots.py [--library build/release/capi/libcarom.so] [--shots 10]
+"""
+import argparse
+import ctypes
+import json
+import os
+import pathlib
+import random
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+NEEDED = ["numba<0.63", "numpy", "scipy", "attrs", "cattrs", "msgpack", "msgpack-numpy", "pyyaml", "panda3d", "h5py", "pillow", "rich",
+          "click", "numpy-quaternion"]
+ALONE = ["pooltool-billiards==0.6.0", "panda3d-simplepbr", "panda3d-gltf", "h11"]
+SCENE = """[table]
+preset = "seven_foot"
+[balls]
+preset = "pool_classic"
+mu_b_fit = [0.009951, 0.108, 1.088]
+[physics]
+ball_ball = "inelastic"
+cushion = "stronge"
+clusters = "sequential"
+[cue]
+preset = "lossless"
+end_mass = 0.0
+speed = {speed!r}
+aim_deg = {aim!r}
+offset = [0.0, 0.0]
+"""
+R = 0.028575
+
+
+def positions(count, rng, width, length):
+    """Balls anywhere on the table, without contact."""
+    places = []
+    while len(places) < count:
+        p = (rng.uniform(2 * R, width - 2 * R), rng.uniform(2 * R, length - 2 * R))
+        if all((p[0] - q[0]) ** 2 + (p[1] - q[1]) ** 2 > (2.1 * R) ** 2 for q in places):
+            places.append(p)
+    return {"cue" if i == 0 else str(i): p for i, p in enumerate(places)}
+
+
+class Carom:
+    def __init__(self, library):
+        self.c = ctypes.CDLL(library)
+        self.c.carom_last_error.restype = ctypes.c_char_p
+        self.c.carom_record_event_count.restype = ctypes.c_size_t
+        self.c.carom_simulate.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.POINTER(ctypes.c_void_p)]
+        self.c.carom_batch_status.restype = ctypes.POINTER(ctypes.c_uint8)
+        self.c.carom_batch_status.argtypes = [ctypes.c_void_p]
+        for name in ("carom_scene_free", "carom_record_free", "carom_batch_free", "carom_record_event_count"):
+            getattr(self.c, name).argtypes = [ctypes.c_void_p]
+
+    def check(self, status):
+        if status != 0:
+            raise RuntimeError(self.c.carom_last_error().decode())
+
+    def scene(self, shot):
+        balls = "".join(f"[[ball]]\nid = \"{name}\"\nposition = [{x!r}, {y!r}]\n" for name, (x, y) in shot["balls"].items())
+        scene = ctypes.c_void_p()
+        self.check(self.c.carom_scene_parse((SCENE.format(**shot) + balls).encode(), b"shot", ctypes.byref(scene)))
+        return scene
+
+    def one(self, shot):
+        """Least seconds of five runs, and events."""
+        scene, best, events = self.scene(shot), 1e9, 0
+        for _ in range(5):
+            record = ctypes.c_void_p()
+            start = time.thread_time()
+            self.check(self.c.carom_simulate(scene, -1.0, ctypes.byref(record)))
+            best = min(best, time.thread_time() - start)
+            events = self.c.carom_record_event_count(record)
+            self.c.carom_record_free(record)
+        self.c.carom_scene_free(scene)
+        return best, events
+
+    def many(self, shots):
+        """Least seconds a shot of five runs of a batch with all of them, forty times over."""
+        keys = ["cue.speed", "cue.aim_deg"] + [f"ball.{b}.position.{k}" for b in shots[0]["balls"] for k in "xy"]
+        rows = [[s["speed"], s["aim"]] + [v for p in s["balls"].values() for v in p] for s in shots] * 40
+        values = (ctypes.c_double * (len(rows) * len(keys)))(*[row[k] for k in range(len(keys)) for row in rows])
+        names = (ctypes.c_char_p * len(keys))(*[k.encode() for k in keys])
+        scene, best = self.scene(shots[0]), 1e9
+        for _ in range(5):
+            batch = ctypes.c_void_p()
+            start = time.thread_time()
+            self.check(self.c.carom_simulate_many(scene, ctypes.c_size_t(len(rows)), ctypes.c_size_t(len(keys)), names, values,
+                                                  ctypes.c_double(-1.0), 1, 0, ctypes.byref(batch)))
+            best = min(best, (time.thread_time() - start) / len(rows))
+            if max(self.c.carom_batch_status(batch)[:len(rows)]) > 3:
+                raise RuntimeError("a shot of the batch has no result")
+            self.c.carom_batch_free(batch)
+        self.c.carom_scene_free(scene)
+        return best
+
+
+def compare(library, count):
+    """Runs inside the environment."""
+    import pooltool as pt
+
+    table = pt.Table.default()
+    rng = random.Random(1)
+    kinds = {}
+    for balls in (2, 8, 12, 16):
+        kinds[f"{balls} balls"] = [{"balls": positions(balls, rng, float(table.w), float(table.l)), "speed": rng.uniform(1, 6),
+                                    "aim": rng.uniform(0, 360)} for _ in range(count)]
+    kinds["eight-ball break"] = []
+    for _ in range(count):
+        rack = pt.get_rack(pt.GameType.EIGHTBALL, table)
+        balls = {name: (float(b.xyz[0]), float(b.xyz[1])) for name, b in rack.items()}
+        kinds["eight-ball break"].append({"balls": balls, "speed": rng.uniform(6, 8), "aim": 90.0 + rng.uniform(-0.5, 0.5)})
+
+    def theirs(shot):
+        balls = {name: pt.Ball.create(name, xy=xy) for name, xy in shot["balls"].items()}
+        system = pt.System(cue=pt.Cue(cue_ball_id="cue"), table=pt.Table.default(), balls=balls)
+        system.cue.set_state(V0=shot["speed"], phi=shot["aim"])
+        start = time.thread_time()
+        pt.simulate(system, inplace=True)
+        return time.thread_time() - start, len(system.events)
+
+    carom = Carom(library)
+    for shots in kinds.values():
+        theirs(shots[0])  # compiles
+    out = []
+    for kind, shots in kinds.items():
+        rows = [(theirs(shot), carom.one(shot)) for shot in shots]
+        out.append({"kind": kind, "theirs_ms": 1e3 * statistics.median(t[0] for t, _ in rows),
+                    "ours_ms": 1e3 * statistics.median(o[0] for _, o in rows),
+                    "ratio": statistics.median(t[0] / o[0] for t, o in rows), "many_ms": 1e3 * carom.many(shots),
+                    "theirs_events": statistics.median(t[1] for t, _ in rows),
+                    "ours_events": statistics.median(o[1] for _, o in rows)})
+    print(json.dumps(out))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--library", default=str(ROOT / "build" / "release" / "capi" / "libcarom.so"))
+    parser.add_argument("--shots", type=int, default=10, help="of each kind (default: 10)")
+    parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
+    args = parser.parse_args()
+    if args.inside:
+        compare(args.library, args.shots)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, "-m", "venv", folder], check=True)
+        python = os.path.join(folder, "bin", "python")
+        pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+        subprocess.run(pip + NEEDED, check=True)
+        subprocess.run(pip + ["--no-deps"] + ALONE, check=True)
+        out = subprocess.run([python, __file__, "--inside", "--library", args.library, "--shots", str(args.shots)], check=True,
+                             capture_output=True, text=True, env={**os.environ, "CAROM_ISA": os.environ.get("CAROM_ISA", "v3")}).stdout
+    print(f"{'':<18}{'pooltool':>12}{'carom':>12}{'ratio':>8}{'in a batch':>12}   events, theirs and ours (medians)")
+    for row in json.loads(out.strip().splitlines()[-1]):
+        print(f"{row['kind']:<18}{row['theirs_ms']:>9.2f} ms{row['ours_ms']:>9.4f} ms{row['ratio']:>8.0f}{row['many_ms']:>9.4f} ms"
+              f"   {row['theirs_events']:.0f}, {row['ours_events']:.0f}")
+
+
+if __name__ == "__main__":
+    main()
