@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The two parts of tools/docs that are no shell: site.py configure FILE writes the configuration of MkDocs; site.py check FOLDER follows
-every link of the built site, to headings as well. Exit status 1: a link is dead.
+"""The parts of tools/docs that are no shell: site.py configure FILE writes the configuration of MkDocs; site.py interface FILE writes a page of
+the C interface from its header; site.py check FOLDER follows every link of the built site, to headings as well. Exit status 1: a link is dead.
 
 The order of the pages in the navigation is that of docs/README.md, which names every page.
 """
@@ -12,12 +12,14 @@ import sys
 import urllib.parse
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+C_INTERFACE = "reference/c_interface.md"
 SECTIONS = ("guide", "reference", "design", "lab")
 
 
 def navigation():
     index = (ROOT / "docs/README.md").read_text()
     paths = list(dict.fromkeys(re.findall(r"\]\(((?:%s)/[a-z0-9_-]+\.md)" % "|".join(SECTIONS), index, re.I)))
+    paths.append(C_INTERFACE)
     sections = [{name.capitalize(): [f"docs/{path}" for path in paths if path.startswith(name + "/")]} for name in SECTIONS]
     return [{"carom": "README.md"}, {"Documents": "docs/README.md"}, *sections,
             {"Contributing": "CONTRIBUTING.md"}, {"What is asserted": "tests/README.md"}, {"Changes": "CHANGELOG.md"}]
@@ -34,6 +36,16 @@ def configure(path):
         "plugins": ["search"],
         "markdown_extensions": ["tables", "fenced_code", "sane_lists", {"toc": {"permalink": True}}],
     }, indent=1))
+
+
+def interface(path):
+    """A heading for each part of the header, and below it the header's own words."""
+    header = (ROOT / "capi/include/carom/carom.h").read_text()
+    parts = re.split(r"/\* ---- (.*?) ---- \*/\n", header)
+    text = "# The C interface\n\nThe header `carom/carom.h`, part by part. [carom in your program](../guide/embedding.md) begins gently.\n"
+    for title, body in zip(["First"] + parts[1::2], parts[0::2]):
+        text += f"\n## {title}\n\n```c\n{body.strip()}\n```\n"
+    pathlib.Path(path).write_text(text)
 
 
 class Page(html.parser.HTMLParser):
@@ -71,6 +83,7 @@ def check(folder):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3 or sys.argv[1] not in ("configure", "check"):
+    commands = {"configure": configure, "interface": interface, "check": check}
+    if len(sys.argv) != 3 or sys.argv[1] not in commands:
         sys.exit(__doc__)
-    sys.exit({"configure": configure, "check": check}[sys.argv[1]](sys.argv[2]))
+    sys.exit(commands[sys.argv[1]](sys.argv[2]))

@@ -36,6 +36,7 @@ static_assert(CAROM_SPINNING == static_cast<int>(carom::MotionState::kSpinning))
 static_assert(CAROM_SLIDING == static_cast<int>(carom::MotionState::kSliding));
 static_assert(CAROM_ROLLING == static_cast<int>(carom::MotionState::kRolling));
 static_assert(CAROM_POCKETED == static_cast<int>(carom::MotionState::kPocketed));
+static_assert(CAROM_FALLING == static_cast<int>(carom::MotionState::kFalling));
 
 /// The array of a batch, or NULL.
 template <class T>
@@ -43,7 +44,8 @@ const T* array_of(const carom_batch* batch, std::vector<T> carom::Batch::*list) 
     return batch != nullptr ? (batch->batch.*list).data() : nullptr;
 }
 
-carom_segment segment_of(const carom::Segment& s) {
+// With the height and the speed of a fall, which a segment of the engine keeps apart.
+carom_segment segment_of(const carom::Segment& s, double gravity) {
     carom_segment out{};
     out.start = s.start;
     out.duration = s.duration;
@@ -52,6 +54,10 @@ carom_segment segment_of(const carom::Segment& s) {
     std::copy_n(s.w.data(), 3, out.w);
     std::copy_n(s.a.data(), 2, out.a);
     std::copy_n(s.dw.data(), 2, out.dw);
+    if (s.state == carom::MotionState::kFalling) {
+        out.r[2] -= s.v.z() * s.v.z() / (2.0 * gravity);
+        out.a[2] = -gravity;
+    }
     out.spin_decay = s.spin_decay;
     out.state = static_cast<int32_t>(s.state);
     out.held = s.held ? 1 : 0;
@@ -156,7 +162,8 @@ carom_status carom_record_segments(const carom_record* record, size_t ball, caro
         need({record, segments});
         check_index(ball, record->record.tracks.size(), "ball");
         const auto& all = record->record.tracks[ball].segments;
-        std::transform(all.begin(), all.end(), segments, segment_of);
+        std::transform(all.begin(), all.end(), segments,
+                       [record](const carom::Segment& s) { return segment_of(s, record->record.gravity); });
     });
 }
 

@@ -136,7 +136,8 @@ TEST(CApiBatch, SegmentsAndStatesAreThoseOfTheRecord) {
     std::vector<std::uint8_t> states(times.size() * 2);
     ASSERT_EQ(carom_record_states(record.get(), times.size(), times.data(), rvw.data(), states.data()),
               CAROM_OK);
-    const char* const names[] = {"stationary", "spinning", "sliding", "rolling", "pocketed"};
+    const char* const names[] = {"stationary", "spinning", "sliding", "rolling", "pocketed", "falling"};
+    bool fell = false;
     for (std::size_t ball = 0; ball < 2; ++ball) {
         const std::size_t count = carom_record_segment_count(record.get(), ball);
         ASSERT_GT(count, 3u);
@@ -155,10 +156,13 @@ TEST(CApiBatch, SegmentsAndStatesAreThoseOfTheRecord) {
             for (const carom_segment& next : segments)
                 if (next.start <= t) s = &next;
             const double u = std::min(t - s->start, s->duration);
-            for (int c = 0; c < 3; ++c) EXPECT_EQ(s->r[c] + u * (s->v[c] + 0.5 * u * s->a[c]), one[c]);
+            for (int c = 0; c < 2; ++c) EXPECT_EQ(s->r[c] + u * (s->v[c] + 0.5 * u * s->a[c]), one[c]);
+            EXPECT_NEAR(s->r[2] + u * (s->v[2] + 0.5 * u * s->a[2]), one[2], 1e-15);
             EXPECT_STREQ(names[s->state], state);
+            fell = fell || s->state == CAROM_FALLING;
         }
     }
+    EXPECT_TRUE(fell);
     EXPECT_EQ(carom_record_segment_count(record.get(), 2), 0u);
     EXPECT_EQ(carom_record_segment_count(nullptr, 0), 0u);
     carom_segment segment;

@@ -170,7 +170,7 @@ TEST(HardRoots, EventsAtTheStart) {
     add_ball(scene, "no spin, no speed", -1.0, 0.0, 0.0, 0.0);
     const Record record = run_verified(scene);
     ASSERT_GE(record.events.size(), 2u);
-    EXPECT_EQ(record.events[0].type, EventType::kBallPocket);
+    EXPECT_EQ(record.events[0].type, EventType::kBallEdge);
     EXPECT_EQ(record.events[0].time, 0.0);
     EXPECT_EQ(record.events[1].type, EventType::kBallBall);
     EXPECT_EQ(record.events[1].time, 0.0);
@@ -258,6 +258,7 @@ TEST(HardRoots, PocketLip) {
 TEST(HardRoots, Ties) {
     for (const bool reversed : {false, true}) {
         Scene scene = frictionless();
+        scene.physics.pocket = PocketModel::kAtOnce;
         const double R = scene.balls.R;
         scene.table.cushions = {{"c", {-1.0, 0.0}, {1.0, 0.0}, 0.036576}};
         std::vector<Pocket> pockets{{"left", {-0.25, 0.5 + R}, 0.25, 0.08},
@@ -273,6 +274,7 @@ TEST(HardRoots, Ties) {
             << "by place, not by number";
         // Pocket before cushion.
         Scene tie = frictionless();
+        tie.physics.pocket = PocketModel::kAtOnce;
         tie.table.cushions = scene.table.cushions;
         tie.table.pockets = {{"p", {0.0, R - 0.25}, 0.25, 0.08}};
         add_ball(tie, "a", 0.0, 1.0 + R, 0.0, -1.0);

@@ -248,16 +248,31 @@ TEST(Tables, NewTablesHaveSixPocketsThatABallFits) {
         EXPECT_EQ(t.jaws.size(), 12u);
         EXPECT_EQ(t.cushions.size(), 18u);
         for (const carom::Pocket& p : t.pockets) {
-            // The gap between the two nearest jaws.
-            std::vector<double> gaps;
-            for (const carom::Jaw& j : t.jaws) gaps.push_back((j.center - p.center).norm() - j.radius);
-            std::sort(gaps.begin(), gaps.end());
-            EXPECT_LT(gaps[1], 0.1) << preset << " " << p.id;
+            // The mouth, between the two nearest jaws, lets a ball in.
+            std::vector<carom::Jaw> jaws = t.jaws;
+            std::sort(jaws.begin(), jaws.end(), [&](const carom::Jaw& a, const carom::Jaw& b) {
+                return (a.center - p.center).norm() < (b.center - p.center).norm();
+            });
+            const double mouth = (jaws[0].center - jaws[1].center).norm() - jaws[0].radius - jaws[1].radius;
+            EXPECT_GT(mouth, 3.0 * R) << preset << " " << p.id;
+            EXPECT_LT(mouth, 5.0 * R) << preset << " " << p.id;
             const Vec2 middle(t.width / 2.0, t.length / 2.0);
             const Vec2 inward = (middle - p.center).normalized();
             EXPECT_GT(p.radius, R * 0.9);
             EXPECT_LT((p.center - middle).dot(inward), 0.0);
         }
+    }
+}
+
+// The BCA's middle, 1 3/4 in, from the line between the two points to the edge over which a ball falls.
+TEST(Tables, ShelvesAreThoseOfTheSpecification) {
+    for (const char* preset : {"nine_foot", "eight_foot", "seven_foot_bar"}) {
+        const Table t = make_table(preset);
+        const double mouth = (preset == std::string("seven_foot_bar") ? 4.875 : 4.5625) * 0.0254;
+        const double shelf = mouth / 2.0 + t.pockets[0].center.norm() - t.pockets[0].radius;
+        EXPECT_NEAR(shelf, 1.75 * 0.0254, 1e-15) << preset;
+        EXPECT_NEAR(-t.pockets[1].center.x() - t.pockets[1].radius, 0.004, 1e-15) << preset;
+        EXPECT_EQ(t.jaws[0].radius, 0.003) << preset;
     }
 }
 

@@ -74,6 +74,7 @@ TEST(Shots, EventListsAndFinalPositions) {
         scene.physics.cloth_slip = ClothSlipSign::kAsPublished;
         scene.physics.substeps = 20000;
         scene.physics.clusters = ClusterModel::kSequential;
+        scene.physics.pocket = PocketModel::kAtOnce;
         std::vector<std::string> ids;
         for (const auto& [id, state] : c.at("initial").items()) {
             add_ball(scene, id, vec3(state.at("r")), vec3(state.at("v")), vec3(state.at("w")));

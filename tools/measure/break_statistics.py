@@ -38,6 +38,9 @@ def breaks():
     foot = (0.635, 1.905)
     nine_apex = (0.635, 1.905 - math.sqrt(3) * (0.05715 + 1e-5))
     side, rail = (0.45, 0.55), (0.12, 0.55)
+    soft, second = (0.10, 0.55), (0.12, 0.55)
+    # The ball behind the apex on the side of the breaker, as full as the apex lets the cue ball pass: 16 mm beside its centre.
+    second_ball = (foot[0] - 0.028585 - 0.0151, foot[1] + 0.028585 * math.sqrt(3) + 0.0052)
     bar_foot, bar_middle = (0.508, 1.524), (0.508, 0.40)
     return [
         ("eight-ball, bar table, middle, 50 um", scene("eight_ball", "seven_foot_bar", 5e-5, bar_middle, 90.0), SPEED, "8",
@@ -46,17 +49,27 @@ def breaks():
          scene("eight_ball", "seven_foot_bar", 2e-5, (0.28, 0.40), straight_at(bar_foot, (0.28, 0.40))), SPEED, "8",
          ("success", 82, 124, "the same")),
         ("eight-ball, 9 ft, middle, 50 um", scene("eight_ball", "nine_foot", 5e-5, (0.635, 0.55), 90.0), SPEED, "8", None),
+        *((f"eight-ball, 9 ft, middle, {name}", scene("eight_ball", "nine_foot", gap, (0.635, 0.55), 90.0), SPEED, "8", None)
+          for name, gap in (("touching", 0.0), ("10 um", 1e-5), ("100 um", 1e-4), ("300 um", 3e-4))),
         ("eight-ball, 9 ft, side, 20 um", scene("eight_ball", "nine_foot", 2e-5, (0.35, 0.55), straight_at(foot, (0.35, 0.55))),
          SPEED, "8", None),
+        ("eight-ball, 9 ft, second ball, 20 um",
+         scene("eight_ball", "nine_foot", 2e-5, second, straight_at(second_ball, second)), SPEED, "8", None),
         ("nine-ball, 9 on the spot, break box, 10 um",
          scene("nine_ball", "nine_foot", 1e-5, side, straight_at(nine_apex, side), "spot_ball = 9\n"), SPEED, "9",
          ("success", 75, 105, "WPA World 9-Ball 2016")),
         ("nine-ball, 1 on the spot, beside the rail, 10 um", scene("nine_ball", "nine_foot", 1e-5, rail, straight_at(foot, rail)),
          SPEED, "9", None),
+        ("nine-ball, 1 on the spot, beside the rail, soft", scene("nine_ball", "nine_foot", 0.0, soft, straight_at(foot, soft)),
+         "uniform(3.0,4.0)", "9", None),
+        ("nine-ball, 1 on the spot, break box, 50 um", scene("nine_ball", "nine_foot", 5e-5, side, straight_at(foot, side)), SPEED, "9",
+         None),
         ("ten-ball, middle, touching", scene("ten_ball", "nine_foot", 0.0, (0.635, 0.55), 90.0), SPEED, "10",
          ("a ball falls", 87, 99, "TAR, Van Boening; his opponent 63 of 85")),
         ("ten-ball, side, 10 um", scene("ten_ball", "nine_foot", 1e-5, (0.4, 0.55), straight_at(foot, (0.4, 0.55))), SPEED, "10",
          ("a ball falls", 87, 99, "the same")),
+        ("ten-ball, farther to the side, hard, 10 um", scene("ten_ball", "nine_foot", 1e-5, (0.3, 0.55), straight_at(foot, (0.3, 0.55))),
+         "uniform(8.1,10.4)", "10", None),
     ]
 
 

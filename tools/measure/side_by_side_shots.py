@@ -5,8 +5,8 @@ Makes a throw-away virtual environment, installs pooltool-billiards 0.6.0 (PyPI,
 PyPI) with what it imports, and plays breaks, random positions of two, 8, 12 and 16 balls with pooltool.simulate and, through
 libcarom.so, with carom_simulate (validation, plan and record each time) and carom_simulate_many (one thread). Both play the same
 positions, aims and speeds on the seven-foot table with the same coefficients and models: inelastic with Alciatore's friction, Stronge's
-cushion, pair by pair. CPU time of the thread. The first shots of pooltool, which compile it, are not counted. FastFiz is in no package
-registry; it is not compared. Needs PyPI; neither the build nor a test needs this script.
+cushion, pair by pair. CPU time of the thread. The first shots of pooltool, which compile it, are not counted. FastFiz is not
+on PyPI (sources: github.com/ekiefl/FastFiz); it is not compared. Needs PyPI; neither the build nor a test needs this script.
 
     tools/measure/side_by_side_shots.py [--library build/release/capi/libcarom.so] [--shots 10]
 """

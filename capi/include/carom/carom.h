@@ -155,7 +155,7 @@ typedef struct carom_event {
 CAROM_API carom_status carom_record_event(const carom_record* record, size_t index, carom_event* event);
 
 /* State of a ball at time t [s]; before the start that of the start, after the end that of the end. `state` receives
- * "stationary", "spinning", "sliding", "rolling" or "pocketed", or is NULL. */
+ * "stationary", "spinning", "sliding", "rolling", "pocketed" or "falling" (over a pocket), or is NULL. */
 CAROM_API carom_status carom_record_state(const carom_record* record, size_t ball, double t, double rvw[9],
                                           const char** state);
 
@@ -172,7 +172,7 @@ typedef struct carom_segment {
     double r[3], v[3]; /* centre [m] and velocity [m/s] at the start */
     double w[3];       /* angular velocity at the start [rad/s] */
     double a[3],
-        dw[3]; /* what they change by in a second, constant [m/s^2], [rad/s^2]; a[2] and dw[2] are 0 */
+        dw[3]; /* what they change by in a second, constant [m/s^2], [rad/s^2]; dw[2] is 0, and so is a[2] unless the ball falls */
     double spin_decay; /* of |w_z| [rad/s^2], at least 0 */
     int32_t state;     /* a carom_motion_state */
     int32_t held;      /* 1 in a resting contact, otherwise 0 */
@@ -183,7 +183,8 @@ typedef enum carom_motion_state {
     CAROM_SPINNING = 1,
     CAROM_SLIDING = 2,
     CAROM_ROLLING = 3,
-    CAROM_POCKETED = 4
+    CAROM_POCKETED = 4,
+    CAROM_FALLING = 5
 } carom_motion_state;
 
 /* The segments of a ball in the order of their starts; of two with the same start the later one counts. `segments`

@@ -201,6 +201,7 @@ void end_transition(RestingBall& member, MotionState state, double R) {
             break;
         case MotionState::kStationary:
         case MotionState::kPocketed:
+        case MotionState::kFalling:
             break;
     }
 }

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "physics/motion.h"
+
 namespace carom {
 
 namespace {
@@ -52,6 +54,11 @@ void Log::cluster(int a, int b, const std::vector<ClusterBall>& balls) {
     event(EventType::kBallCluster, a, b, static_cast<int>(before + cluster_end_.size()));
     cluster_ball_.insert(cluster_ball_.end(), balls.begin(), balls.end());
     cluster_end_.push_back(cluster_ball_.size());
+}
+
+void Log::fall(int ball, int pocket) {
+    begin(ball, pocketed_segment(balls_.now(), geometry_.pockets[pocket]));
+    event(EventType::kBallPocket, ball, pocket);
 }
 
 void Log::end_set_up(double set_up_ns) {

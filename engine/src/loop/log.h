@@ -59,6 +59,8 @@ class Log : private Borrowed<LogMemory> {
     }
     /// A simultaneous impact of several balls, begun by a and b; `balls` are ordered by position.
     void cluster(int a, int b, const std::vector<ClusterBall>& balls);
+    /// The ball is in the pocket, now.
+    void fall(int ball, int pocket);
 
     const std::vector<Event>& events() const { return events_; }
     /// Balls whose motion has changed; Detector::update() clears the list.

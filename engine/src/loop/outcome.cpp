@@ -7,6 +7,7 @@
 
 #include "base/record_hash.h"
 #include "loop/log.h"
+#include "physics/motion.h"
 
 namespace carom {
 
@@ -82,7 +83,8 @@ void Log::outcome(StopReason why, Outcome& out) const {
     out.balls.assign(static_cast<std::size_t>(balls_.count()), {});
     for (int i = 0; i < balls_.count(); ++i) {
         const Segment& s = balls_.segment(i);
-        out.balls[i].position = position_at(s, std::min(balls_.now() - s.start, s.duration));
+        out.balls[i].position =
+            placed_at(s, std::min(balls_.now() - s.start, s.duration), plan_.gravity).position;
     }
     int fallen = 0;
     for (const Event& e : events_) {

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <vector>
 
 #include "carom/engine/cushion.h"
+#include "contact/pocket_edge.h"
 #include "physics/motion.h"
 
 namespace carom {
@@ -54,9 +56,17 @@ void Resolver::resolve(const Contact& contact) {
     }
 }
 
-// Starts the motion of a ball after an impact.
+// The motion of a ball after an impact. One that falls goes on falling.
+Segment Resolver::after_impact(int ball, const Vec3& r, const Vec3& v, const Vec3& w) const {
+    const Segment& before = balls_.segment(ball);
+    const MotionParams& motion = balls_.motion(ball);
+    if (before.state != MotionState::kFalling) return start_segment(balls_.now(), r, v, w, motion);
+    const double falls = fall_speed(before, balls_.now() - before.start, motion.gravity);
+    return falling_segment(balls_.now(), r, v, w, falls, motion);
+}
+
 void Resolver::begin(int ball, const Vec3& r, const Vec3& v, const Vec3& w) {
-    log_.begin(ball, start_segment(balls_.now(), r, v, w, balls_.motion(ball)));
+    log_.begin(ball, after_impact(ball, r, v, w));
 }
 
 void Resolver::ball_ball(int a, int b) {
@@ -199,7 +209,7 @@ void Resolver::cushion(const Contact& contact) {
             fmt::format("the cushion model {} found no solution for the impact of ball {}; use another one",
                         model.name, log_.id(ball)));
     const MotionParams& motion = balls_.motion(ball);
-    const Segment after = start_segment(balls_.now(), r, v, w, motion);
+    const Segment after = after_impact(ball, r, v, w);
     // A ball that rolls in slowly is decelerated before the impact, but the spin that it keeps drives it back to the
     // cushion and ends the bounce: the acceleration after the impact decides.
     approach.a_c = pressing(after.a);
@@ -211,13 +221,53 @@ void Resolver::cushion(const Contact& contact) {
 }
 
 void Resolver::pocket(const Contact& contact) {
-    resting_.release(contact.ball);
-    log_.begin(contact.ball, pocketed_segment(balls_.now(), plan_.geometry.pockets[contact.other]));
-    log_.event(EventType::kBallPocket, contact.ball, contact.other);
+    const int ball = contact.ball;
+    if (balls_.segment(ball).state == MotionState::kFalling) {
+        leave_pocket(contact);
+        return;
+    }
+    const MotionParams& motion = balls_.motion(ball);
+    resting_.release(ball);
+    if (plan_.scene.physics.pocket == PocketModel::kAtOnce || motion.gravity == 0.0) {
+        log_.fall(ball, contact.other);
+        return;
+    }
+    log_.begin(ball, falling_segment(balls_.now(), balls_.position(ball), balls_.velocity(ball),
+                                     balls_.spin(ball), 0.0, motion));
+    log_.event(EventType::kBallEdge, contact);
+}
+
+// A falling ball comes to the edge from inside.
+void Resolver::leave_pocket(const Contact& contact) {
+    const int ball = contact.ball;
+    const Pocket& pocket = plan_.geometry.pockets[contact.other];
+    const Segment& s = balls_.segment(ball);
+    const MotionParams& motion = balls_.motion(ball);
+    const Vec3 r = balls_.position(ball), v = balls_.velocity(ball);
+    const Vec2 out = planar(r) - pocket.center, n = out / length(out);
+    const double v_n = dot(n, planar(v)), falls = fall_speed(s, balls_.now() - s.start, motion.gravity);
+    const auto away =
+        climbs(v_n, falls * falls / (2.0 * motion.gravity * motion.R), motion.R, motion.gravity);
+    if (!away || !is_bed(plan_.scene.table, pocket, planar(r))) {
+        log_.fall(ball, contact.other);
+        return;
+    }
+    // Beyond the edge by a few roundings of the coordinates: inside, it would fall again at once.
+    const double rounding =
+        0x1p-50 * (pocket.radius + std::abs(pocket.center.x()) + std::abs(pocket.center.y()));
+    const Vec2 edge = pocket.center + (pocket.radius + rounding) * n;
+    const Vec2 after = planar(v) + (*away - v_n) * n;
+    log_.begin(ball, start_segment(balls_.now(), {edge.x(), edge.y(), r.z()}, {after.x(), after.y(), 0.0},
+                                   balls_.spin(ball), motion));
+    log_.event(EventType::kBallEdge, contact);
 }
 
 void Resolver::transition(int ball) {
     const Segment& segment = balls_.segment(ball);
+    if (segment.state == MotionState::kFalling) {
+        log_.fall(ball, pocket_under(plan_.geometry, planar(balls_.position(ball))));
+        return;
+    }
     if (segment.held) {
         resting_.advance(ball);
         return;

@@ -29,7 +29,9 @@ class Resolver {
     kernel::ImpactResult collide(int one, int two, const kernel::Ball& b1, const kernel::Ball& b2);
     void cushion(const Contact& contact);
     void pocket(const Contact& contact);
+    void leave_pocket(const Contact& contact);
     void transition(int ball);
+    Segment after_impact(int ball, const Vec3& r, const Vec3& v, const Vec3& w) const;
     void begin(int ball, const Vec3& r, const Vec3& v, const Vec3& w);
 
     const Plan& plan_;

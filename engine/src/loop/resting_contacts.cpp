@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "carom/engine/tolerances.h"
+#include "contact/pocket_edge.h"
 #include "physics/motion.h"
 
 namespace carom {
@@ -67,6 +68,14 @@ bool RestingContacts::try_hold(const Approach& a, double restitution) {
     const bool rests = balls_.segment(c.ball).held || (partner >= 0 && balls_.segment(partner).held);
     const bool rounding = rests && a.v_n <= rounding_with(c);
     if (!rounding && !holds(a.v_n, a.a_c, restitution) && !chatters(c)) return false;
+    // A ball that is pushed while it falls does not come back.
+    bool falls = false;
+    for (const int ball : {c.ball, partner}) {
+        if (ball < 0 || balls_.segment(ball).state != MotionState::kFalling) continue;
+        log_.fall(ball, pocket_under(plan_.geometry, planar(balls_.position(ball))));
+        falls = true;
+    }
+    if (falls) return true;
     if (partner >= 0 && !plan_.alike)
         log_.fail(
             "two balls meet so slowly that they stay in contact, and there are balls of different size: that "

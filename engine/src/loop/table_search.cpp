@@ -1,6 +1,7 @@
 // Search for contacts of balls with the table: straight cushions, round noses, pockets.
 #include <algorithm>
 
+#include "contact/pocket_edge.h"
 #include "loop/detector.h"
 
 namespace carom {
@@ -85,9 +86,17 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
         return;
     }
     const Path p = path(ball, s.start);
+    const bool falls = s.state == MotionState::kFalling;
+    if (falls) {  // it may come over the edge again
+        const int under = pocket_under(plan_.geometry, p.r);
+        const Pocket& pocket = plan_.geometry.pockets[under];
+        const double t = time_to_edge(p.r, p.v, pocket.center, pocket.radius);
+        if (t < s.duration) first = {s.start + t, {ball, With::kPocket, under}};
+    }
     for (const int part : near_) {
         // Contacts after the first one found so far are not needed: it limits the window of the quick rejection.
         const Contact contact = parts_[part].of(ball);
+        if (falls && contact.with == With::kPocket) continue;
         const double t = time_to(contact, p, std::min(p.horizon, span(s.start, first.time)));
         if (t < kNever) take_first({s.start + t, contact}, first);
     }

@@ -23,7 +23,11 @@ Vec2 cloth_slip(const Vec3& v, const Vec3& w, double R) {
 }
 
 MotionParams motion_params(const BallParams& balls, double gravity, double R) {
-    return {R, balls.mu_s * gravity, balls.mu_r * gravity, 5.0 * balls.mu_sp * gravity / (2.0 * R)};
+    return {.R = R,
+            .slide = balls.mu_s * gravity,
+            .roll = balls.mu_r * gravity,
+            .spin = 5.0 * balls.mu_sp * gravity / (2.0 * R),
+            .gravity = gravity};
 }
 
 namespace effects {
@@ -80,6 +84,19 @@ Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, con
         s.state = s.w.z() != 0.0 ? MotionState::kSpinning : MotionState::kStationary;
     }
     if (p.spin_decay) effects::spin_decay(s, p);
+    return s;
+}
+
+Segment falling_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, double falls,
+                        const MotionParams& p) {
+    Segment s;
+    s.start = t;
+    s.r = r;
+    s.v = Vec3(v.x(), v.y(), -falls);
+    s.w = w;
+    s.a = s.dw = Vec2::Zero();
+    s.duration = std::max(0.0, (std::sqrt(2.0 * p.gravity * p.R) - falls) / p.gravity);
+    s.state = MotionState::kFalling;
     return s;
 }
 

@@ -18,6 +18,29 @@ MotionParams motion_params(const BallParams& balls, double gravity, double R);
 /// the slip is at most kRollingUlp ulp of |v| + R |w| (spin is then set to the rolling one), and so on.
 Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
 
+/// The segment of a ball that falls into a pocket at the speed `falls` [m/s]: it moves on straight, without the cloth, until its
+/// centre has sunk by its radius.
+Segment falling_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, double falls,
+                        const MotionParams& params);
+
+/// [m/s] How fast a falling ball falls `tau` after the start of its segment; gravity [m/s^2].
+inline double fall_speed(const Segment& segment, double tau, double gravity) {
+    return gravity * tau - segment.v.z();
+}
+
+/// Place and velocity of a ball with the height that a fall gives it; position_at and velocity_at leave that out.
+struct Placed {
+    Vec3 position, velocity;
+};
+inline Placed placed_at(const Segment& segment, double tau, double gravity) {
+    Placed p{position_at(segment, tau), velocity_at(segment, tau)};
+    if (segment.state != MotionState::kFalling) return p;
+    const double falls = fall_speed(segment, tau, gravity);
+    p.position.z() -= falls * falls / (2.0 * gravity);
+    p.velocity.z() = -falls;
+    return p;
+}
+
 /// The segment of a ball that lies in a pocket.
 Segment pocketed_segment(double t, const Pocket& pocket);
 
@@ -29,7 +52,7 @@ EventType transition_type(const Segment& segment, const Segment& next);
 
 /// Whether the centre moves in this state.
 inline bool translates(MotionState state) {
-    return state == MotionState::kSliding || state == MotionState::kRolling;
+    return state == MotionState::kSliding || state == MotionState::kRolling || state == MotionState::kFalling;
 }
 
 }  // namespace carom

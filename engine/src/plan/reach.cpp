@@ -64,7 +64,8 @@ class Bounds {
                              scene_.ball[m].id, radius[m]);
         }
         // The bound of a ball that meets nothing holds as long as it indeed meets nothing.
-        if (movers > 1 || meets_cushion(radius) || meets_ball(radius)) {
+        // Nor does the cloth brake it over a pocket.
+        if (movers > 1 || meets_cushion(radius) || meets_ball(radius) || meets_pocket(radius)) {
             const double far = by_energy();
             std::fill(radius.begin(), radius.end(), far);
             reach.why = far < kUnbounded ? say_("no ball goes farther than {:.3g} m until the stop", far)

@@ -119,8 +119,9 @@ BallState Record::state_at(int ball, double t) const {
     const double tau = std::min(t - s.start, s.duration);
     BallState state;
     state.state = s.state;
-    state.position = position_at(s, tau);
-    state.velocity = velocity_at(s, tau);
+    const Placed placed = placed_at(s, tau, gravity);
+    state.position = placed.position;
+    state.velocity = placed.velocity;
     state.spin = spin_at(s, tau, size(ball).R);
     state.pocket = s.state == MotionState::kPocketed ? track.pocket : -1;
     return state;
@@ -159,8 +160,9 @@ Scene scene_after(const Scene& scene, const Record& record) {
         const BallState end = record.state_at(static_cast<int>(i), record.duration);
         if (end.state == MotionState::kPocketed) continue;
         BallStart& ball = after.ball.emplace_back(scene.ball[i]);
-        ball.position = end.position;
-        ball.velocity = end.velocity;
+        // A scene has its balls on the cloth: one that falls begins to fall anew.
+        ball.position = {end.position.x(), end.position.y(), record.size(static_cast<int>(i)).R};
+        ball.velocity = {end.velocity.x(), end.velocity.y(), 0.0};
         ball.spin = end.spin;
         ball.where = {};
     }

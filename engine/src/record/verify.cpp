@@ -35,7 +35,9 @@ double energy_of(const Record& record, const std::vector<BallState>& states) {
         if (s.state == MotionState::kPocketed) continue;
         const int ball = static_cast<int>(i);
         const double R = record.size(ball).R;
-        energy += mass(record, ball) * (0.5 * s.velocity.squaredNorm() + 0.2 * R * R * s.spin.squaredNorm());
+        const double fallen = s.state == MotionState::kFalling ? record.gravity * (s.position.z() - R) : 0.0;
+        energy += mass(record, ball) *
+                  (0.5 * s.velocity.squaredNorm() + 0.2 * R * R * s.spin.squaredNorm() + fallen);
     }
     return energy;
 }
@@ -170,12 +172,14 @@ class Checker {
             n3.z() = 0.0;
             n3.normalize();
             const double scale = m1 * (v1.norm() + R1 * w1.norm()) + m2 * (v2.norm() + R2 * w2.norm());
-            const Vec3 change = m1 * (after1->v - v1) + m2 * (after2->v - v2);
+            // On the cloth's plane: an impact leaves a fall as it is.
+            const Vec3 dv1(after1->v.x() - v1.x(), after1->v.y() - v1.y(), 0.0),
+                dv2(after2->v.x() - v2.x(), after2->v.y() - v2.y(), 0.0);
+            const Vec3 change = m1 * dv1 + m2 * dv2;
             const Vec3 dw1 = m1 * R1 * (after1->w - w1), dw2 = m2 * R2 * (after2->w - w2);
             // During the whole impact the friction of the cloth is at most mu_s times the vertical friction, which is at most
             // mu_b times the normal impulse.
-            const double J_n =
-                std::max(m1 * std::abs((after1->v - v1).dot(n3)), m2 * std::abs((after2->v - v2).dot(n3)));
+            const double J_n = std::max(m1 * std::abs(dv1.dot(n3)), m2 * std::abs(dv2.dot(n3)));
             const bool cloth = plan_.balls.mu_s > 0.0 && plan_.ball_ball->reads_cloth;
             const double limit =
                 cloth ? plan_.balls.mu_s * (plan_.balls.mu_b + plan_.balls.mu_b_more) * J_n : 0.0;

@@ -56,17 +56,30 @@ PocketTable seven_foot() {
             .side_run = sin_cos_deg(kSideAngle).sin};
 }
 
+/// [m] Shelf of a corner pocket, from the middle of the mouth to the edge where the ball falls: 1 3/4 in, the middle of the BCA's
+/// 1 5/8 to 1 7/8 in and within the WPA's 1 to 2 1/4 in.
+constexpr double kCornerShelf = 1.75 * 0.0254;
+/// [m] How far the point where a nose goes over into a facing is rounded: the facings of a pool table have none but that of the rubber.
+constexpr double kPointRadius = 0.003;
+
+/// The depth of the pocket's centre that gives this shelf.
+double depth_of_shelf(const PocketTable& t, double shelf) {
+    return shelf + t.corner_radius - t.corner_mouth / 2.0;
+}
+
 /// Nine-foot table. Playing surface 100 x 50 in; the mouths are the middle of what the WPA equipment
 /// specifications allow (corner 4.5 to 4.625 in, side 5 to 5.125 in), and so are the angles between rail and
 /// facing (corner 142, side 104 degrees; here they count from 135 and from 90). The nose, at 64 % of the
-/// ball's diameter, lies within their 62.5 to 64.5 %. Carried over from the seven-foot table: cushion width, jaw radii, pocket radii and depths;
-/// they give shelves of 37.6 mm in the corners and 4 mm at the sides (specified: 25 to 57 mm, 0 to 9.5 mm).
+/// ball's diameter, lies within their 62.5 to 64.5 %. Carried over from the seven-foot table: cushion width, pocket radii and the depth at
+/// the sides, which gives a shelf of 4 mm there (specified: 0 to 9.5 mm).
 PocketTable nine_foot() {
     PocketTable t = seven_foot();
     t.length = 2.54;
     t.width = 1.27;
     t.corner_mouth = 4.5625 * 0.0254;
     t.corner_angle = 142.0 - 135.0;
+    t.corner_depth = depth_of_shelf(t, kCornerShelf);
+    t.corner_jaw_radius = t.side_jaw_radius = kPointRadius;
     t.side_mouth = 5.0625 * 0.0254;
     t.side_angle = 104.0 - 90.0;
     t.side_run = tan_deg(t.side_angle);
@@ -84,14 +97,15 @@ PocketTable eight_foot() {
 }
 
 /// Coin-operated bar table, called seven-foot in America: playing surface 80 x 40 in (Valley, Diamond), mouths of Valley's (corner
-/// 4 7/8, side 4 3/4 in), angles of the BCA (corner 142, side 103 degrees). Carried over from the seven-foot table as for the
-/// nine-foot one; they give shelves of 41.6 mm in the corners (BCA: 41 to 48 mm) and 4 mm at the sides.
+/// 4 7/8, side 4 3/4 in), angles of the BCA (corner 142, side 103 degrees). The rest as for the nine-foot table.
 PocketTable bar_table() {
     PocketTable t = seven_foot();
     t.length = 80.0 * 0.0254;
     t.width = 40.0 * 0.0254;
     t.corner_mouth = 4.875 * 0.0254;
     t.corner_angle = 142.0 - 135.0;
+    t.corner_depth = depth_of_shelf(t, kCornerShelf);
+    t.corner_jaw_radius = t.side_jaw_radius = kPointRadius;
     t.side_mouth = 4.75 * 0.0254;
     t.side_angle = 103.0 - 90.0;
     t.side_run = tan_deg(t.side_angle);

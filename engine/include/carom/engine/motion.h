@@ -13,5 +13,6 @@ struct MotionParams {
     bool sliding = true;     ///< some ball can slip on a cloth with friction
     bool rolling = true;     ///< some ball can roll on a cloth that brakes it
     bool spin_decay = true;  ///< some ball can have vertical spin that decays
+    double gravity = 0.0;    ///< [m/s^2] of balls that fall
 };
 }  // namespace carom

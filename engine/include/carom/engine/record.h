@@ -19,15 +19,18 @@
 
 namespace carom {
 
-enum class MotionState : std::uint8_t { kStationary, kSpinning, kSliding, kRolling, kPocketed };
+/// kFalling: over a pocket, not yet in it.
+enum class MotionState : std::uint8_t { kStationary, kSpinning, kSliding, kRolling, kPocketed, kFalling };
 constexpr auto names_of(MotionState) {
-    return std::array{"stationary", "spinning", "sliding", "rolling", "pocketed"};
+    return std::array{"stationary", "spinning", "sliding", "rolling", "pocketed", "falling"};
 }
 
 /// One ball between two events that touch it. Times inside are relative to `start`.
 struct Segment {
-    double start = 0.0;       ///< s since the start of the shot
-    Vec3 r, v, w;             ///< centre, velocity, angular velocity at the start
+    double start = 0.0;  ///< s since the start of the shot
+    /// Centre, velocity, angular velocity at the start. While a ball falls, r_z stays the height at which that began, and v_z
+    /// is how fast it falls at the start: tau later it is by (v_z - g tau)^2 / 2g lower than r_z.
+    Vec3 r, v, w;
     Vec2 a;                   ///< acceleration [m/s^2], constant
     Vec2 dw;                  ///< d(w_x, w_y)/dt [rad/s^2], constant
     double spin_decay = 0.0;  ///< |dw_z/dt| [rad/s^2], >= 0; w_z never passes 0
@@ -57,8 +60,9 @@ enum class EventType : std::uint8_t {
     kBallCushionRelease,
     kBallJawHold,
     kBallJawRelease,
+    kBallEdge,  ///< the centre passes the edge of a pocket: the ball falls, or is back on the cloth
 };
-inline constexpr int kEventTypes = 16;
+inline constexpr int kEventTypes = 17;
 
 /// What Event::b is the index of.
 enum class Partner : std::uint8_t { kNone, kBall, kCushion, kJaw, kPocket };
@@ -98,6 +102,7 @@ inline constexpr EventKind kEventKinds[kEventTypes] = {
     {EventType::kBallCushionRelease, "ball_cushion_release", EventPhase::kRelease, Partner::kCushion},
     {EventType::kBallJawHold, "ball_jaw_hold", EventPhase::kHold, Partner::kJaw},
     {EventType::kBallJawRelease, "ball_jaw_release", EventPhase::kRelease, Partner::kJaw},
+    {EventType::kBallEdge, "ball_edge", EventPhase::kTransition, Partner::kPocket},
 };
 
 constexpr const EventKind& kind(EventType type) {
@@ -227,7 +232,8 @@ inline Vec3 velocity_at(const Segment& s, double tau) {
 Vec3 spin_at(const Segment& segment, double tau, double R);
 
 /// The scene for the next shot: that of the record with its balls where and as they are at the end, without the balls in
-/// pockets, without a cue. Whoever plays says who is struck, and puts fallen balls back. It may need other [effects].
+/// pockets, without a cue. Whoever plays says who is struck, and puts fallen balls back. One that is falling does so
+/// from the beginning. It may need other [effects].
 /// @param scene  that of the record: the same balls in the same order
 Scene scene_after(const Scene& scene, const Record& record);
 

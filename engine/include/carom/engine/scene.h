@@ -252,6 +252,11 @@ enum class CushionTouch : std::uint8_t { kRadius, kNose };
 constexpr auto names_of(CushionTouch) {
     return std::array{"radius", "nose"};
 }
+/// When a pocket takes a ball whose centre has crossed its circle.
+enum class PocketModel : std::uint8_t { kFall, kAtOnce };
+constexpr auto names_of(PocketModel) {
+    return std::array{"fall", "at_once"};
+}
 enum class ClusterModel : std::uint8_t { kCompliant, kSequential, kRigid };
 constexpr auto names_of(ClusterModel) {
     return std::array{"compliant", "sequential", "rigid"};
@@ -279,6 +284,7 @@ struct Physics {
     double tolerance = 1e-6;
     std::optional<int> substeps;  ///< set: the published march with N of them, instead of the tolerance
     CushionTouch cushion_touch = CushionTouch::kRadius;
+    PocketModel pocket = PocketModel::kFall;
     bool operator==(const Physics&) const = default;
 };
 inline constexpr Field<Physics> kPhysicsFields[] = {
@@ -308,6 +314,11 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
         "have "
         "it, or sqrt(R^2 - (height - R)^2), where its sphere meets the `nose`; that is 0.6 to 2.2 mm less",
         {.since = 2}),
+    field<&Physics::pocket>("pocket",
+                            "a ball whose centre crosses the circle of a pocket falls, and may come back "
+                            "over the edge before it has sunk, or it "
+                            "is pocketed `at_once`, as in planar simulators",
+                            {.since = 2}),
 };
 
 /// What a plan computes or leaves out. The keywords of [effects], and when one is left out: effect_table() in plan.h, in this

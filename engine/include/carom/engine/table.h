@@ -56,7 +56,7 @@ inline constexpr Field<Jaw> kJawFields[] = {
     field<&Jaw::name>("name", "for people", {.files = Files::kRecord, .since = 2}),
 };
 
-/// A ball is pocketed when its centre crosses the circle.
+/// A ball whose centre crosses the circle falls (docs/reference/physics.md, "Pockets").
 struct Pocket {
     std::string id;
     Vec2 center;
@@ -69,7 +69,7 @@ inline constexpr Field<Pocket> kPocketFields[] = {
     field<&Pocket::id>("id", "`p1`, `p2`, ...", {.files = Files::kRecord}),
     field<&Pocket::center>("center", kCoordinate, "of the circle", {.shape = "[x, y]", .needed = true}),
     field<&Pocket::radius>("radius", more_than(0.0, kMaxLength, "m"),
-                           "a ball is pocketed when its centre crosses this circle", {.needed = true}),
+                           "a ball whose centre crosses this circle falls", {.needed = true}),
     field<&Pocket::depth>("depth", kCoordinate, "at which a pocketed ball lies below the cloth, for drawing",
                           {.files = Files::kRecord}),
     field<&Pocket::name>("name", "for people", {.files = Files::kRecord, .since = 2}),

@@ -1,0 +1,235 @@
+// Pockets: a ball whose centre passes the edge falls, and comes back over it where it has not sunk too far (docs/reference/physics.md,
+// "Pockets").
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "carom/engine/cushion.h"
+#include "carom/engine/simulate.h"
+#include "carom/engine/verify.h"
+#include "contact/pocket_edge.h"
+#include "reference/random_impacts.h"
+#include "support/engine_cases.h"
+
+namespace carom {
+namespace {
+
+using namespace test;
+using reference::Generator;
+
+constexpr double kR = 0.028575, kG = 9.81, kHole = 0.062;
+
+/// A hole in an endless cloth, with a ball that slides over its middle without friction.
+Scene hole(double speed) {
+    Scene scene = empty_scene();
+    scene.table.pockets = {{"p1", {0.0, 0.0}, kHole, 0.08}};
+    scene.balls.mu_s = scene.balls.mu_r = 0.0;
+    scene.stop.time = 1.0;
+    add_ball(scene, "cue", -0.2, 0.0, speed, 0.0);
+    return scene;
+}
+
+Record run(const Scene& scene) {
+    const Plan plan = make_plan(scene, kernel::Isa::kScalar);
+    Record record = simulate(plan);
+    const auto broken = verify(record, plan);
+    EXPECT_FALSE(broken) << (broken ? broken->law + ": " + broken->message : "");
+    return record;
+}
+
+int count(const Record& record, EventType type) {
+    return static_cast<int>(std::count_if(record.events.begin(), record.events.end(),
+                                          [type](const Event& e) { return e.type == type; }));
+}
+
+TEST(Pocket, ASlowBallFallsForTheTimeOfItsRadius) {
+    const Record r = run(hole(0.5));
+    ASSERT_EQ(r.events.size(), 2u);
+    EXPECT_EQ(r.events[0].type, EventType::kBallEdge);
+    EXPECT_NEAR(r.events[0].time, (0.2 - kHole) / 0.5, 1e-15);
+    EXPECT_EQ(r.events[1].type, EventType::kBallPocket);
+    EXPECT_NEAR(r.events[1].time - r.events[0].time, std::sqrt(2.0 * kR / kG), 1e-15);
+    EXPECT_EQ(r.tracks[0].pocket, 0);
+    // On the way it falls freely and moves on.
+    const double tau = 0.05;
+    const BallState s = r.state_at(0, r.events[0].time + tau);
+    EXPECT_EQ(s.state, MotionState::kFalling);
+    EXPECT_NEAR(s.position.z(), kR - 0.5 * kG * tau * tau, 1e-15);
+    EXPECT_NEAR(s.velocity.z(), -kG * tau, 1e-14);
+    EXPECT_NEAR(s.position.x(), -kHole + 0.5 * tau, 1e-15);
+    EXPECT_NEAR(energy_at(r, r.events[0].time + tau), energy_at(r, 0.0), 1e-15);
+}
+
+/// [m/s] After a ball has crossed the middle of the hole; 0 where it falls.
+double across(double speed) {
+    const double t = 2.0 * kHole / speed;
+    return climbs(speed, 0.5 * kG * t * t / kR, kR, kG).value_or(0.0);
+}
+
+TEST(Pocket, AFastBallComesBackOverTheEdge) {
+    const Record r = run(hole(3.0));
+    ASSERT_EQ(count(r, EventType::kBallEdge), 2);
+    EXPECT_EQ(r.tracks[0].pocket, -1);
+    const double t = 2.0 * kHole / 3.0, sunk = 0.5 * kG * t * t / kR;
+    const double left = std::sqrt((1.0 - sunk) * (1.0 - sunk) * 9.0 - kG * kG * t * t);
+    const BallState s = r.state_at(0, r.events[1].time);
+    EXPECT_NEAR(s.velocity.x(), left, 1e-13);
+    EXPECT_NEAR(s.position.x(), kHole, 1e-15);
+    EXPECT_EQ(s.position.z(), kR);
+    EXPECT_LT(left, 2.5);
+    EXPECT_GT(left, 1.5);
+}
+
+// Above a speed the ball crosses the hole, below it stays; in between is no gap.
+TEST(Pocket, TheSpeedThatCrosses) {
+    double falls = 0.5, crosses = 4.0;
+    while (crosses - falls > 1e-9) {
+        const double middle = 0.5 * (falls + crosses);
+        (run(hole(middle)).tracks[0].pocket == 0 ? falls : crosses) = middle;
+    }
+    EXPECT_EQ(across(falls - 1e-8), 0.0);
+    EXPECT_GT(across(crosses + 1e-8), 0.0);
+    EXPECT_NEAR(crosses, 1.9636, 1e-4);
+}
+
+// A ball that cuts across the rim has fallen little and is slow outwards: what decides is its speed, sqrt(2 g radius), not how far in it
+// is. Source of the limit: v_n > g t with t = 2 v_n radius / v^2.
+TEST(Pocket, OverTheRim) {
+    for (const double depth : {1e-4, 1e-3, 3e-3}) {
+        for (const auto& [speed, pocket] : {std::pair{0.9, 0}, {1.4, -1}}) {
+            Scene scene = hole(speed);
+            scene.ball[0].position.y() = kHole - depth;
+            EXPECT_EQ(run(scene).tracks[0].pocket, pocket) << speed << " " << depth;
+        }
+    }
+}
+
+TEST(Pocket, AtOnceAndWithoutGravity) {
+    Scene scene = hole(3.0);
+    scene.physics.pocket = PocketModel::kAtOnce;
+    const Record at_once = run(scene);
+    ASSERT_EQ(at_once.events.size(), 1u);
+    EXPECT_EQ(at_once.events[0].type, EventType::kBallPocket);
+    EXPECT_EQ(at_once.events[0].time, run(hole(3.0)).events[0].time);
+    scene = hole(3.0);
+    scene.physics.gravity = 0.0;
+    EXPECT_EQ(run(scene).events[0].type, EventType::kBallPocket);
+}
+
+TEST(Pocket, ABallAtRestInTheCircleFalls) {
+    Scene scene = hole(0.0);
+    scene.ball[0].position.x() = -0.01;
+    const Record r = run(scene);
+    ASSERT_EQ(r.events.size(), 2u);
+    EXPECT_EQ(r.events[0].time, 0.0);
+    EXPECT_NEAR(r.events[1].time, std::sqrt(2.0 * kR / kG), 1e-15);
+}
+
+Scene at_corner(double speed, double angle_deg, double gap) {
+    Scene scene = parse_scene("[[ball]]\n", "corner.toml");
+    const double a = angle_deg * 3.14159265358979 / 180.0;
+    const Vec3 v(-speed * std::sin(a), -speed * std::cos(a), 0.0);
+    scene.ball[0].position = {kR + gap, 0.6, kR};
+    scene.ball[0].velocity = v;
+    scene.ball[0].spin = {-v.y() / kR, v.x() / kR, 0.0};
+    return scene;
+}
+
+// A pocket at the edge of the table has a back, and what comes to it is in.
+TEST(Pocket, TheBackOfACorner) {
+    Scene scene = at_corner(7.0, 45.0, 0.571425);
+    const Record r = run(scene);
+    EXPECT_EQ(r.tracks[0].pocket, 0);
+    EXPECT_EQ(count(r, EventType::kBallEdge), 1);
+    EXPECT_EQ(count(r, EventType::kBallJaw) + count(r, EventType::kBallCushion), 0);
+    EXPECT_LT(r.events[1].time - r.events[0].time, 0.03);
+}
+
+// Along the rail and a little into it: rail, far jaw, and in; a hard shot rattles out. Once all of them fell.
+TEST(Pocket, AHardShotBesideTheRailRattles) {
+    int slow = 0, hard = 0, at_once = 0;
+    for (int gap = 0; gap < 6; ++gap) {
+        for (const double angle : {-1.0, 0.0, 1.0, 2.0}) {
+            const auto drops = [&](double speed, PocketModel model) {
+                Scene scene = at_corner(speed, angle, gap * 1e-3);
+                scene.physics.pocket = model;
+                scene.stop.time = 1.0 / speed + 0.4;
+                return run(scene).tracks[0].pocket == 0;
+            };
+            slow += drops(1.0, PocketModel::kFall);
+            hard += drops(7.0, PocketModel::kFall);
+            at_once += drops(7.0, PocketModel::kAtOnce);
+        }
+    }
+    EXPECT_EQ(slow, 24);
+    EXPECT_EQ(hard, 0);
+    EXPECT_EQ(at_once, 24);
+}
+
+TEST(Pocket, ARunThatStopsInTheFallGoesOnTheSame) {
+    const Plan plan = make_plan(at_corner(7.0, 2.0, 0.0), kernel::Isa::kScalar);
+    const Record whole = simulate(plan);
+    int stopped = 0;
+    for (const Event& e : whole.events) {
+        if (e.type != EventType::kBallEdge) continue;
+        SimulateOptions options;
+        options.until = e.time + 1e-3;
+        const Record part = simulate(plan, options);
+        stopped += part.tracks[0].segments.back().state == MotionState::kFalling;
+        EXPECT_EQ(resume(plan, part).hash(), whole.hash());
+    }
+    EXPECT_GT(stopped, 0);
+}
+
+// Crowds that push each other into a corner and out of it.
+TEST(Pocket, CrowdsKeepTheLaws) {
+    int edges = 0, back = 0;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        Generator rng(seed);
+        Scene scene = parse_scene("[[ball]]\n", "crowd.toml");
+        scene.ball.clear();
+        for (int tries = 0; tries < 200 && scene.ball.size() < 7; ++tries) {
+            const double x = rng.uniform(0.04, 0.4), y = rng.uniform(0.04, 0.4);
+            const bool free = std::none_of(scene.ball.begin(), scene.ball.end(), [&](const BallStart& b) {
+                return std::hypot(b.position.x() - x, b.position.y() - y) < 2.0 * kR;
+            });
+            const double speed = rng.uniform(0.0, 12.0);
+            const Vec3 spin(rng.uniform(-80.0, 80.0), rng.uniform(-80.0, 80.0), rng.uniform(-80.0, 80.0));
+            if (free)
+                add_ball(scene, std::to_string(scene.ball.size()), {x, y, kR},
+                         {-speed * x / (x + y), -speed * y / (x + y), 0.0}, spin);
+        }
+        try {
+            validate(scene);
+        } catch (const SceneError&) {
+            continue;  // a ball in a cushion
+        }
+        const Record r = run(scene);
+        edges += count(r, EventType::kBallEdge);
+        back += count(r, EventType::kBallEdge) - count(r, EventType::kBallPocket);
+    }
+    EXPECT_GT(edges, 500);
+    EXPECT_GT(back, 20);
+}
+
+TEST(PocketEdge, TimeToTheFarEdge) {
+    EXPECT_NEAR(time_to_edge({-0.05, 0.0}, {2.0, 0.0}, {0.0, 0.0}, 0.05), 0.05, 1e-16);
+    EXPECT_NEAR(time_to_edge({0.01, 0.03}, {0.0, -1.0}, {0.0, 0.0}, 0.05), 0.03 + std::sqrt(0.0024), 1e-16);
+    // On the edge, and outside of it by rounding.
+    EXPECT_EQ(time_to_edge({0.05, 0.0}, {1.0, 0.0}, {0.0, 0.0}, 0.05), 0.0);
+    EXPECT_NEAR(time_to_edge({-0.05 - 1e-17, 0.0}, {1.0, 0.0}, {0.0, 0.0}, 0.05), 0.1, 1e-15);
+    EXPECT_EQ(time_to_edge({0.01, 0.0}, {0.0, 0.0}, {0.0, 0.0}, 0.05), kNever);
+}
+
+TEST(PocketEdge, Climbs) {
+    EXPECT_EQ(climbs(2.0, 0.0, kR, kG), 2.0);
+    EXPECT_FALSE(climbs(2.0, 1.0, kR, kG));
+    EXPECT_FALSE(climbs(0.0, 0.0, kR, kG));
+    EXPECT_NEAR(*climbs(2.0, 0.25, kR, kG), std::sqrt(2.25 - 0.5 * kG * kR), 1e-15);
+}
+
+}  // namespace
+}  // namespace carom
