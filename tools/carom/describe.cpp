@@ -47,7 +47,10 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 /// "carom sweep SCENE --vary KEY=DISTRIBUTION": how a command is called, with what it cannot do without.
 std::string synopsis_of(const Options& command, const std::string& name) {
     std::string synopsis = name;
-    for (const Option& row : rows_of(command, true)) synopsis += " " + row.names.front();
+    for (const Option& row : rows_of(command, true)) {
+        const bool has_default = !row.default_text().empty() || row.text.find("(default:") != row.text.npos;
+        synopsis += has_default ? " [" + row.names.front() + "]" : " " + row.names.front();
+    }
     for (const Option& row : rows_of(command, false))
         if (row.required) synopsis += " " + row.names.back() + " " + row.value;
     return synopsis;

@@ -47,8 +47,8 @@ void by_power_series(const kernel::Ball& ball1, const kernel::Ball& ball2, const
 
 }  // namespace
 
-Outcome outcome_of(const Record& record) {
-    Outcome outcome;
+ShotContacts contacts_of(const Record& record) {
+    ShotContacts outcome;
     const int mover = first_mover(record);
     for (const Event& event : record.events) {
         if (kind(event.type).phase != EventPhase::kImpact) continue;

@@ -77,16 +77,16 @@ void set_shares(SceneAccuracyRow& row, const Plan& plan) {
     }
 }
 
-void compare(SceneAccuracyRow& row, const Record& record, const Outcome& truth,
+void compare(SceneAccuracyRow& row, const Record& record, const ShotContacts& truth,
              const std::vector<Vec2>& end) {
-    const Outcome outcome = outcome_of(record);
+    const ShotContacts outcome = contacts_of(record);
     row.order_same = outcome.contacts == truth.contacts;
     row.first_same = outcome.first_contact == truth.first_contact;
     row.pocketed_same = outcome.pockets == truth.pockets;
     row.error = final_error(final_positions(record), end);
 }
 
-void measure_box2d(SceneAccuracy& result, const Record& truth, const Outcome& outcome,
+void measure_box2d(SceneAccuracy& result, const Record& truth, const ShotContacts& outcome,
                    const std::vector<Vec2>& end) {
     constexpr double kRates[] = {60.0, 120.0, 240.0, 1000.0, 10000.0};
     ProgressLine progress("accuracy, Box2D:");
@@ -183,7 +183,7 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     const Plan tight = with_tolerance(scene, kernel::kTightestTolerance);
     const Record truth = simulate_plan(tight, {});
     const Record other = simulate_plan(with_power_series(scene), {});
-    const Outcome outcome = outcome_of(truth), other_outcome = outcome_of(other);
+    const ShotContacts outcome = contacts_of(truth), other_outcome = contacts_of(other);
     const std::vector<Vec2> end = final_positions(truth);
     result.contacts = outcome.contacts.size();
     for (const Event& event : truth.events) result.ball_hits += balls_collide(event.type) ? 1U : 0U;

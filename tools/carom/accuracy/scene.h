@@ -22,12 +22,12 @@ struct AccuracySceneArgs {
 };
 
 /// What happened in a shot: all contacts in order, the first ball hit, and which ball fell into which pocket.
-struct Outcome {
+struct ShotContacts {
     std::vector<std::string> contacts;
     std::string first_contact;  ///< the ball that the first moving ball hits first, or ""
     std::vector<int> pockets;   ///< per ball, -1: on the table
 };
-Outcome outcome_of(const Record& record);
+ShotContacts contacts_of(const Record& record);
 
 /// Distances between the final positions of the same ball in two runs [m].
 struct FinalError {
