@@ -99,13 +99,11 @@ PocketTable eight_foot() {
 /// Coin-operated bar table, called seven-foot in America: playing surface 80 x 40 in (Valley, Diamond), mouths of Valley's (corner
 /// 4 7/8, side 4 3/4 in), angles of the BCA (corner 142, side 103 degrees). The rest as for the nine-foot table.
 PocketTable bar_table() {
-    PocketTable t = seven_foot();
+    PocketTable t = nine_foot();
     t.length = 80.0 * 0.0254;
     t.width = 40.0 * 0.0254;
     t.corner_mouth = 4.875 * 0.0254;
-    t.corner_angle = 142.0 - 135.0;
     t.corner_depth = depth_of_shelf(t, kCornerShelf);
-    t.corner_jaw_radius = t.side_jaw_radius = kPointRadius;
     t.side_mouth = 4.75 * 0.0254;
     t.side_angle = 103.0 - 90.0;
     t.side_run = tan_deg(t.side_angle);
