@@ -229,8 +229,12 @@ double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, d
             t = 0.0;
         else if (here && h0 <= 0.0 && h2 < 0.0 && !(h1 > noise && h1 * h1 > 2.0 * h2 * h0))
             t = std::max(0.0, -h1 / h2) + press_delay(-h2, noise, ball.horizon);  // pressed against the nose
-        else
+        else {
             t = first_descent_quadratic(h0, h1, h2, ball.horizon);
+            // It touches more slowly than rounding can tell, and the acceleration presses it on into the nose.
+            if (t < kNever && h2 < 0.0 && !(h1 + t * h2 < -noise))
+                t += press_delay(-h2, noise, ball.horizon - t);
+        }
         if (t < best && t <= ball.horizon && h1 + t * h2 < -noise && foot_inside(t)) best = t;
         // A ball that touches the nose at its end can move round it onto the cushion: closing once the foot enters.
         const double enter = time_to_enter(dot(direction, offset), dot(direction, ball.v),

@@ -1,5 +1,7 @@
 #include "loop/resting_contacts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -76,10 +78,11 @@ bool RestingContacts::try_hold(const Approach& a, double restitution) {
         falls = true;
     }
     if (falls) return true;
-    if (partner >= 0 && !plan_.alike)
+    if (partner >= 0 && plan_.sizes[c.ball] != plan_.sizes[partner])
         log_.fail(
-            "two balls meet so slowly that they stay in contact, and there are balls of different size: that "
-            "contact is not modelled; make the balls alike");
+            fmt::format("balls {} and {} meet so slowly that they stay in contact, and differ in size: that "
+                        "contact is not modelled; make the two alike",
+                        log_.id(c.ball), log_.id(partner)));
     contacts_.push_back({.contact = c, .n = a.n});
     log_.event(with_phase(EventPhase::kHold, c, plan_.geometry), c);
     solve(c.ball, Transitions::kNotYet);

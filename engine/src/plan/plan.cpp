@@ -86,7 +86,6 @@ void fill(Plan& plan, const Geometry& geometry, ReachMemory& memory, const Words
     plan.gravity = scene.physics.gravity;
     plan.sizes.clear();
     for (const BallStart& ball : scene.ball) plan.sizes.push_back(scene.size_of(ball));
-    plan.alike = scene.alike();
     plan.geometry = geometry;
     plan.ball_ball = scene.physics.ball_ball;
     plan.cushion = scene.physics.cushion;

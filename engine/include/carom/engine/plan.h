@@ -59,7 +59,6 @@ struct Plan {
     Scene scene;                  ///< ids, table and settings as read
     BallParams balls{};           ///< as the scene, with the friction of skipped effects 0
     std::vector<BallSize> sizes;  ///< of every ball of the scene
-    bool alike = true;            ///< all of one size
     double gravity = 9.81;
     std::vector<MotionParams> motion;           ///< of every ball, without what the effects leave out
     Geometry geometry;                          ///< empty lists where nothing can reach them
