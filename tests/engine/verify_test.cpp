@@ -1,12 +1,14 @@
 // The judge judged: a record that breaks a law is caught, by the law's name.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "reference/random_impacts.h"
 #include "support/engine_cases.h"
 
 namespace carom::test {
@@ -83,6 +85,55 @@ TEST(Verify, NamesTheLawThatARecordBreaks) {
         ASSERT_TRUE(violation) << c.law << " " << c.says;
         EXPECT_EQ(violation->law, c.law) << violation->message;
         EXPECT_NE(violation->message.find(c.says), std::string::npos) << violation->message;
+    }
+}
+
+/// A straight shot: the slip of the two balls is vertical only, and the impulse of the cloth meets its limit exactly.
+Scene straight_shot(reference::Generator& random, double tolerance) {
+    Scene scene = empty_scene();
+    scene.physics.tolerance = tolerance;
+    scene.balls.mu_b = random.uniform(0.001, 0.1);
+    scene.balls.mu_s = random.uniform(0.1, 0.4);
+    const double v = random.uniform(0.5, 6.0), spin = random.uniform(-150.0, 150.0);
+    add_ball(scene, "cue", 0.0, 0.0, 0.0, v, Vec3(spin, 0.0, 0.0));
+    add_ball(scene, "one", 0.0, random.uniform(0.1, 0.5));
+    scene.stop.time = 2.0;
+    return scene;
+}
+
+/// The record up to its impact, after which the ball that was hit has lost this share of its speed.
+void spoil_impact(Record& record, double share) {
+    const auto hit = std::find_if(record.events.begin(), record.events.end(),
+                                  [](const Event& e) { return e.type == EventType::kBallBall; });
+    const Event impact = *hit;
+    record.events.erase(hit + 1, record.events.end());
+    record.stopped = StopReason::kTime;
+    for (BallTrack& track : record.tracks)
+        std::erase_if(track.segments, [&](const Segment& s) { return s.start > impact.time; });
+    record.tracks[static_cast<std::size_t>(impact.b)].segments.back().v *= 1.0 - share;
+}
+
+// The limit of U5 has the slack of the tolerance, and no more: 4000 right shots are called right, and a speed that is wrong by
+// some tolerances is called wrong.
+TEST(Verify, StraightShotsMeetTheLimitOfU5) {
+    for (const double tolerance : {1e-3, 1e-6}) {
+        reference::Generator random(5);
+        int hits = 0;
+        for (int k = 0; k < 4000; ++k) {
+            const Plan plan = plan_of(straight_shot(random, tolerance));
+            Record record = simulate(plan);
+            const auto violation = verify(record, plan);
+            ASSERT_FALSE(violation) << "shot " << k << " at " << tolerance << ": " << violation->law << " "
+                                    << violation->message;
+            hits += count(record, EventType::kBallBall) > 0 ? 1 : 0;
+            if (k % 40 != 0 || count(record, EventType::kBallBall) != 1) continue;
+            // The momentum of the pair then misses by ten tolerances, and the cloth's share is up to 0.04 of the impulse.
+            spoil_impact(record, 10.0 * tolerance + 2.0 * plan.balls.mu_s * plan.balls.mu_b);
+            const auto wrong = verify(record, plan);
+            ASSERT_TRUE(wrong) << "shot " << k << " at " << tolerance;
+            EXPECT_EQ(wrong->law, "U5");
+        }
+        EXPECT_GT(hits, 3500);
     }
 }
 
