@@ -143,6 +143,14 @@ const std::map<std::string, Mistake>& mistakes() {
              s.physics.clusters = ClusterModel::kSequential;
              s.ball[1].own = BallSize{s.balls.R, 0.2};
          }},
+        {"rolling_above_sliding", [](Scene& s) { s.balls.mu_r = 1.2; }},
+        {"rolling_of_cloth_above_sliding", [](Scene& s) { s.balls.mu_s = 0.009; }},
+        {"rolling_of_preset_above_sliding",
+         [](Scene& s) {
+             use_balls(s, "snooker");
+             set_radius(s, s.balls.R);
+             s.balls.mu_s = 0.01;
+         }},
         {"same_id", [](Scene& s) { s.ball[1].id = "cue"; }},
         {"same_id_by_default", [](Scene& s) { s.ball[1].id = "cue"; }},
         {"same_id_in_rack", [](Scene& s) { s = with_rack("\"eight_ball\""), s.ball[0].id = "7"; }},

@@ -94,6 +94,20 @@ void check_noses(const Section& top, const Scene& scene) {
     for (const Jaw& j : scene.table.jaws) check("jaw", j.id, j.height);
 }
 
+/// Refuses a cloth on which a ball would lose more speed by rolling than by sliding: resting contacts have no answer there.
+/// Without sliding friction (mu_s = 0) there is nothing to compare with.
+void check_cloth(const Section& top, const Scene& scene) {
+    const BallParams& p = scene.balls;
+    if (p.mu_s == 0.0 || p.mu_r <= p.mu_s) return;
+    const bool by_name = !top.has("balls", "mu_r") && scene.table.cloth;
+    const SourceLocation where = by_name ? top.where("table", "cloth")
+                                         : top.where("balls", top.has("balls", "mu_r") ? "mu_r" : "mu_s");
+    top.fail(where,
+             "balls.mu_r = {} is above balls.mu_s = {}: a ball would roll with more friction than it slides; "
+             "lower mu_r or raise mu_s",
+             p.mu_r, p.mu_s);
+}
+
 /// Refuses balls of different size where the models of the scene have no formula for them.
 void check_sizes(const Section& top, const Scene& scene) {
     if (scene.alike()) return;
@@ -202,6 +216,7 @@ void check_rest(const Section& top, const Scene& scene) {
 }
 
 void check_numbers(const Section& top, const Scene& scene, Change change) {
+    check_cloth(top, scene);
     check_noses(top, scene);
     check_sizes(top, scene);
     check_cushion_model(top, scene);
