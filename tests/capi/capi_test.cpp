@@ -211,6 +211,12 @@ TEST(CApi, SaysWhatIsWrongWithAScene) {
     ASSERT_EQ(carom_scene_set_ball_param(h.scene, "mu_s", -0.1), CAROM_OK);
     EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_BAD_SCENE);
     ASSERT_EQ(carom_scene_set_ball_param(h.scene, "mu_s", 0.1), CAROM_OK);
+    ASSERT_EQ(carom_scene_set_ball_param(h.scene, "mu_r", 0.11), CAROM_OK);
+    EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_BAD_SCENE);
+    EXPECT_NE(std::string(carom_last_error()).find("balls.mu_r = 0.11 is above balls.mu_s = 0.1"),
+              std::string::npos)
+        << carom_last_error();
+    ASSERT_EQ(carom_scene_set_ball_param(h.scene, "mu_r", 0.01), CAROM_OK);
     ASSERT_EQ(carom_scene_set_ball_param(h.scene, "radius", 0.03), CAROM_OK);
     double radius = 0.0;
     ASSERT_EQ(carom_scene_get_ball_param(h.scene, "radius", &radius), CAROM_OK);

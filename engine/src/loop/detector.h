@@ -74,6 +74,11 @@ class Detector : private Borrowed<DetectorMemory> {
     void balls_near(const Box& box, Found found) const {
         ball_boxes_.overlapping(box, found);
     }
+    /// Calls found(contact) for every part of the table whose box overlaps this box; the contact has no ball.
+    template <class Found>
+    void parts_near(const Box& box, Found found) const {
+        table_boxes_.overlapping(box, [&](int part) { found(parts_[part]); });
+    }
     /// [m/s] Upper bound of the speeds of all balls so far (0 unless clusters = "compliant", which needs it).
     double fastest() const { return fastest_; }
 

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "carom/engine/cushion.h"
-#include "contact/detect.h"
 #include "contact/pocket_edge.h"
+#include "loop/bounce.h"
 #include "physics/motion.h"
 
 namespace carom {
@@ -26,26 +25,6 @@ Vec3 vec(const double (&x)[3]) {
     return {x[0], x[1], x[2]};
 }
 
-// [-] Most impacts of the model in one bounce.
-constexpr int kMostImpacts = 200;
-
-// One bounce of a ball off a nose, in place. A high nose with a low restitution leaves a ball that still closes (han_2005: e_c <
-// 1 / c^2 - 1), and nothing lies between this impact and the next one: the bounce is their row, until no closing speed is left
-// that rounding can tell. @return false where the model has no solution
-bool bounce(const CushionModelInfo& model, const CushionContact& nose, const Vec2& normal, Vec3& v, Vec3& w) {
-    const double noise =
-        kClosingUlp * std::numeric_limits<double>::epsilon() * (length(planar(v)) + nose.R * w.norm());
-    const auto closing = [&] { return -dot(normal, planar(v)); };
-    for (int impacts = 0; impacts < kMostImpacts; ++impacts) {
-        if (!model.resolve(nose, normal, v, w)) return false;
-        if (!(closing() > noise)) return true;
-    }
-    // A nose near the top of the ball takes a small share of the speed in each impact: the limit is none.
-    const Vec2 stopped = planar(v) + closing() * normal;
-    v = Vec3(stopped.x(), stopped.y(), v.z());
-    return true;
-}
-
 }  // namespace
 
 Resolver::Resolver(const Plan& plan, const Balls& balls, Log& log, RestingContacts& resting,
@@ -54,6 +33,7 @@ Resolver::Resolver(const Plan& plan, const Balls& balls, Log& log, RestingContac
       balls_(balls),
       log_(log),
       resting_(resting),
+      detector_(detector),
       clusters_(plan, balls, detector, memory),
       cost_(log.costs() != nullptr ? &log.costs()->event : nullptr),
       resolve_ns_(cost_ != nullptr ? &cost_->resolve_ns : nullptr),
@@ -195,51 +175,33 @@ bool Resolver::cluster(int a, int b, double v_n) {
 
 void Resolver::cushion(const Contact& contact) {
     const int ball = contact.ball;
+    TableTouches touches = table_touches(plan_, balls_, detector_, resting_, contact);
+    const double e_c = plan_.balls.e_c;
+    for (const TableTouch& touch : touches)
+        if (resting_.try_hold(touch.approach, e_c)) return;
+
     const Vec3 r = balls_.position(ball);
     Vec3 v = balls_.velocity(ball), w = balls_.spin(ball);
-    const Vec2 here = planar(r);
-    Vec2 normal;  // into the table
-    double height, curving = 0.0;
-    if (contact.with == With::kNose) {
-        const Nose& nose = plan_.geometry.noses[contact.other];
-        const Vec2 out = here - nose.center;
-        normal = out / length(out);
-        height = nose.height;
-        const double v_t = cross(normal, planar(v));
-        curving = v_t * v_t / (balls_.radius(ball) + nose.radius - nose.inset);
-    } else {
-        const CushionLine& line = plan_.geometry.cushions[contact.other];
-        normal = Vec2(-line.direction.y(), line.direction.x());
-        if (dot(normal, here - line.from) < 0.0) normal = -normal;
-        height = line.height;
-    }
-    const auto pressing = [&](const Vec2& pull) {
-        return -(normal.x() * pull.x() + normal.y() * pull.y()) - curving;
-    };
-    const BallParams& p = plan_.balls;
-    Approach approach{.contact = contact,
-                      .n = -normal,
-                      .v_n = -(normal.x() * v.x() + normal.y() * v.y()),
-                      .a_c = pressing(balls_.segment(ball).a)};
-    if (resting_.try_hold(approach, p.e_c)) return;
-
-    const bool jaw = is_jaw(contact, plan_.geometry);
-    const CushionModelInfo& model = jaw ? *plan_.jaw : *plan_.cushion;
-    const CushionContact nose = cushion_contact(p, plan_.sizes[ball], height, normal, v, w);
-    if (!bounce(model, nose, normal, v, w))
+    const char* const model = touches[0].model->name;
+    if (!bounce(plan_, touches, v, w))
         log_.fail(
             fmt::format("the cushion model {} found no solution for the impact of ball {}; use another one",
-                        model.name, log_.id(ball)));
+                        model, log_.id(ball)));
     const MotionParams& motion = balls_.motion(ball);
     const Segment after = after_impact(ball, r, v, w);
     // A ball that rolls in slowly is decelerated before the impact, but the spin that it keeps drives it back to the
     // cushion and ends the bounce: the acceleration after the impact decides.
-    approach.a_c = pressing(after.a);
-    if (holds(approach.v_n, motion.slide, p.e_c) && resting_.try_hold(approach, p.e_c)) return;
-    if (cost_ != nullptr) cost_->method = model.name;
+    for (TableTouch& touch : touches) {
+        touch.approach.a_c = touch.pressing(after.a);
+        if (holds(touch.approach.v_n, motion.slide, e_c) && resting_.try_hold(touch.approach, e_c)) return;
+    }
+    if (cost_ != nullptr) cost_->method = model;
     resting_.release(ball);
     log_.begin(ball, after);
-    log_.event(jaw ? EventType::kBallJaw : EventType::kBallCushion, contact);
+    for (const TableTouch& touch : touches) {
+        const Contact& met = touch.approach.contact;
+        log_.event(is_jaw(met, plan_.geometry) ? EventType::kBallJaw : EventType::kBallCushion, met);
+    }
 }
 
 void Resolver::pocket(const Contact& contact) {

@@ -38,6 +38,7 @@ class Resolver {
     const Balls& balls_;
     Log& log_;
     RestingContacts& resting_;
+    const Detector& detector_;
     Clusters clusters_;
     EventCost* cost_;  // of a profiled run; otherwise nullptr
     double *resolve_ns_, *kernel_ns_;
