@@ -137,5 +137,60 @@ TEST(Verify, StraightShotsMeetTheLimitOfU5) {
     }
 }
 
+/// Two balls side by side on an endless cloth, or one and a cushion; "a" rolls past, and nothing happens until it stops.
+Plan roll_past(bool cushion) {
+    Scene scene = empty_scene();
+    if (cushion) scene.table.cushions = {{"c", {-0.1, 0.3}, {-0.1, 0.5}, 0.036576}};
+    scene.stop.time = 1.0;
+    add_ball(scene, "a", {0.0, 0.0, scene.balls.R}, {0.0, 0.8, 0.0}, {-0.8 / scene.balls.R, 0.0, 0.0});
+    add_ball(scene, "b", {0.1, 0.4, scene.balls.R});
+    scene.effects.push_back({"cushions", true, {}});
+    return plan_of(scene);
+}
+
+// Nothing of this is seen at an event.
+TEST(Verify, LooksBetweenEvents) {
+    const struct {
+        const char *law, *says;
+        bool cushion;
+        std::function<void(Record&)> spoil;
+    } cases[] = {
+        {"U3", "balls a and b overlap by", false,
+         [](Record& r) {
+             for (Segment& s : r.tracks[1].segments) s.r.x() = 0.05;
+         }},
+        {"U3", "deep in a cushion", true,
+         [](Record& r) {
+             for (Segment& s : r.tracks[0].segments) s.r.x() = -0.08;
+         }},
+        {"U3", "passes through a cushion", true,
+         [](Record& r) {
+             for (Segment& s : r.tracks[0].segments)
+                 s.r.x() = 39.9, s.v.x() = -100.0, s.w.y() = -100.0 / 0.028575;
+         }},
+        {"U4", "energy rises", false,
+         [](Record& r) {
+             Segment faster = r.tracks[0].segments[0], after = faster;
+             faster.start = 0.3, after.start = 0.4;
+             faster.v *= 1.5;
+             faster.w *= 1.5;
+             r.tracks[0].segments.insert(r.tracks[0].segments.begin() + 1, {faster, after});
+         }},
+    };
+    for (const auto& c : cases) {
+        const Plan plan = roll_past(c.cushion);
+        const Record good = simulate(plan);
+        ASSERT_EQ(verify(good, plan), std::nullopt);
+        ASSERT_EQ(good.events.size(), 0u);
+        Record bad = good;
+        c.spoil(bad);
+        const std::optional<Violation> violation = verify(bad, plan);
+        ASSERT_TRUE(violation) << c.law << " " << c.says;
+        EXPECT_EQ(violation->law, c.law) << violation->message;
+        EXPECT_NE(violation->message.find(c.says), std::string::npos) << violation->message;
+        EXPECT_NE(violation->message.find("between two events"), std::string::npos) << violation->message;
+    }
+}
+
 }  // namespace
 }  // namespace carom::test

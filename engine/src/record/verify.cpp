@@ -8,6 +8,7 @@
 
 #include "carom/engine/tolerances.h"
 #include "physics/motion.h"
+#include "record/verify_between.h"
 #include "record/verify_effects.h"
 
 namespace carom {
@@ -30,16 +31,15 @@ std::vector<BallState> states_at(const Record& record, double t) {
 
 double energy_of(const Record& record, const std::vector<BallState>& states) {
     double energy = 0.0;
-    for (std::size_t i = 0; i < states.size(); ++i) {
-        const BallState& s = states[i];
-        if (s.state == MotionState::kPocketed) continue;
-        const int ball = static_cast<int>(i);
-        const double R = record.size(ball).R;
-        const double fallen = s.state == MotionState::kFalling ? record.gravity * (s.position.z() - R) : 0.0;
-        energy += mass(record, ball) *
-                  (0.5 * s.velocity.squaredNorm() + 0.2 * R * R * s.spin.squaredNorm() + fallen);
-    }
+    for (std::size_t i = 0; i < states.size(); ++i)
+        energy += ball_energy(record, static_cast<int>(i), states[i]);
     return energy;
+}
+
+bool keeps_energy(const Plan& plan) {
+    const Physics& physics = plan.scene.physics;
+    return !plan.ball_ball->reads_cloth ||
+           (physics.cloth_slip == ClothSlipSign::kConsistent && physics.substeps.value_or(100) >= 100);
 }
 
 class Checker {
@@ -65,7 +65,7 @@ class Checker {
             check_rolling(e.time);
             const double energy = energy_of(record_, now);
             if (e.type == EventType::kCueStrike) last_energy = energy;
-            if (keeps_energy() && energy > last_energy + 1e-12 * first_energy)
+            if (keeps_energy(plan_) && energy > last_energy + 1e-12 * first_energy)
                 report("U4", "energy rises from {:.17g} to {:.17g} J/kg", last_energy, energy);
             last_energy = energy;
         }
@@ -80,12 +80,6 @@ class Checker {
     template <class... Values>
     void report(const char* law, fmt::format_string<Values...> message, Values&&... values) {
         if (!found_) found_ = Violation{event_, law, fmt::format(message, std::forward<Values>(values)...)};
-    }
-
-    bool keeps_energy() const {
-        const Physics& physics = plan_.scene.physics;
-        return !plan_.ball_ball->reads_cloth ||
-               (physics.cloth_slip == ClothSlipSign::kConsistent && physics.substeps.value_or(100) >= 100);
     }
 
     // [m/s] Error that the impact kernel may leave in each velocity.
@@ -238,6 +232,7 @@ double energy_at(const Record& record, double t) {
 
 std::optional<Violation> verify(const Record& record, const Plan& plan) {
     if (auto violation = Checker(record, plan).run()) return violation;
+    if (auto violation = verify_between(record, plan, keeps_energy(plan))) return violation;
     return verify_skipped(record, plan);
 }
 

@@ -1,0 +1,212 @@
+#include "record/verify_between.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "carom/engine/tolerances.h"
+#include "contact/roots.h"
+#include "physics/motion.h"
+
+namespace carom {
+namespace {
+
+// [-] Where in a piece of motion balls are looked at besides its start.
+constexpr double kShares[] = {0.25, 0.5, 0.75};
+// [m] A centre that crosses a cushion so near to its end may go round it.
+constexpr double kCrossingEnd = 1e-9;
+
+/// A ball in the present piece of motion.
+struct Piece {
+    std::size_t segment = 0;
+    bool moves = false, pocketed = false;
+    Vec2 r;               ///< [m] at the start
+    double reach = 0.0;   ///< [m] no way in this piece is longer
+    double energy = 0.0;  ///< [J/kg] at the start
+};
+
+class Between {
+  public:
+    Between(const Record& record, const Plan& plan, bool energy)
+        : record_(record), plan_(plan), keeps_energy_(energy), pieces_(record.tracks.size()) {}
+
+    std::optional<Violation> run() {
+        for (const BallTrack& track : record_.tracks)
+            for (const Segment& s : track.segments) times_.push_back(s.start);
+        times_.push_back(record_.duration);
+        std::sort(times_.begin(), times_.end());
+        times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
+        for (std::size_t k = 0; k + 1 < times_.size() && !found_; ++k) look(times_[k], times_[k + 1]);
+        return found_;
+    }
+
+  private:
+    double R(std::size_t ball) const { return record_.size(static_cast<int>(ball)).R; }
+    const std::string& id(std::size_t ball) const { return record_.tracks[ball].id; }
+    const Segment& segment(std::size_t ball) const {
+        return record_.tracks[ball].segments[pieces_[ball].segment];
+    }
+
+    template <class... Values>
+    void report(const char* law, double t, fmt::format_string<Values...> message, Values&&... values) {
+        if (found_) return;
+        std::size_t event = 0;
+        while (event < record_.events.size() && record_.events[event].time <= t) ++event;
+        found_ = Violation{event, law,
+                           fmt::format(message, std::forward<Values>(values)...) +
+                               fmt::format(", {:.17g} s after the start, between two events", t)};
+    }
+
+    Vec2 place(std::size_t ball, double t) const {
+        const Segment& s = segment(ball);
+        return pieces_[ball].moves ? planar(position_at(s, std::min(t - s.start, s.duration)))
+                                   : pieces_[ball].r;
+    }
+
+    double energy(std::size_t ball, double t) const {
+        const Segment& s = segment(ball);
+        const double tau = std::min(t - s.start, s.duration);
+        const Placed placed = placed_at(s, tau, record_.gravity);
+        BallState state;
+        state.state = s.state;
+        state.position = placed.position;
+        state.velocity = placed.velocity;
+        state.spin = spin_at(s, tau, R(ball));
+        return ball_energy(record_, static_cast<int>(ball), state);
+    }
+
+    void look(double from, double to) {
+        for (std::size_t i = 0; i < pieces_.size(); ++i) begin(i, from, to - from);
+        check_energy(from, to);
+        for (std::size_t i = 0; i < pieces_.size() && !found_; ++i) {
+            if (pieces_[i].pocketed) continue;
+            for (std::size_t j = 0; j < i; ++j) check_pair(j, i, from, to);
+            if (pieces_[i].moves) check_table(i, from, to);
+        }
+    }
+
+    void begin(std::size_t ball, double from, double duration) {
+        const std::vector<Segment>& segments = record_.tracks[ball].segments;
+        Piece& piece = pieces_[ball];
+        const bool first = from == times_.front();
+        const std::size_t before = piece.segment;
+        while (piece.segment + 1 < segments.size() && segments[piece.segment + 1].start <= from)
+            ++piece.segment;
+        const Segment& s = segments[piece.segment];
+        piece.pocketed = s.state == MotionState::kPocketed;
+        const bool still = s.state == MotionState::kStationary || piece.pocketed;
+        piece.moves = translates(s.state) || s.state == MotionState::kFalling;
+        if (first || before != piece.segment || !still) piece.energy = energy(ball, from);
+        const double tau = std::min(from - s.start, s.duration);
+        piece.r = planar(position_at(s, tau));
+        piece.reach = piece.moves
+                          ? duration * (length(planar(velocity_at(s, tau))) + 0.5 * duration * length(s.a))
+                          : 0.0;
+    }
+
+    void check_energy(double from, double to) {
+        if (!keeps_energy_) return;
+        double start = 0.0, middle = 0.0;
+        const double half = from + 0.5 * (to - from);
+        for (std::size_t i = 0; i < pieces_.size(); ++i) {
+            start += pieces_[i].energy;
+            const MotionState state = segment(i).state;
+            const bool still = state == MotionState::kStationary || state == MotionState::kPocketed;
+            middle += still ? pieces_[i].energy : energy(i, half);
+        }
+        if (from == times_.front()) first_energy_ = last_energy_ = start;
+        for (const auto& [t, now] : {std::pair{from, start}, std::pair{half, middle}}) {
+            if (now > last_energy_ + 1e-12 * first_energy_)
+                report("U4", t, "energy rises from {:.17g} to {:.17g} J/kg", last_energy_, now);
+            last_energy_ = now;
+        }
+    }
+
+    void check_pair(std::size_t i, std::size_t j, double from, double to) {
+        if (pieces_[i].pocketed || !(pieces_[i].moves || pieces_[j].moves)) return;
+        const double touching = contact_distance(R(i), R(j));
+        const Vec2 apart = pieces_[j].r - pieces_[i].r;
+        const double near = touching + pieces_[i].reach + pieces_[j].reach;
+        if (dot(apart, apart) > near * near) return;
+        for (const double share : kShares) {
+            const double t = from + share * (to - from);
+            const double gap = length(place(j, t) - place(i, t)) - touching;
+            if (gap < -kTouchTolerance)
+                report("U3", t, "balls {} and {} overlap by {:.3g} m", id(i), id(j), -gap);
+        }
+    }
+
+    void check_table(std::size_t ball, double from, double to) {
+        const double radius = R(ball);
+        for (const CushionLine& line : plan_.geometry.cushions) {
+            const double height = std::abs(cross(line.direction, pieces_[ball].r - line.from));
+            if (height > radius + pieces_[ball].reach) continue;
+            check_crossing(ball, line, from, to);
+            for (const double share : kShares) {
+                const double t = from + share * (to - from);
+                const Vec2 offset = place(ball, t) - line.from;
+                const double foot = dot(line.direction, offset);
+                const double gap = std::abs(cross(line.direction, offset)) - (radius - line.inset);
+                if (foot >= 0.0 && foot <= line.length && gap < -kTouchTolerance)
+                    report("U3", t, "ball {} is {:.3g} m deep in a cushion", id(ball), -gap);
+            }
+        }
+        for (const Nose& nose : plan_.geometry.noses) {
+            const double reach = radius + nose.radius - nose.inset;
+            const Vec2 apart = pieces_[ball].r - nose.center;
+            const double near = reach + pieces_[ball].reach;
+            if (dot(apart, apart) > near * near) continue;
+            for (const double share : kShares) {
+                const double t = from + share * (to - from);
+                const double gap = length(place(ball, t) - nose.center) - reach;
+                if (gap < -kTouchTolerance)
+                    report("U3", t, "ball {} is {:.3g} m deep in a jaw or cushion end", id(ball), -gap);
+            }
+        }
+    }
+
+    // A fast ball may be through a cushion between two looks.
+    void check_crossing(std::size_t ball, const CushionLine& line, double from, double to) {
+        const Segment& s = segment(ball);
+        const double tau = std::min(from - s.start, s.duration),
+                     duration = std::min(to - s.start, s.duration) - tau;
+        const Vec2 r = pieces_[ball].r, v = planar(velocity_at(s, tau));
+        const double height = cross(line.direction, r - line.from), side = height < 0.0 ? -1.0 : 1.0;
+        const double t = first_descent_quadratic(side * height, side * cross(line.direction, v),
+                                                 side * cross(line.direction, s.a), duration);
+        if (!(t <= duration)) return;
+        const double foot = dot(line.direction, r + t * (v + 0.5 * t * s.a) - line.from);
+        if (foot > kCrossingEnd && foot < line.length - kCrossingEnd)
+            report("U3", from + t, "ball {} passes through a cushion", id(ball));
+    }
+
+    const Record& record_;
+    const Plan& plan_;
+    const bool keeps_energy_;
+    std::vector<Piece> pieces_;
+    std::vector<double> times_;  // at which a segment begins
+    double first_energy_ = 0.0, last_energy_ = 0.0;
+    std::optional<Violation> found_;
+};
+
+}  // namespace
+
+double ball_energy(const Record& record, int ball, const BallState& state) {
+    if (state.state == MotionState::kPocketed) return 0.0;
+    const BallSize size = record.size(ball);
+    const double fallen =
+        state.state == MotionState::kFalling ? record.gravity * (state.position.z() - size.R) : 0.0;
+    return size.m / record.balls.m *
+           (0.5 * state.velocity.squaredNorm() + 0.2 * size.R * size.R * state.spin.squaredNorm() + fallen);
+}
+
+std::optional<Violation> verify_between(const Record& record, const Plan& plan, bool energy) {
+    return Between(record, plan, energy).run();
+}
+
+}  // namespace carom
