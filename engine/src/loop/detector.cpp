@@ -28,6 +28,8 @@ Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& 
     mover_.assign(count, Mover());
     changed_.clear();
     changed_.reserve(count);
+    tied_.clear();
+    tied_.reserve(count);
     queue_.set_up(balls_.count());
     ball_boxes_.set_up(plan_.pairs ? balls_.count() : 0, plan_.ball_search);
     set_up_table();
@@ -107,19 +109,39 @@ void Detector::requeue() {
     changed_.clear();
 }
 
-// Re-detection: contacts are searched again for balls whose box has expired or whose partner has changed its motion.
+bool Detector::must_search_again(int ball) const {
+    const Candidate c = first_of(ball);
+    if (mover_[ball].refresh <= c.time) return true;
+    if (c.contact.with != With::kBall) return false;
+    const int partner = c.contact.ball == ball ? c.contact.other : c.contact.ball;
+    return c.stamp != mover_[partner].stamp;
+}
+
+// Re-detection: contacts are searched again for balls whose box has expired or whose partner has changed its motion. Of the events
+// at one instant the first is chosen here, from the present motions: the matches of the queue were played with earlier ones, and
+// their order would depend on the places of the balls in the list.
 Candidate Detector::next() {
     const Stopwatch watch(detect_ns_);
     for (;;) {
         const int ball = queue_.first();
         if (ball < 0 || key_[ball] == kNever) return {};
-        const Candidate c = first_of(ball);
-        const bool expired = mover_[ball].refresh <= c.time;
-        const int partner = c.contact.ball == ball ? c.contact.other : c.contact.ball;
-        const bool stale = c.contact.with == With::kBall && c.stamp != mover_[partner].stamp;
-        if (!expired && !stale) return c;
-        search_again(ball);
-        requeue();
+        const double time = key_[ball];
+        tied_.clear();
+        queue_.first_ones([&](int other) { return key_[other] == time; },
+                          [&](int other) { tied_.push_back(other); });
+        bool again = false;
+        for (const int other : tied_) {
+            if (!must_search_again(other)) continue;
+            search_again(other);
+            again = true;
+        }
+        if (again) {
+            requeue();
+            continue;
+        }
+        Candidate first;
+        for (const int other : tied_) take_first(first_of(other), first);
+        return first;
     }
 }
 

@@ -49,6 +49,7 @@ struct DetectorMemory {
     std::vector<Mover> mover_;
     std::vector<double> key_;   // per ball: time of its first candidate or of the expiry of its box
     std::vector<int> changed_;  // balls whose position in the queue must be updated
+    std::vector<int> tied_;     // balls whose next event is at the same instant
     EventQueue queue_;
     BoxSearch ball_boxes_,
         table_boxes_;             // of balls until their own next event, and of the parts of the table
@@ -94,6 +95,7 @@ class Detector : private Borrowed<DetectorMemory> {
     double closing(const Candidate& c) const;
     Vec2 place(const Candidate& c) const;
     Candidate first_of(int ball) const;
+    bool must_search_again(int ball) const;
     void mark_changed(int ball);
     void requeue();
     void renew(int ball);

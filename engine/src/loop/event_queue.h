@@ -32,7 +32,26 @@ class EventQueue {
     /// The winner; -1 if there are no players.
     int first() const { return winner_[1]; }
 
+    /// Calls found(player) for the winner and all players for whom as_early(player) holds, if that order agrees with the one
+    /// of the matches: a player who is later than another one has lost to him.
+    template <class AsEarly, class Found>
+    void first_ones(AsEarly as_early, Found found) const {
+        ties_below(1, as_early, found);
+    }
+
   private:
+    template <class AsEarly, class Found>
+    void ties_below(std::size_t node, AsEarly as_early, Found found) const {
+        const int winner = winner_[node];
+        if (winner < 0 || !as_early(winner)) return;
+        if (node >= static_cast<std::size_t>(leaves_)) {
+            found(winner);
+            return;
+        }
+        ties_below(2 * node, as_early, found);
+        ties_below(2 * node + 1, as_early, found);
+    }
+
     int leaves_ = 1;
     std::vector<int> winner_;  // of the match at each node; the leaves follow the inner nodes
 };
