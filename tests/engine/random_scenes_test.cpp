@@ -1,18 +1,24 @@
 // 30 000 seeded scenes of two families to rest without a violation, and the regressions they brought
-// (support/random_scenes.h). With CAROM_RANDOM_SCENES in the environment, a scan of other seeds instead.
+// (support/random_scenes.h), and some scenes of crowded families and natural shots. With CAROM_RANDOM_SCENES in the environment, a
+// scan of other seeds instead (support/scene_scan.h).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
 
+#include "support/crowded_scenes.h"
+#include "support/natural_shots.h"
 #include "support/random_scenes.h"
+#include "support/scene_scan.h"
 
 namespace carom {
 namespace {
@@ -238,46 +244,98 @@ TEST(RandomSceneRegressions, SlipsThatEnd) {
     EXPECT_EQ(what_breaks(RandomScene(33636, DrawOrder::kFirstFirst).make()), "");
 }
 
-// CAROM_RANDOM_SCENES=FROM:COUNT runs these seeds instead of the tests and prints a line for each that fails
-// or takes long; for whoever changes resting contacts. FROM:COUNT:other draws the other family of scenes.
-// It judges no time. The exit status is 0, or 2 where the text is not of this form.
-int scan(const char* wanted) {
-    unsigned long long from = 0, count = 0;
-    char family[8] = "";
-    const int read = std::sscanf(wanted, "%llu:%llu:%7s", &from, &count, family);
-    if (count == 0 || !(read == 2 || (read == 3 && std::string(family) == "other"))) {
-        std::fprintf(stderr, "CAROM_RANDOM_SCENES=FROM:COUNT or FROM:COUNT:other, as in 0:1000\n");
-        return 2;
+/// Scenes in which contacts do not end well yet (docs/lab/2026-11-random_scenes.md): whoever mends one strikes it out.
+struct Open {
+    const char* family;
+    std::uint64_t seed;
+    const char* why;
+};
+constexpr Open kOpen[] = {
+    {"row_between_walls/wide", 5, "does not end in 2.5 s"},
+    {"row_between_walls/extreme", 0, "does not end in 2.5 s"},
+    {"zigzag/extreme", 1, "more than 10000 events within 1e-06 s"},
+    {"zigzag/extreme", 4, "takes 2 s"},
+    {"zigzag/extreme", 8, "takes 1.4 s"},
+    {"tray", 8, "does not end in 2.5 s"},
+    {"tray", 9, "takes 0.7 s"},
+    {"tray/wide", 4, "takes 1.5 s"},
+    {"tray/wide", 9, "takes 1.6 s"},
+    {"rings", 9, "U4, by 2e-4 of an energy of 2e-9 J/kg"},
+};
+
+bool is_open(const std::string& family, std::uint64_t seed) {
+    return std::any_of(std::begin(kOpen), std::end(kOpen),
+                       [&](const Open& open) { return open.family == family && open.seed == seed; });
+}
+
+/// A small share of the families for long campaigns (tools/measure/campaign).
+class Families : public testing::TestWithParam<std::string> {};
+
+TEST_P(Families, KeepTheLaws) {
+    const std::uint64_t seeds = natural_shot(GetParam(), 0) ? 50 : 10;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        const Scene scene = *family_scene(GetParam(), seed);
+        if (is_open(GetParam(), seed)) continue;
+        try {
+            validate(scene);
+        } catch (const SceneError&) {
+            continue;  // the numbers left no room
+        }
+        EXPECT_EQ(what_breaks(scene), "") << GetParam() << ", seed " << seed << "\n" << scene_text(scene);
     }
-    const DrawOrder order = read == 3 ? DrawOrder::kFirstFirst : DrawOrder::kLastFirst;
-    using Clock = std::chrono::steady_clock;
-    const double slow_ms = 300.0, give_up_ms = 1000.0;
-    double total_ms = 0.0;
-    int failed = 0;
-    for (unsigned long long seed = from; seed < from + count; ++seed) {
-        const Scene scene = RandomScene(seed, order).make();
-        const Clock::time_point start = Clock::now();
-        const auto taken = [start] {
-            return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-        };
-        std::size_t rounds = 0;
-        SimulateOptions options;
-        options.progress_rounds = 1;
-        options.progress = [&](std::size_t, double time) {
-            if (++rounds % 64 == 0 && taken() > give_up_ms)
-                throw std::runtime_error("given up at t = " + std::to_string(time) + " s");
-        };
-        const std::string what = what_breaks(scene, options);
-        const double ms = taken();
-        total_ms += ms;
-        failed += what.empty() ? 0 : 1;
-        if (!what.empty() || ms > slow_ms)
-            std::printf("seed %llu: %.0f ms, %zu rounds: %s\n", seed, ms, rounds, what.c_str());
-        std::fflush(stdout);
+}
+
+std::vector<std::string> families() {
+    std::vector<std::string> names(natural_families().begin(), natural_families().end());
+    for (const char* name : crowded_families())
+        for (const char* level : {"", "/wide", "/extreme"}) names.push_back(std::string(name) + level);
+    return names;
+}
+
+std::string test_name(const testing::TestParamInfo<std::string>& info) {
+    std::string name = info.param;
+    std::replace(name.begin(), name.end(), '/', '_');
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Crowded, Families, testing::ValuesIn(families()), test_name);
+
+/// The same scene with its balls listed in another order.
+Scene reordered(Scene scene, std::uint64_t seed) {
+    reference::Generator random(seed);
+    for (std::size_t i = scene.ball.size(); i-- > 1;)
+        std::swap(scene.ball[i], scene.ball[random.next() % (i + 1)]);
+    return scene;
+}
+
+void order_changes_nothing(const std::string& family, std::uint64_t seed) {
+    const Scene scene = *family_scene(family, seed), other = reordered(scene, seed + 77);
+    const Record one = simulate(plan_of(scene)), two = simulate(plan_of(other));
+    ASSERT_EQ(one.events.size(), two.events.size()) << family << ", seed " << seed;
+    for (std::size_t k = 0; k < one.events.size(); ++k) {
+        ASSERT_EQ(one.events[k].time, two.events[k].time) << family << ", seed " << seed << ", event " << k;
+        ASSERT_EQ(one.events[k].type, two.events[k].type) << family << ", seed " << seed << ", event " << k;
     }
-    std::printf("%llu scenes from %llu: %d failed, %.1f ms on average\n", count, from, failed,
-                total_ms / static_cast<double>(count));
-    return 0;
+    for (const BallTrack& track : one.tracks)
+        for (const BallTrack& same : two.tracks)
+            EXPECT_TRUE(same.id != track.id || same.segments == track.segments)
+                << family << ", seed " << seed;
+}
+
+// Of events at one instant the first depended on matches that had been played with earlier motions, and so on
+// the list of balls: in seed 33 of rack_in_box the events came in another order.
+TEST(SceneFamilies, TheOrderOfTheBallsChangesNothing) {
+    for (const char* family :
+         {"rack_in_box", "narrow_channel", "rings", "touching", "between_frozen", "eight_ball_break"})
+        for (std::uint64_t seed = 0; seed < 20; ++seed) order_changes_nothing(family, seed);
+    order_changes_nothing("rack_in_box", 33);
+}
+
+TEST(SceneFamilies, AreKnownByName) {
+    EXPECT_EQ(families().size(), 6u + 3u * 15u);
+    EXPECT_FALSE(family_scene("rings/huge", 0));
+    EXPECT_FALSE(family_scene("ring", 0));
+    EXPECT_EQ(*family_scene("rings/wide", 7), *family_scene("rings/wide", 7));
 }
 
 }  // namespace
@@ -286,7 +344,7 @@ int scan(const char* wanted) {
 // ctest hands over which test to run: with that it is a test, whatever the environment says.
 int main(int count, char** arguments) {
     const char* wanted = std::getenv("CAROM_RANDOM_SCENES");
-    if (wanted != nullptr && count == 1) return carom::scan(wanted);
+    if (wanted != nullptr && count == 1) return carom::test::scan_scenes(wanted);
     testing::InitGoogleTest(&count, arguments);
     return RUN_ALL_TESTS();
 }
