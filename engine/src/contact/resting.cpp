@@ -8,6 +8,7 @@
 #include "contact/detect.h"
 #include "contact/resting_group.h"
 #include "contact/roots.h"
+#include "physics/motion.h"
 
 namespace carom {
 
@@ -27,17 +28,26 @@ namespace resting {
 
 namespace {
 
+void read(Group& g, std::size_t k) {
+    RestingBall& ball = g.group.balls[k];
+    Body& b = g.bodies[k];
+    const Segment s = start_segment(g.now, ball.r, ball.v, ball.w, g.motion);
+    ball.v = s.v;
+    ball.w = s.w;  // the spin of a rolling ball is exactly that of rolling
+    b.v = planar(s.v);
+    b.s = g.motion.R * Vec2(s.w.y(), -s.w.x());
+    b.u = s.state == MotionState::kSliding ? Vec2(b.v - b.s) : Vec2(Vec2::Zero());
+    if (length(b.v) > g.noise || length(b.u) > g.noise) return;
+    b.v = b.s = b.u = Vec2::Zero();
+    ball.v = Vec3::Zero();
+    ball.w.x() = ball.w.y() = 0.0;
+}
+
 void make_bodies(Group& g) {
-    for (RestingBall& ball : g.group.balls) {
-        const Segment s = start_segment(g.now, ball.r, ball.v, ball.w, g.motion);
-        ball.v = s.v;
-        ball.w = s.w;  // the spin of a rolling ball is exactly that of rolling
-        Body body;
-        body.mode = mode_of(g, ball);
-        g.bodies.push_back(body);
+    for (const RestingBall& ball : g.group.balls)
         g.noise = std::max(g.noise, resting_noise(ball.v, ball.w, g.motion));
-    }
-    stop_slow_rolling(g);
+    g.bodies.resize(g.group.balls.size());
+    for (std::size_t k = 0; k < g.bodies.size(); ++k) read(g, k);
 }
 
 Link link_of(const Group& g, const RestingContact& c) {
@@ -66,20 +76,61 @@ Link link_of(const Group& g, const RestingContact& c) {
         }
         depth = link.distance - length(center - here);
     }
-    link.depth = std::max(0.0, depth);
+    link.gap = -depth;
+    link.begins = c.began == g.now;
     return link;
 }
 
-bool any_deep(const Group& g) {
-    return std::any_of(g.links.begin(), g.links.end(),
-                       [](const Link& l) { return !l.open && l.depth > kOverlapDepth; });
+// Takes the velocities at the end of a step as the present ones.
+void accept(Group& g) {
+    for (std::size_t k = 0; k < g.bodies.size(); ++k) {
+        const Body& b = g.bodies[k];
+        RestingBall& ball = g.group.balls[k];
+        if (!(b.impulses > 0.0)) continue;
+        ball.v = Vec3(b.v_end.x(), b.v_end.y(), 0.0);
+        ball.w.x() = -b.s_end.y() / g.motion.R;
+        ball.w.y() = b.s_end.x() / g.motion.R;
+        read(g, k);
+    }
+}
+
+void mark_open(Group& g) {
+    for (Link& link : g.links) link.open = !link.begins && gap_rate(g, link) > g.noise;
+}
+
+void remove_closing_speeds(Group& g) {
+    double fastest = 0.0;
+    for (const Body& b : g.bodies) fastest = std::max(fastest, length(b.v));
+    const double rounding = kClosingUlp * std::numeric_limits<double>::epsilon() * fastest;
+    for (int pass = 0; pass < 3; ++pass) {
+        const bool any = std::any_of(g.links.begin(), g.links.end(),
+                                     [&](const Link& l) { return gap_rate(g, l) < -rounding; });
+        if (!any || !strike(g)) break;
+        accept(g);
+    }
+    mark_open(g);
+}
+
+// A contact that opens, but is pressed together so that the bounce would be shorter than a contact, does not end: the interval
+// takes its rate away. @return whether there was one
+bool keep_short_bounces(Group& g, double h) {
+    bool any = false;
+    for (Link& link : g.links) {
+        if (!link.open) continue;
+        const double rate = gap_rate(g, link), pressing = (rate - end_rate(g, link)) / h - link.turning;
+        const double restitution = link.j >= 0 ? g.around.balls.e_b : g.around.balls.e_c;
+        if (!holds(rate, pressing, restitution)) continue;
+        link.open = false;
+        any = true;
+    }
+    return any;
 }
 
 // A contact ends once its gap opens by more than rounding, and never at the instant at which it began, so that no
 // contact can begin and end forever. A contact without force that does not open (balls at rest, equal rolling) stays.
 void mark_released(Group& g) {
     for (std::size_t c = 0; c < g.links.size(); ++c) {
-        g.group.contacts[c].force = g.links[c].N;
+        g.group.contacts[c].force = g.links[c].J;
         g.group.contacts[c].released = g.links[c].open;
     }
 }
@@ -87,66 +138,41 @@ void mark_released(Group& g) {
 void solve(Group& g) {
     make_bodies(g);
     for (const RestingContact& c : g.group.contacts) g.links.push_back(link_of(g, c));
-    make_directions(g);
-    // First solution: which resting balls start to move. The others are fixed obstacles in the projection below.
-    solve_forces(g, 0.0, SlowBalls::kMayStop);
-    project_velocities(g);
-    make_directions(g);
-    Solution solution = solve_forces(g, 0.0);
-    if (keep_returning(g)) solution = solve_forces(g, 0.0);
-    for (Link& link : g.links) link.pressed = link.N > 0.0;
-    // Normals turn while the balls move across each other; the stabilisation prevents overlaps from third-order terms.
-    const double turning = normal_interval(g);
-    if (turning < kNever) solution = solve_forces(g, turning);
-    double longest = kNever;
-    const double interval = write_segments(g, solution, longest, Opening::kIgnored);
-    // Directions that turn are evaluated at the middle of the interval, for second order. The interval may become
-    // longer by that, but not longer than the stabilisation allows. Overlaps that rounding has caused are removed.
-    const bool turned = use_midpoint_directions(g);
-    const bool deep = interval < kNever && any_deep(g);
-    if (turned || deep || any_stuck(g) || (turning < kNever && interval < 0.5 * turning)) {
-        longest = std::min(1.25 * interval, normal_interval(g));
-        solution = solve_forces(g, longest < kNever ? longest : 0.0);
+    remove_closing_speeds(g);
+    while (keep_short_bounces(g, solve_interval(g))) {
     }
-    // The forces of the interval decide whether a contact ends: forces at its start could open the contact and forces
-    // of the interval close it again at once, repeatedly.
-    while (keep_returning(g)) solution = solve_forces(g, longest < kNever ? longest : 0.0);
-    write_segments(g, solution, longest, Opening::kEnds);
     mark_released(g);
 }
 
 }  // namespace
 
-Vec2 velocity(const Group& g, int index) {
-    return planar(g.group.balls[index].v);
+Across across(const Group& g, const Link& link, double h) {
+    const Vec2 t(link.n.y(), -link.n.x());
+    const Body& bi = g.bodies[link.i];
+    Vec2 v = -bi.v, change = bi.v - bi.v_end;
+    if (link.j >= 0) {
+        v += g.bodies[link.j].v;
+        change += g.bodies[link.j].v_end - g.bodies[link.j].v;
+    }
+    return {dot(v, t), dot(change, t) / h, link.distance};
 }
 
 double gap_rate(const Group& g, const Link& link) {
-    const Vec2 other = link.j >= 0 ? velocity(g, link.j) : Vec2::Zero();
-    return dot(link.n, other - velocity(g, link.i));
+    const Vec2 other = link.j >= 0 ? g.bodies[link.j].v : Vec2(Vec2::Zero());
+    return dot(link.n, other - g.bodies[link.i].v);
 }
 
-Mode mode_of(const Group& g, const RestingBall& ball) {
-    const MotionState state = start_segment(g.now, ball.r, ball.v, ball.w, g.motion).state;
-    return state == MotionState::kSliding   ? Mode::kSliding
-           : state == MotionState::kRolling ? Mode::kRolling
-                                            : Mode::kResting;
+double end_rate(const Group& g, const Link& link) {
+    const Vec2 other = link.j >= 0 ? g.bodies[link.j].v_end : Vec2(Vec2::Zero());
+    return dot(link.n, other - g.bodies[link.i].v_end);
 }
 
-// Stops rolling balls that friction would stop at once: the direction of such a velocity is often only the rounding of
-// the group's velocities, and rolling friction along it would drive the ball. @return whether one had a velocity
-bool stop_slow_rolling(Group& g) {
-    const double slowest = std::max(g.noise, kRestTime * g.motion.roll);
-    bool any = false;
-    for (std::size_t k = 0; k < g.bodies.size(); ++k) {
-        RestingBall& ball = g.group.balls[k];
-        if (g.bodies[k].mode != Mode::kRolling || length(planar(ball.v)) > slowest) continue;
-        any = any || length(planar(ball.v)) > 0.0;
-        g.bodies[k].mode = Mode::kResting;
-        ball.v = Vec3::Zero();
-        ball.w.x() = ball.w.y() = 0.0;
-    }
-    return any;
+Vec2 contact_slip(const Group& g, const Link& link, bool at_end) {
+    const Body &bi = g.bodies[link.i], &bj = g.bodies[link.j];
+    const Vec2 t(link.n.y(), -link.n.x());
+    const double spin = g.motion.R * (g.group.balls[link.i].w.z() + g.group.balls[link.j].w.z());
+    if (at_end) return {-dot(bi.s_end + bj.s_end, link.n), dot(bi.v_end - bj.v_end, t) - spin};
+    return {-dot(bi.s + bj.s, link.n), dot(bi.v - bj.v, t) - spin};
 }
 
 }  // namespace resting

@@ -26,6 +26,7 @@ struct RestingContact {
     Contact contact;  ///< with a ball, a cushion or a nose
     Vec2 n =
         Vec2::Zero();  ///< unit, from the ball to the other or into the table's part; fixed over one interval
+    double began = 0.0;     ///< [s]
     double force = 0.0;     ///< N / m [m/s^2]
     bool released = false;  ///< result: the gap opens
 };

@@ -1,50 +1,60 @@
-// One solution of one group of resting contacts (resting.h) as plain data, and the steps that compute it: velocities
-// that close no contact (resting_projection.cpp), forces and accelerations (resting_forces.cpp), states of motion
-// consistent with the forces (resting_modes.cpp), and the duration of the solution (resting_intervals.cpp). resting.cpp
-// defines the order of the steps.
+// One solution of one group of resting contacts (resting.h): the step over an interval (resting_step.cpp), and how long an
+// interval may be (resting_interval.cpp). resting.cpp defines the order.
+//
+// Everything is evaluated at the end of the interval h (an implicit step, after J. J. Moreau's time-stepping for unilateral
+// contacts with friction). For each ball, per mass, with v its velocity, s = R (w_y, -w_x) the velocity with which it would roll,
+// and u = v - s its slip:
+//   v' = v + P + f - d,  s' = s + 5/2 (C - f) - d,  u' = u + P - 5/2 C + 7/2 f
+// with the pushes P = sum of +-J n, the couples C = -sum of f_z J n of the vertical friction f_z J between two balls, the friction of the
+// cloth f, and the resistance d of a rolling ball. The friction opposes the slip at the end: f = -mu_s g h u'/|u'|, or whatever ends the slip
+// where less is enough; d likewise opposes the velocity at the end. So a ball stops, rolls, or slides by what the whole interval does
+// to it, and no interval is too short for a direction that reverses. The impulses J >= 0 of the contacts fulfil J >= 0, gap
+// rate at the end >= 0, J x rate = 0.
 #pragma once
 
 #include <vector>
 
 #include "contact/resting.h"
-#include "physics/motion.h"
 
 namespace carom::resting {
 
-/// [-] Most changes of a ball between rest, rolling and sliding in one solution (docs/design/hard_cases.md, "Where the model has no answer").
-inline constexpr int kModeChanges = 8;
-/// [-] Relative rounding error of the forces.
-inline constexpr double kForceRounding = 1e-9;
-/// [s] Shortest interval over which the forces of a resting contact keep their directions if these turn.
+/// [s] Shortest interval: whatever reverses within it is taken as what it is at its end.
 inline constexpr double kShortestInterval = 1e-5;
+/// [s] Interval over which the impulses act that remove closing speeds. Friction does not change a speed within it, but stops
+/// those that are mere rounding.
+inline constexpr double kInstant = 1e-12;
 /// [m] and [s] A deeper overlap is removed within the interval, but not in less than this time: otherwise the rounding
 /// errors of a long push would add up to nearly 1e-12 m.
 inline constexpr double kOverlapDepth = 2e-14;
 inline constexpr double kRecoveryTime = 1e-3;
-/// [s] A ball that its rolling friction would stop within this time is put to rest; it would otherwise stop repeatedly.
-inline constexpr double kRestTime = 1e-8;
 
 enum class Mode : unsigned char { kSliding, kRolling, kResting };
 
-/// A ball of the group in the equations. All forces are per mass.
+/// A symmetric matrix.
+struct Matrix {
+    double xx = 0.0, xy = 0.0, yy = 0.0;
+    Vec2 operator*(const Vec2& a) const { return {xx * a.x() + xy * a.y(), xy * a.x() + yy * a.y()}; }
+};
+
+/// A ball of the group in the equations.
 struct Body {
+    // At the start of the interval [m/s].
+    Vec2 v = Vec2::Zero(), s = Vec2::Zero();
+    Vec2 u = Vec2::Zero();  ///< exactly zero where the ball rolls or rests
+    /// Direction of the friction, where that of the middle of the interval is known from an earlier solution.
+    bool guided = false;
+    Vec2 guide = Vec2::Zero();
+    double load = 1.0;  ///< share of the weight that the cloth supports
+
+    // At the end.
     Mode mode = Mode::kResting;
-    /// Unit vector. Sliding: of the slip; rolling: of the velocity, or of the force that starts it.
-    Vec2 direction = Vec2::Zero();
-    /// The forces determine the direction: slip or velocity are still zero, or so small that friction would
-    /// reverse them within the shortest interval.
-    bool starts = false;
-    Vec2 due = Vec2::Zero();     ///< rolling and slow: velocity / kShortestInterval
-    bool lifted = false;         ///< its contacts carry its whole weight: there is no friction of the cloth
-    int changes = 0;             ///< number of changes of the mode in one solution
-    Vec2 push = Vec2::Zero();    ///< sum of contact forces
-    Vec2 couple = Vec2::Zero();  ///< (T x z) / R of the contact torques
-    double lift = 0.0;           ///< vertical contact force
-    Vec2 a = Vec2::Zero();       ///< acceleration
-    /// Acceleration by a horizontal unit force through the centre.
-    double mobility() const {
-        return mode == Mode::kSliding ? 1.0 : (mode == Mode::kRolling ? 5.0 / 7.0 : 0.0);
-    }
+    Vec2 v_end = Vec2::Zero(), s_end = Vec2::Zero();
+    Vec2 push = Vec2::Zero(), couple = Vec2::Zero();  ///< P and C
+    double lift = 0.0;                                ///< vertical impulse of the contacts
+    double impulses = 0.0;                            ///< sum of |J|, for rounding
+    Matrix by_push, by_couple;                        ///< derivatives of v_end
+
+    Vec2 slip_end() const { return v_end - s_end; }
 };
 
 /// A contact in the equations; i and j index the bodies, j = -1 for the table.
@@ -53,19 +63,13 @@ struct Link {
     Vec2 n;
     double distance;                    ///< [m] of the centres, as the normal turns; 0: a straight cushion
     const CushionLine* line = nullptr;  ///< the straight cushion, if it is one
-    double friction_z = 0.0;            ///< f_z / N, on ball i
-    double slip_z = 0.0, slip_x = 0.0;  ///< [m/s] between two balls: upward, and parallel to the cloth
-    double friction = 0.0;              ///< coefficient at this slip
-    bool stuck = false;                 ///< friction_z has the value that ends slip_z within the interval
-    double curving = 0.0;               ///< part of the gap's acceleration that comes from the turning normal
-    double depth = 0.0;                 ///< [m] overlap of the bodies
-    double stabilisation = 0.0;         ///< acceleration added so that the interval ends with a gap >= 0
-    double returning = 0.0;             ///< opening rate / h of a contact that would close again within h
-    double diagonal = 0.0;              ///< relative acceleration by a unit force
-    double N = 0.0;                     ///< [m/s^2] normal force per mass
-    bool walled = false;                ///< cannot be stabilised (between opposing fixed normals)
+    double gap = 0.0;                   ///< [m]; negative: overlap
+    bool begins = false;                ///< the contact begins now, and so does not end now
     bool open = false;                  ///< the gap opens by more than rounding
-    bool pressed = false;               ///< N > 0 at the start of the interval
+    bool walled = false;                ///< cannot be stabilised (between opposing fixed normals)
+    double turning = 0.0;               ///< [m/s^2] what the turning normal adds to the gap's acceleration
+    double friction_z = 0.0;            ///< f_z, on ball i
+    double J = 0.0;                     ///< [m/s] impulse per mass
 };
 
 struct Group {
@@ -75,62 +79,40 @@ struct Group {
     double now;
     std::vector<Body> bodies;  ///< as group.balls
     std::vector<Link> links;   ///< as group.contacts
+    double solved = 0.0;       ///< [s] interval for which the bodies and links hold a solution; 0: for none
     double noise = 0.0;        ///< [m/s] rounding of the group's speeds in a few sums of eight terms
 };
 
-/// The terms that a solution for the contact forces includes.
-struct SolveOptions {
-    double compliance = 0.0;  ///< mobility of balls at rest; 0: they are fixed obstacles
-    bool friction = true;     ///< the vertical friction between balls
-    bool stabilise = true;    ///< Link::stabilisation
+/// What a step includes.
+struct StepOptions {
+    bool friction = true;   ///< the vertical friction between balls
+    bool stabilise = true;  ///< Link::turning
 };
 
-struct Solution {
-    bool solved;      ///< there is a solution
-    bool stabilised;  ///< it includes the stabilisation
-};
-
-/// Whether slow balls that friction stops within the shortest interval are stopped now.
-enum class SlowBalls : unsigned char { kMove, kMayStop };
-/// Whether an interval ends where a contact opens.
-enum class Opening : unsigned char { kIgnored, kEnds };
-
-// resting.cpp
-Mode mode_of(const Group& g, const RestingBall& ball);
-bool stop_slow_rolling(Group& g);
-Vec2 velocity(const Group& g, int body);
-/// [m/s] rate at which the gap opens
-double gap_rate(const Group& g, const Link& link);
-
-// resting_projection.cpp
-void project_velocities(Group& g);
-
-// resting_forces.cpp
-void make_directions(Group& g);
-/// @param interval  [s] during which the gaps must stay closed; 0: only at this instant
-Solution solve_forces(Group& g, double interval, SlowBalls slow = SlowBalls::kMove);
-bool any_stuck(const Group& g);
-bool keep_returning(Group& g);
-/// Share of the weight that the cloth supports.
-double load(const Group& g, const Body& body);
-/// [m/s^2] acceleration at which the gap opens, from the present forces
-double gap_acceleration(const Group& g, const Link& link);
-
-// resting_modes.cpp
-bool modes_hold(Group& g, SlowBalls slow);
-
-// resting_intervals.cpp
-/// Relative motion perpendicular to the normal (velocity, acceleration), and Link::distance.
+/// Relative motion perpendicular to the normal at the start (velocity, acceleration), and Link::distance.
 struct Across {
     double v, a, distance;
 };
-Across across(const Group& g, const Link& link);
-Vec2 spin_rate(const Group& g, int body);
-/// [s] Time for which the normals may be treated as constant; kNever if none turns.
-double normal_interval(const Group& g);
-/// Sets the directions of friction to those at the middle of the segments. @return whether any turned
-bool use_midpoint_directions(Group& g);
-/// Writes the segments. @return their duration [s], at most `longest`
-double write_segments(Group& g, const Solution& solution, double longest, Opening opening);
+Across across(const Group& g, const Link& link, double h);
+
+/// [m/s] Rate at which the gap opens at the start, and at the end of the interval (without the turning of the normal).
+double gap_rate(const Group& g, const Link& link);
+double end_rate(const Group& g, const Link& link);
+/// [m/s] Upward slip of two balls at their contact, and the one parallel to the cloth.
+Vec2 contact_slip(const Group& g, const Link& link, bool at_end);
+
+// resting_step.cpp
+/// Solves the step over h [s]. @return whether there is a solution; without one the closest state is left
+bool step(Group& g, double h, const StepOptions& options = {});
+/// Solves for the impulses that leave no contact closing. @return whether there is a solution
+bool strike(Group& g);
+/// [m/s] Rounding of the rates of the gaps.
+double rate_rounding(const Group& g);
+/// [m/s] Friction between balls as it would be with the slip at the start.
+double friction_at_start(const Group& g, const Link& link);
+
+// resting_interval.cpp
+/// Chooses the interval, solves it and writes the segments. @return the interval [s]
+double solve_interval(Group& g);
 
 }  // namespace carom::resting

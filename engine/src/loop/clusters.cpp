@@ -4,19 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "contact/place.h"
+
 namespace carom {
 
 namespace {
-
-// An order of positions that reflections in the axes and quarter turns preserve, except for the order of mirror images
-// among themselves. The sums of a cluster therefore have the same symmetry to the last bit.
-bool before_place(const Vec2& p, const Vec2& q) {
-    const auto key = [](const Vec2& a) {
-        const double x = std::abs(a.x()), y = std::abs(a.y());
-        return std::array<double, 4>{std::max(x, y), std::min(x, y), a.y(), a.x()};
-    };
-    return key(p) < key(q);
-}
 
 /// Gap [m] of two balls, the speed [m/s] at which it closes, and the unit vector from the first to the second.
 struct Gap {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "carom/engine/tolerances.h"
+#include "contact/place.h"
 #include "contact/pocket_edge.h"
 #include "physics/motion.h"
 
@@ -16,6 +17,8 @@ namespace {
 // [-] A contact that has bounced this often within kEventCapSpan becomes a resting contact. A row of 15 elastic balls,
 // resolved pair by pair, needs 30 bounces; the last bounces before a contact rests are about 100.
 constexpr int kMostBounces = 200;
+// [bounces] What a resting contact counts for that began and ended within that time: no row of impacts has one.
+constexpr int kHoldCounts = 20;
 
 EventType with_phase(EventPhase phase, const Contact& contact, const Geometry& geometry) {
     const Partner partner = contact.with == With::kBall ? Partner::kBall
@@ -83,7 +86,7 @@ bool RestingContacts::try_hold(const Approach& a, double restitution) {
             fmt::format("balls {} and {} meet so slowly that they stay in contact, and differ in size: that "
                         "contact is not modelled; make the two alike",
                         log_.id(c.ball), log_.id(partner)));
-    contacts_.push_back({.contact = c, .n = a.n});
+    contacts_.push_back({.contact = c, .n = a.n, .began = balls_.now()});
     log_.event(with_phase(EventPhase::kHold, c, plan_.geometry), c);
     solve(c.ball, Transitions::kNotYet);
     return true;
@@ -98,7 +101,9 @@ bool RestingContacts::chatters(const Contact& contact) const {
         if (e.time < balls_.now() - kEventCapSpan) break;
         const EventPhase phase = kind(e.type).phase;
         if (phase != EventPhase::kImpact && phase != EventPhase::kHold) continue;
-        if (contact_of(e).same(contact) && ++bounces >= kMostBounces) return true;
+        if (!contact_of(e).same(contact)) continue;
+        bounces += phase == EventPhase::kHold ? kHoldCounts : 1;
+        if (bounces >= kMostBounces) return true;
     }
     return false;
 }
@@ -173,7 +178,7 @@ RestingGroup RestingContacts::group_of(int ball, Transitions transitions) {
         group.balls.push_back(member);
     }
     std::sort(group.balls.begin(), group.balls.end(), [](const RestingBall& p, const RestingBall& q) {
-        return p.r.x() < q.r.x() || (p.r.x() == q.r.x() && p.r.y() < q.r.y());
+        return before_place(planar(p.r), planar(q.r));
     });
     const auto others =
         std::stable_partition(contacts_.begin(), contacts_.end(),
@@ -243,8 +248,7 @@ void RestingContacts::sort_by_place(std::vector<RestingContact>& contacts) const
         return Vec2(planar(balls_.position(c.contact.ball)) + balls_.radius(c.contact.ball) * c.n);
     };
     std::sort(contacts.begin(), contacts.end(), [&](const RestingContact& p, const RestingContact& q) {
-        const Vec2 a = place_of(p), b = place_of(q);
-        return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+        return before_place(place_of(p), place_of(q));
     });
 }
 
@@ -267,7 +271,7 @@ void RestingContacts::restore(std::span<const Event> events) {
         const EventPhase phase = kind(e.type).phase;
         const Contact contact = contact_of(e);
         if (phase == EventPhase::kHold)
-            contacts_.push_back({.contact = contact});
+            contacts_.push_back({.contact = contact, .began = e.time});
         else if (phase == EventPhase::kRelease)
             std::erase_if(contacts_, [&](const RestingContact& c) { return c.contact == contact; });
     }

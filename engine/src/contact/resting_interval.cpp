@@ -1,0 +1,267 @@
+// How long one solution of a group of resting contacts holds, and its segments.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "carom/engine/tolerances.h"
+#include "contact/detect.h"
+#include "contact/resting_group.h"
+#include "physics/motion.h"
+
+namespace carom::resting {
+
+namespace {
+
+// [s] Longest interval, and the length of the first attempt where nothing moves.
+constexpr double kLongestInterval = 1e6;
+// [m] Position error of a ball in one interval: 1e-6 m after the hundred or so intervals of a long push.
+constexpr double kPlaceError = 2e-8;
+// [rad] Up to this, a direction that turns is that of the middle of the interval.
+constexpr double kTurnOfMiddle = 0.5;
+// [rad] and [m] Largest rotation of a normal within an interval, and the largest gap that it may leave.
+constexpr double kNormalTurn = 0.03;
+constexpr double kGapLeft = 1e-8;
+// [m] Overlap that may arise within an interval.
+constexpr double kOverlapGrowth = 1e-13;
+// [of the sliding acceleration] Smaller opening accelerations are the rounding of the forces.
+constexpr double kOpening = 1e-10;
+// [-] Directions that differ by less (sine of the angle) count as constant: the closed form of a straight line applies.
+constexpr double kStraight = 1e-9;
+// [-] An interval is met to this share of itself.
+constexpr double kMet = 1e-9;
+// [ulp of the time] Shortest interval, so that the clock advances.
+constexpr double kClockTicks = 8.0;
+// [-] Most attempts at an interval, and at a longer one, which ends when something has gone; it is tried if that is nearly so.
+constexpr int kAttempts = 60, kLonger = 6;
+constexpr double kNearly = 1e-2;
+// [-] Shortest next attempt, as a share of the last.
+constexpr double kShorter = 0.2;
+
+bool moves(const Vec2& a) {
+    return a.x() != 0.0 || a.y() != 0.0;
+}
+
+// First time at which |x + t D| = S t: friction S has then taken what x was and D brought.
+double time_gone(const Vec2& x, const Vec2& D, double S) {
+    const double xx = dot(x, x), xD = dot(x, D), A = S * S - dot(D, D);
+    const double root = std::sqrt(std::max(0.0, xD * xD + A * xx));
+    const double time = root - xD > 0.0 ? xx / (root - xD) : kNever;
+    return time > 0.0 ? time : kNever;
+}
+
+// Interval, in steps of a tenth, in which an error that grows with the given power of it is at most `allowed`.
+double allowed_interval(double h, double error, double allowed, int power) {
+    if (!(error > allowed)) return kNever;
+    constexpr double kStep = 0.9;
+    const double falls = power == 1 ? kStep : (power == 2 ? kStep * kStep : kStep * kStep * kStep);
+    while (error > allowed && h > kShortestInterval) {
+        error *= falls;
+        h *= kStep;
+    }
+    return h;
+}
+
+// What has a direction at the start and at the end, by which friction of strength S acts.
+struct Moving {
+    Vec2 start, end;
+    double strength;
+};
+
+Moving moving(const Group& g, const Body& b) {
+    if (b.u.x() != 0.0 || b.u.y() != 0.0) return {b.u, b.slip_end(), g.motion.slide * b.load};
+    if (b.mode == Mode::kSliding) return {Vec2::Zero(), b.slip_end(), 0.0};
+    return {b.v, b.v_end, g.motion.roll};
+}
+
+// Sine of the angle; 1 for more than a right angle.
+double turn_of(const Vec2& from, const Vec2& to) {
+    return dot(from, to) > 0.0 ? std::abs(cross(from, to)) / (length(from) * length(to)) : 1.0;
+}
+
+// Time at which the slip or the velocity of a ball has gone, if that is within the interval h.
+double gone_within(const Group& g, const Body& b, double h) {
+    if (moves(b.u))
+        return b.mode == Mode::kSliding
+                   ? kNever
+                   : time_gone(b.u, (b.push - 2.5 * b.couple) / h, 3.5 * g.motion.slide * b.load);
+    if (b.mode != Mode::kResting || !moves(b.v)) return kNever;
+    return time_gone(b.v, (5.0 / 7.0) * (b.push + b.couple) / h, g.motion.roll);
+}
+
+// Time at which it will have gone if it goes on as in the interval h.
+double gone_later(const Group& g, const Body& b, double h) {
+    const Moving m = moving(g, b);
+    const double start = length(m.start), along = start > 0.0 ? dot(m.end, m.start) / start : 0.0;
+    return b.mode != Mode::kResting && along > 0.0 && along < start ? h * start / (start - along) : kNever;
+}
+
+// Interval for which the friction of a ball has the right direction: S w h^2 / 12 is the error of a friction of strength S
+// along a direction that turns by w, taken at the middle of the interval, and S h^2 / 2 is more than any error.
+double friction_interval(const Group& g, const Body& b, double h) {
+    const Moving m = moving(g, b);
+    if (!moves(m.start)) return kNever;
+    const double gone = gone_within(g, b, h);
+    // Stopped evenly instead of at once, it goes half as far in the whole interval.
+    if (gone < kNever)
+        return gone < kShortestInterval ? allowed_interval(h, 0.5 * length(m.start) * h, kPlaceError, 1)
+                                        : kNever;
+    const double turn = turn_of(m.start, m.end);
+    if (turn <= kStraight) return kNever;
+    if (turn > kTurnOfMiddle) return allowed_interval(h, 0.5 * m.strength * h * h, kPlaceError, 2);
+    return allowed_interval(h, m.strength * turn * h * h / 12.0, kPlaceError, 3);
+}
+
+double link_interval(const Group& g, const Link& link, double h) {
+    if (link.open) return kNever;
+    double interval = kNever;
+    const Body& b = g.bodies[link.i];
+    if (link.line != nullptr) {
+        Segment s;
+        s.r = g.group.balls[link.i].r;
+        s.v = Vec3(b.v.x(), b.v.y(), 0.0);
+        s.a = (b.v_end - b.v) / h;
+        interval = time_to_line_end(*link.line, s);
+    }
+    const double rate = gap_rate(g, link);
+    if (!(link.J > 0.0)) {
+        // A contact that opens is released once its rate can be distinguished from rounding, and before its gap can be seen.
+        const double opening = (end_rate(g, link) - rate) / h + link.turning;
+        if (opening > kOpening * g.motion.slide)
+            interval = std::min(interval, std::max(std::sqrt(2.0 * kGapLeft / opening),
+                                                   (4.0 * g.noise + std::max(0.0, -rate)) / opening));
+        if (link.begins && rate > g.noise) interval = std::min(interval, kGapLeft / rate);
+        return interval;
+    }
+    // Neither the rounding of the rates nor a closing speed that could not be removed may add up to an overlap.
+    const double closing = rate_rounding(g) + std::max(0.0, -rate);
+    interval = std::min(interval, allowed_interval(h, closing * h, kOverlapGrowth, 2));
+    const double force = link.J / h;
+    if (rate > 0.0) interval = std::min(interval, 2.0 * kGapLeft / rate);
+    if (link.j >= 0) {
+        // The friction between two balls changes with their slip.
+        const double change = std::abs(friction_at_start(g, link) - link.friction_z);
+        interval = std::min(interval, allowed_interval(h, change * force * h * h / 8.0, kPlaceError, 2));
+    }
+    const Across t = across(g, link, h);
+    const double v = std::abs(t.v), a = std::abs(t.a);
+    if (t.distance == 0.0) return interval;
+    const double turn = h * (v + 0.5 * h * a) / t.distance;
+    if (turn <= kStraight * h) return interval;
+    return std::min({interval, allowed_interval(h, turn, kNormalTurn, 1),
+                     allowed_interval(h, force * turn * h * h / 12.0, kPlaceError, 3),
+                     allowed_interval(h, 0.5 * h * h * h * a * (v + h * a) / t.distance, kGapLeft, 3)});
+}
+
+// The first attempt: until friction alone would have stopped the first ball; what it stops at once does not count.
+double first_attempt(const Group& g) {
+    double h = kLongestInterval;
+    for (const Body& b : g.bodies) {
+        const bool slips = moves(b.u);
+        const double strength = slips ? g.motion.slide : g.motion.roll;
+        const double time = slips ? length(b.u) : 2.0 * length(b.v);
+        if (time > kShortestInterval * strength && strength > 0.0) h = std::min(h, time / strength);
+    }
+    return h;
+}
+
+// Friction has the direction of the middle of the interval, for second order.
+bool guide(Group& g) {
+    bool any = false;
+    for (Body& b : g.bodies) {
+        b.guided = false;
+        const Moving m = moving(g, b);
+        if (!moves(m.start) || !moves(m.end) || (!moves(b.u) && b.mode != Mode::kRolling)) continue;
+        if (moves(b.u) && b.mode != Mode::kSliding) continue;
+        const double turn = turn_of(m.start, m.end);
+        if (turn <= kStraight || turn > kTurnOfMiddle) continue;
+        const Vec2 middle = m.start / length(m.start) + m.end / length(m.end);
+        b.guide = middle / length(middle);
+        b.guided = any = true;
+    }
+    return any;
+}
+
+void write_segments(Group& g, double h) {
+    double interval = kNever;
+    for (const Body& b : g.bodies)
+        if (moves(b.v) || moves(b.u) || b.mode != Mode::kResting) interval = h;
+    std::vector<double> spinning(g.bodies.size(), kNever);
+    for (std::size_t k = 0; k < g.bodies.size(); ++k) {
+        const Body& b = g.bodies[k];
+        RestingBall& ball = g.group.balls[k];
+        Segment& s = ball.segment;
+        s = start_segment(g.now, ball.r, ball.v, ball.w, g.motion);
+        s.held = true;
+        const bool slides = moves(b.u) || b.mode == Mode::kSliding;
+        if (!slides && !moves(b.v) && b.mode == Mode::kResting) {
+            spinning[k] = s.state == MotionState::kSpinning ? s.duration : kNever;
+            interval = std::min(interval, spinning[k]);
+            continue;
+        }
+        s.state = slides ? MotionState::kSliding : MotionState::kRolling;
+        s.a = (b.v_end - b.v) / h;
+        const Vec2 ds = (b.s_end - b.s) / h;
+        s.dw = Vec2(-ds.y(), ds.x()) / g.motion.R;
+    }
+    interval = std::max(interval, kClockTicks * std::numeric_limits<double>::epsilon() * g.now);
+    for (std::size_t k = 0; k < g.bodies.size(); ++k) {
+        const Body& b = g.bodies[k];
+        Segment& s = g.group.balls[k].segment;
+        s.duration = interval;
+        const bool slid = b.mode != Mode::kSliding || length(b.slip_end()) <= kMet * length(b.u);
+        s.ends = moves(b.u)
+                     ? slid && interval == h
+                     : (moves(b.v) ? b.mode == Mode::kResting && interval == h : spinning[k] <= interval);
+    }
+}
+
+bool accelerates(const Group& g) {
+    constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+    return std::any_of(g.bodies.begin(), g.bodies.end(), [](const Body& b) {
+        return length(b.v_end - b.v) > kRounding * length(b.v) ||
+               length(b.s_end - b.s) > kRounding * length(b.s);
+    });
+}
+
+}  // namespace
+
+double solve_interval(Group& g) {
+    for (Body& b : g.bodies) b.guided = false;
+    const double shortest =
+        std::max(kShortestInterval, kClockTicks * std::numeric_limits<double>::epsilon() * g.now);
+    double h = std::max(shortest, first_attempt(g));
+    int longer = 0;
+    double gone_before = 0.0;  // something has gone before this time, but not before the last interval
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+        const bool solved = step(g, h);
+        double accurate = solved ? kNever : 0.25 * h, gone = kNever, later = kNever;
+        for (const Body& b : g.bodies) {
+            const double time = gone_within(g, b, h);
+            if (time >= kShortestInterval) gone = std::min(gone, time);
+            accurate = std::min(accurate, friction_interval(g, b, h));
+            later = std::min(later, gone_later(g, b, h));
+        }
+        for (const Link& link : g.links) accurate = std::min(accurate, link_interval(g, link, h));
+        if (std::min(accurate, gone) < h * (1.0 - kMet) && h > shortest) {
+            gone_before = gone <= accurate ? h : 0.0;
+            // A much too long interval says little about what a shorter one needs.
+            h = std::max(shortest, std::min(std::max(accurate, kShorter * h), gone * (1.0 + 0.5 * kMet)));
+        } else if (later < std::max(gone_before, (1.0 + kNearly) * h) && longer < kLonger) {
+            h = later * (1.0 + 0.5 * kMet);
+            ++longer;
+        } else {
+            // What moves straight and evenly goes on until something ends it.
+            if (solved && !accelerates(g)) h = std::min(accurate, gone);
+            break;
+        }
+    }
+    if (guide(g) && !step(g, h)) {
+        for (Body& b : g.bodies) b.guided = false;
+        step(g, h);
+    }
+    write_segments(g, h);
+    return h;
+}
+
+}  // namespace carom::resting

@@ -1,0 +1,373 @@
+// The implicit step of a group of resting contacts over an interval (resting_group.h).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "contact/complementarity.h"
+#include "contact/resting_group.h"
+
+namespace carom::resting {
+
+namespace {
+
+// [-] Most Newton steps of one solution; a few are usual, each is exact as soon as every ball's kind of motion is right.
+constexpr int kNewtonSteps = 40;
+// [-] From this step on, each second one takes balls for stopped that move by less than this share of what friction takes from them:
+// on the way to rest, Newton's method only halves their speed again and again.
+constexpr int kStopsFrom = 5;
+constexpr double kHardlyMoves = 1e-2;
+// [ulp of the speeds and impulses] Smaller rates of a gap are zero.
+constexpr double kRateUlp = 32.0;
+// [-] A gap whose normal turns further than this is not looked at in detail: the interval is shortened anyway.
+constexpr double kLongestTurn = 0.1;
+// [m] Overlap that the turning of a normal may cause within an interval.
+constexpr double kOverlapLeft = 4e-15;
+// [m] Smaller changes of a gap are not looked at.
+constexpr double kNoGap = 4e-15;
+// [-] Most trials of a line search, and the share of its first slope that may be left.
+constexpr int kSearches = 8;
+constexpr double kSlopeLeft = 0.25;
+// [-] Mobility of a ball at rest in the derivatives only, so that balls at rest share a load; a sliding ball has 1.
+constexpr double kRestCompliance = 1e-9;
+// [of its coefficient] Accuracy of the friction between balls, and of the load. It is half as high in each step, up to 2^20, for contacts
+// that hold each other's slip.
+constexpr double kFrictionAccuracy = 1e-9;
+constexpr int kLooser = 20;
+// [of the accelerations that drive a group] Larger forces show that a wedge cannot be stabilised.
+constexpr double kLargestStabilised = 1e4;
+
+Matrix identity(double c) {
+    return {c, 0.0, c};
+}
+
+// c (1 - d d^T)
+Matrix across_of(double c, const Vec2& d) {
+    return {c * (d.y() * d.y()), -c * (d.x() * d.y()),
+            c * (d.x() * d.x())};  // the products first: the same turned
+}
+
+Matrix minus(const Matrix& a, const Matrix& b) {
+    return {a.xx - b.xx, a.xy - b.xy, a.yy - b.yy};
+}
+
+Matrix times(double c, const Matrix& a) {
+    return {c * a.xx, c * a.xy, c * a.yy};
+}
+
+void slide(Body& b, const Vec2& friction) {
+    b.mode = Mode::kSliding;
+    b.v_end = b.v + b.push + friction;
+    b.s_end = b.s + 2.5 * (b.couple - friction);
+}
+
+// The motion of a ball under the impulses on it, and its derivatives.
+void respond(const Group& g, Body& b, double h, bool stops) {
+    const double grip = g.motion.slide * b.load * h, drag = std::min(g.motion.roll * h, grip);
+    const bool slips = b.u.x() != 0.0 || b.u.y() != 0.0;
+    if (b.guided && slips) {
+        slide(b, -grip * b.guide);
+        b.by_push = identity(1.0);
+        b.by_couple = {};
+        return;
+    }
+    const Vec2 slip = b.u + b.push - 2.5 * b.couple;
+    const double size = length(slip);
+    if (size > 3.5 * grip) {
+        const Vec2 d = slip / size;
+        slide(b, -grip * d);
+        const Matrix turn = across_of(grip / size, d);
+        b.by_push = minus(identity(1.0), turn);
+        b.by_couple = times(2.5, turn);
+        return;
+    }
+    const Vec2 rolls = b.v + b.push - slip * (2.0 / 7.0);
+    const double speed = length(rolls);
+    // A ball that begins with a slip rolls at the end at most: it is not braked yet.
+    if (slips || drag == 0.0) {
+        b.mode = Mode::kRolling;
+        b.v_end = rolls;
+        b.by_push = b.by_couple = identity(5.0 / 7.0);
+    } else if (b.guided) {
+        b.mode = Mode::kRolling;
+        b.v_end = rolls - drag * b.guide;
+        b.by_push = b.by_couple = identity(5.0 / 7.0);
+    } else if (speed > drag) {
+        const Vec2 d = rolls / speed;
+        b.mode = Mode::kRolling;
+        b.v_end = rolls - drag * d;
+        b.by_push = b.by_couple = stops && speed <= (1.0 + kHardlyMoves) * drag
+                                      ? identity(kRestCompliance)
+                                      : minus(identity(5.0 / 7.0), across_of((5.0 / 7.0) * drag / speed, d));
+    } else {
+        b.mode = Mode::kResting;
+        b.v_end = Vec2::Zero();
+        b.by_push = b.by_couple = identity(kRestCompliance);
+    }
+    if (b.v_end.x() == 0.0 && b.v_end.y() == 0.0) b.mode = Mode::kResting;
+    b.s_end = b.v_end;
+}
+
+// @param stops  the derivatives are those at rest for a ball that hardly moves
+void respond(Group& g, double h, bool stops = false) {
+    for (Body& b : g.bodies) {
+        b.push = b.couple = Vec2::Zero();
+        b.lift = b.impulses = 0.0;
+    }
+    for (const Link& link : g.links) {
+        Body& bi = g.bodies[link.i];
+        bi.push -= link.J * link.n;
+        bi.couple -= link.friction_z * link.J * link.n;
+        bi.lift += link.friction_z * link.J;
+        bi.impulses += std::abs(link.J);
+        if (link.j < 0) continue;
+        Body& bj = g.bodies[link.j];
+        bj.push += link.J * link.n;
+        bj.couple -= link.friction_z * link.J * link.n;
+        bj.lift -= link.friction_z * link.J;
+        bj.impulses += std::abs(link.J);
+    }
+    for (Body& b : g.bodies) respond(g, b, h, stops);
+}
+
+// What must not become negative: the rate of a gap at the end, with the turning of its normal.
+double wanted_rate(const Group& g, const Link& link, double h, const StepOptions& options) {
+    return end_rate(g, link) + (options.stabilise ? h * link.turning : 0.0);
+}
+
+// The friction between two balls opposes their slip at the end; the upward slip without it, X, and the impulse's effect on it give
+// f = -X / (effect + |slip| / mu), in which |slip| follows in a few turns.
+double vertical_friction(const Group& g, const Link& link) {
+    const Vec2 slip = contact_slip(g, link, true);
+    const auto ease = [](const Body& b) {
+        return b.mode == Mode::kSliding ? 2.5 : (b.mode == Mode::kRolling ? 5.0 / 7.0 : 0.0);
+    };
+    const double effect = (ease(g.bodies[link.i]) + ease(g.bodies[link.j])) * link.J;
+    const double without = slip.x() - effect * link.friction_z;
+    double size = length(slip), f = 0.0;
+    for (int turn = 0; turn < 30; ++turn) {
+        const double mu = ball_friction(g.around.balls, size);
+        const double whole = effect + (mu > 0.0 ? size / mu : 0.0);
+        if (mu == 0.0 || !(whole > 0.0)) return 0.0;
+        f = -without / whole;
+        const double next = length(Vec2(without + effect * f, slip.y()));
+        if (std::abs(next - size) <= 1e-12 * size) break;
+        size = next;
+    }
+    const double most = ball_friction(g.around.balls, size);
+    return std::clamp(f, -most, most);
+}
+
+// [m/s^2] What must be added to the acceleration of a gap along its first normal: with the tangential velocity v and acceleration a and
+// the distance D, the gap opens by 1/2 (v^2 t^2 + v a t^3 + 1/4 a^2 t^4) / D as the normal turns, and its rate ends
+// with 0 for (v^2 + 3/2 v a h + 1/2 a^2 h^2) / D. Where the gap would become negative meanwhile, it opens instead. Overlaps end within
+// the interval.
+double turning_of(const Link& link, const Across& t, double h) {
+    const double time = std::max(h, kRecoveryTime);
+    const double recovery = link.gap < -kOverlapDepth ? 2.0 * link.gap / (time * time) : 0.0;
+    if (t.distance == 0.0) return recovery;
+    const double c = t.v * t.v / t.distance, k = t.v * t.a / t.distance, kk = t.a * t.a / t.distance;
+    // What rounds to no gap would only stop balls at rest from leaning on each other.
+    if (h * h * (c + h * (std::abs(k) + kk * h)) <= kNoGap) return recovery;
+    const double taylor = c + h * (1.5 * k + 0.5 * kk * h);
+    // The distance along the first normal is somewhat shorter by then.
+    const double level = taylor / std::max(0.5, 1.0 - 0.5 * taylor * h * h / t.distance);
+    double least = c;
+    bool free = std::abs(level) * h * h < kLongestTurn * t.distance;
+    for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+        const double x = share * h, n = -0.5 * level * x * x, across = x * (t.v + 0.5 * x * t.a),
+                     D = t.distance;
+        const double change = (n * (2.0 * D + n) + across * across) / (D + length(Vec2(D + n, across)));
+        free = free && std::max(0.0, link.gap) + change >= -kOverlapLeft;
+        least = std::min(least, c + x * (k + 0.25 * kk * x));
+    }
+    if (k < 0.0 && -2.0 * k < kk * h) least = c - k * k / kk;
+    return (free ? level : std::min(level, least)) + recovery;
+}
+
+// Takes over from a solution what the next one starts from. @return whether it differs
+bool update(Group& g, double h, const StepOptions& options, int times) {
+    const double accuracy = kFrictionAccuracy * static_cast<double>(1 << std::min(times, kLooser));
+    bool changed = false;
+    for (Link& link : g.links) {
+        if (options.stabilise && !link.open && !link.walled) {
+            const double wanted = turning_of(link, across(g, link, h), h);
+            changed = changed || std::abs(wanted - link.turning) * h * h > kNoGap;
+            link.turning = wanted;
+        }
+        if (link.j < 0 || link.open || !options.friction) continue;
+        const double f = link.J > 0.0 ? vertical_friction(g, link) : friction_at_start(g, link);
+        changed = changed || (link.J > 0.0 &&
+                              std::abs(f - link.friction_z) > accuracy * ball_friction(g.around.balls, 0.0));
+        // The next contact of the balls already feels it.
+        const Vec2 change = (f - link.friction_z) * link.J * link.n;
+        for (const int k : {link.i, link.j}) {
+            Body& b = g.bodies[k];
+            if (b.mode == Mode::kSliding) b.s_end -= 2.5 * change;
+            if (b.mode == Mode::kRolling) b.s_end -= (5.0 / 7.0) * change;
+        }
+        link.friction_z = f;
+    }
+    for (Body& b : g.bodies) {
+        const double weight = g.around.gravity * h;
+        const double load = weight > 0.0 ? std::max(0.0, 1.0 - b.lift / weight) : 1.0;
+        changed = changed || std::abs(load - b.load) > accuracy;
+        b.load = options.friction ? load : 1.0;
+    }
+    return changed;
+}
+
+// Newton's method on J >= 0, rate >= 0, J rate = 0, which is piecewise smooth and, but for the friction between balls, monotone.
+bool solve_contacts(Group& g, double h, const StepOptions& options) {
+    std::vector<std::size_t> active;
+    for (std::size_t c = 0; c < g.links.size(); ++c) {
+        if (g.links[c].open)
+            g.links[c].J = 0.0;
+        else
+            active.push_back(c);
+    }
+    Complementarity problem(active.size());
+    std::vector<double> before(active.size());
+    for (int newton = 0;; ++newton) {
+        const bool stops = newton >= kStopsFrom && newton % 2 == 1;
+        respond(g, h, stops);
+        // What a solution takes from the one before: friction between balls, load on the cloth, turning of normals.
+        const bool changed = update(g, h, options, newton);
+        if (changed) respond(g, h, stops);
+        const double rounding = rate_rounding(g);
+        bool solved = true;
+        double worst = 0.0;
+        for (std::size_t k = 0; k < active.size(); ++k) {
+            const Link& link = g.links[active[k]];
+            const double rate = wanted_rate(g, link, h, options);
+            problem.q[k] = rate;
+            worst = std::max(worst, link.J > 0.0 ? std::abs(rate) : -rate);
+            solved = solved && (link.J > 0.0 ? std::abs(rate) <= rounding : rate >= -rounding);
+        }
+        if (solved && !changed) return true;
+        if (newton == kNewtonSteps)
+            return !changed && worst * std::max(h, kShortestInterval) <= kOverlapDepth;
+        std::fill(problem.A.begin(), problem.A.end(), 0.0);
+        for (std::size_t k = 0; k < active.size(); ++k) before[k] = g.links[active[k]].J;
+        for (std::size_t k = 0; k < active.size(); ++k) {
+            const Link& column = g.links[active[k]];
+            const auto add = [&](int body, const Vec2& dv) {
+                for (std::size_t r = 0; r < active.size(); ++r) {
+                    const Link& row = g.links[active[r]];
+                    if (row.i == body) problem.at(r, k) -= dot(row.n, dv);
+                    if (row.j == body) problem.at(r, k) += dot(row.n, dv);
+                }
+            };
+            const Body& bi = g.bodies[column.i];
+            add(column.i, -(bi.by_push * column.n) - column.friction_z * (bi.by_couple * column.n));
+            if (column.j < 0) continue;
+            const Body& bj = g.bodies[column.j];
+            add(column.j, bj.by_push * column.n - column.friction_z * (bj.by_couple * column.n));
+        }
+        for (std::size_t r = 0; r < active.size(); ++r)
+            for (std::size_t k = 0; k < active.size(); ++k) problem.q[r] -= problem.at(r, k) * before[k];
+        if (!problem.solve()) return false;
+        // Without friction between balls the rates are the gradient of a convex function of the impulses: its least value on the way
+        // to the solution of the linear problem is taken, so that two kinds of motion do not alternate.
+        const auto go = [&](double share) {
+            for (std::size_t k = 0; k < active.size(); ++k)
+                g.links[active[k]].J = before[k] + share * (problem.z[k] - before[k]);
+        };
+        const auto slope = [&] {
+            double sum = 0.0;
+            for (std::size_t k = 0; k < active.size(); ++k)
+                sum += wanted_rate(g, g.links[active[k]], h, options) * (problem.z[k] - before[k]);
+            return sum;
+        };
+        const double first = slope();
+        double low = 0.0, at_low = first, high = 1.0, at_high = 0.0;
+        go(1.0);
+        respond(g, h);
+        at_high = slope();
+        for (int turn = 0; turn < kSearches && at_high > kSlopeLeft * std::abs(first) && at_low < 0.0;
+             ++turn) {
+            const double share = std::clamp(low + (high - low) * at_low / (at_low - at_high),
+                                            low + 0.1 * (high - low), high - 0.1 * (high - low));
+            go(share);
+            respond(g, h);
+            const double here = slope();
+            if (std::abs(here) <= kSlopeLeft * std::abs(first)) break;
+            (here > 0.0 ? high : low) = share;
+            (here > 0.0 ? at_high : at_low) = here;
+        }
+    }
+}
+
+bool solve_with(Group& g, double h, const StepOptions& options) {
+    if (!options.friction) {
+        for (Link& link : g.links) link.friction_z = 0.0;
+        for (Body& b : g.bodies) b.load = 1.0;
+    }
+    return solve_contacts(g, h, options);
+}
+
+// Two opposing fixed normals cannot both be stabilised: the forces are then huge and mean nothing.
+bool drop_stabilisation(Group& g, double h) {
+    double drive = g.motion.slide + g.motion.roll;
+    for (const Link& link : g.links) drive = std::max(drive, std::abs(link.turning));
+    bool any = false;
+    for (Link& link : g.links) {
+        if (link.turning == 0.0 || link.J <= kLargestStabilised * drive * h) continue;
+        link.walled = true;
+        link.turning = 0.0;
+        any = true;
+    }
+    return any;
+}
+
+}  // namespace
+
+double rate_rounding(const Group& g) {
+    double size = 0.0;
+    for (const Body& b : g.bodies) size = std::max(size, length(b.v) + length(b.v_end) + b.impulses);
+    return kRateUlp * std::numeric_limits<double>::epsilon() * size;
+}
+
+double friction_at_start(const Group& g, const Link& link) {
+    const Vec2 slip = contact_slip(g, link, false);
+    const double size = length(slip);
+    return size > 0.0 ? -ball_friction(g.around.balls, size) * slip.x() / size : 0.0;
+}
+
+bool step(Group& g, double h, const StepOptions& options) {
+    // An interval of another length is nearly solved already.
+    const double share = g.solved > 0.0 ? h / g.solved : 0.0;
+    for (Link& link : g.links) {
+        link.J *= share;
+        if (share > 0.0) continue;
+        link.turning = 0.0;
+        if (link.j >= 0) link.friction_z = options.friction ? friction_at_start(g, link) : 0.0;
+    }
+    for (Body& b : g.bodies) {
+        if (share == 0.0) b.load = 1.0;
+        b.v_end = b.v + share * (b.v_end - b.v);
+        b.s_end = b.s + share * (b.s_end - b.s);
+    }
+    g.solved = 0.0;
+    bool solved = solve_with(g, h, options);
+    if (options.stabilise && (!solved || drop_stabilisation(g, h))) solved = solve_with(g, h, options);
+    if (solved) {
+        g.solved = h;
+        return true;
+    }
+    // With friction there may be no solution at all (Painleve).
+    StepOptions less = options;
+    less.stabilise = false;
+    if (options.stabilise && solve_with(g, h, less)) return true;
+    less.friction = false;
+    return options.friction && solve_with(g, h, less);
+}
+
+bool strike(Group& g) {
+    g.solved = 0.0;
+    const bool solved = step(g, kInstant, {.friction = false, .stabilise = false});
+    g.solved = 0.0;
+    return solved;
+}
+
+}  // namespace carom::resting
