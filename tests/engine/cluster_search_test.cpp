@@ -73,9 +73,10 @@ class FullScan {
             double fastest = v_n;
             for (std::size_t i = 0; list.size() > 2 && i < list.size(); ++i)
                 for (std::size_t j = i + 1; j < list.size(); ++j)
-                    if (gap(list[i], list[j]) <=
-                        2.0 * time * (std::max(0.0, closing(list[i], list[j])) + v_n))
-                        fastest = std::max(fastest, closing(list[i], list[j]));
+                    fastest =
+                        std::max(fastest, nearness(gap(list[i], list[j]),
+                                                   time * (std::max(0.0, closing(list[i], list[j])) + v_n)) *
+                                              closing(list[i], list[j]));
             std::sort(list.begin(), list.end());
             if (!(fastest > kClusterFaster * v_n)) return list;
             v_n = fastest;
@@ -87,6 +88,11 @@ class FullScan {
     double gap(int p, int q) const {
         const double left = length(at(q).r - at(p).r) - 2.0 * R_;
         return left <= kTouchUlp * R_ ? 0.0 : left;
+    }
+    /// 1 up to half the reach, then falling to 0.
+    static double nearness(double gap, double reach) {
+        const double t = std::clamp(2.0 * gap / reach - 1.0, 0.0, 1.0);
+        return 1.0 - t * t * (3.0 - 2.0 * t);
     }
     double closing(int p, int q) const {
         const Vec2 apart = at(q).r - at(p).r;

@@ -68,6 +68,16 @@ Result run(std::vector<ClusterBall> balls, const ClusterSettings& s, double V) {
     return {balls, energy(balls) / before, steps};
 }
 
+// The limit of a slow impact, whose balls do not move during the contact: normals stay. The power of 2 changes no bit but
+// those of the turning, which is 1e-10.
+Result run_slow(std::vector<ClusterBall> balls, const ClusterSettings& s, double V) {
+    constexpr double kSlow = 0x1p-30;
+    for (ClusterBall& b : balls) b.v *= kSlow, b.w *= kSlow;
+    Result result = run(balls, s, V * kSlow);
+    for (ClusterBall& b : result.balls) b.v /= kSlow, b.w /= kSlow;
+    return result;
+}
+
 ClusterBall ball(int id, double x, double y, double vx = 0.0, double vy = 0.0, const Vec3& w = Vec3::Zero()) {
     return {id, Vec3(x, y, kR), Vec3(vx, vy, 0.0), w};
 }
@@ -106,7 +116,7 @@ TEST(Cluster, TouchingRack) {  // H1
                                        settings(0.05, 0.2, 0.95), settings(0.05, 0.2, 0.95, 1e-4)};
     const double tolerance[] = {1e-6, 1e-6, 3e-3, 3e-4}, energy_left[] = {1.0, .8022334, .76032, .76032};
     for (int column = 0; column < 4; ++column) {
-        const Result result = run(rack(1.0), columns[column], 1.0);
+        const Result result = run_slow(rack(1.0), columns[column], 1.0);
         const int k = std::min(column, 2);
         for (const RackRow& row : kRack) {
             EXPECT_NEAR(result.balls[row.index].v.x(), row.x[k], tolerance[column])
@@ -132,10 +142,16 @@ TEST(Cluster, TouchingRack) {  // H1
 }
 
 TEST(Cluster, ScalesWithTheSpeed) {
-    const Result one = run(rack(1.0), settings(0.05, 0.2, 0.95), 1.0),
-                 eight = run(rack(8.0), settings(0.05, 0.2, 0.95), 8.0);
-    for (std::size_t b = 0; b < one.balls.size(); ++b)
-        EXPECT_EQ(eight.balls[b].v, 8.0 * one.balls[b].v) << "no material constant in a touching rack";
+    const ClusterSettings friction = settings(0.05, 0.2, 0.95);
+    const Result one = run_slow(rack(1.0), friction, 1.0), eight = run_slow(rack(8.0), friction, 8.0),
+                 fast = run(rack(8.0), friction, 8.0);
+    double moved = 0.0;
+    for (std::size_t b = 0; b < one.balls.size(); ++b) {
+        EXPECT_LT((eight.balls[b].v - 8.0 * one.balls[b].v).norm(), 1e-8)
+            << "no material constant in a touching rack whose balls do not move";
+        moved = std::max(moved, (fast.balls[b].v - 8.0 * one.balls[b].v).norm() / 8.0);
+    }
+    EXPECT_NEAR(moved, 4.2e-3, 5e-4) << "what the moving normals change at 8 m/s";
 }
 
 // The pair that touches first may be a slow one; the fastest sets the scale of friction and of the steps.
@@ -144,7 +160,7 @@ TEST(Cluster, SlowPairFirst) {
                  fast = run(rack(1.0), settings(0.05, 0.2, 0.95), 1.0);
     EXPECT_EQ(slow.steps, fast.steps);
     for (std::size_t b = 0; b < fast.balls.size(); ++b) EXPECT_EQ(slow.balls[b].v, fast.balls[b].v);
-    EXPECT_LE(fast.steps, 300) << "of a touching rack";
+    EXPECT_LE(fast.steps, 310) << "of a touching rack";
 }
 
 TEST(Cluster, ThreeBalls) {  // H2
@@ -153,7 +169,7 @@ TEST(Cluster, ThreeBalls) {  // H2
     for (int k = 0; k < 4; ++k) {
         const std::vector<ClusterBall> balls{ball(0, 0.0, -std::sqrt(3.0) * kR, 0.0, 1.0), ball(1, -kR, 0.0),
                                              ball(2, kR, 0.0)};
-        const Result result = run(balls, settings(0.0, 0.0, e[k]), std::cos(M_PI / 6));
+        const Result result = run_slow(balls, settings(0.0, 0.0, e[k]), std::cos(M_PI / 6));
         EXPECT_NEAR(result.balls[0].v.y(), cue[k], 1e-6) << e[k];
         EXPECT_EQ(result.balls[0].v.x(), 0.0) << e[k];
         EXPECT_NEAR(result.balls[2].v.norm(), object[k], 1e-6) << e[k];
@@ -169,7 +185,7 @@ TEST(Cluster, ThreeBalls) {  // H2
     }
     const std::vector<ClusterBall> balls{ball(0, 0.0, -std::sqrt(3.0) * kR, 0.0, 1.0), ball(1, -kR, 0.0),
                                          ball(2, kR, 0.0)};
-    const Result with_friction = run(balls, settings(0.05, 0.2, 0.95, 1e-3), std::cos(M_PI / 6));
+    const Result with_friction = run_slow(balls, settings(0.05, 0.2, 0.95, 1e-3), std::cos(M_PI / 6));
     EXPECT_NEAR(with_friction.balls[0].v.y(), -.16723, 1e-4);
     EXPECT_NEAR(with_friction.balls[2].v.x(), .32120, 1e-4);
     EXPECT_NEAR(with_friction.balls[2].v.y(), .58362, 1e-4);
@@ -257,7 +273,9 @@ TEST(Cluster, TwoBallsAreThePairKernel) {
         const Vec3 n = (balls[1].r - balls[0].r).normalized();
         const double V = (balls[0].v - balls[1].v).dot(n);
         ClusterMap map;
-        map.compliant(balls, contacts_of(balls),
+        std::vector<ClusterContact> contacts = contacts_of(balls);
+        contacts.front().turn = 0.0;  // no other contact
+        map.compliant(balls, contacts,
                       settings(impact.params.mu_b, impact.params.mu_s1, impact.params.e_b, 1e-3), V);
         const double difference = std::max((balls[0].v - Vec3(want.v1[0], want.v1[1], 0.0)).norm(),
                                            (balls[1].v - Vec3(want.v2[0], want.v2[1], 0.0)).norm()) /

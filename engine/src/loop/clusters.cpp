@@ -10,6 +10,9 @@ namespace carom {
 
 namespace {
 
+// [reach] Contacts of balls nearer than this turn as the balls do.
+constexpr double kNearShare = 0.5;
+
 /// Gap [m] of two balls, the speed [m/s] at which it closes, and the unit vector from the first to the second.
 struct Gap {
     double gap, closing;
@@ -26,6 +29,15 @@ Gap gap_of(const ClusterBall& p, const ClusterBall& q, double R) {
     return near;
 }
 
+// Falls smoothly from 1 for near balls to 0 for those that are just not within reach.
+double nearness(double gap, double reach) {
+    const double part = reach > 0.0 ? gap / reach : 0.0;
+    if (!(part > kNearShare)) return 1.0;
+    if (!(part < 1.0)) return 0.0;
+    const double t = (part - kNearShare) / (1.0 - kNearShare);
+    return 1.0 - t * t * (3.0 - 2.0 * t);
+}
+
 }  // namespace
 
 Clusters::Clusters(const Plan& plan, const Balls& balls, const Detector& detector, ClustersMemory& memory)
@@ -36,19 +48,22 @@ ClusterBall Clusters::member(int ball) const {
 }
 
 // Breadth-first search from the pair: finds every ball that can be reached during the contact (equation 5), then all
-// contacts between them. The fastest approach among them sets the scale of the map: a pair may touch very slowly
-// while its neighbours are about to collide at full speed.
+// contacts between them. The fastest approach among the near ones sets the scale of the map: a pair may touch very slowly
+// while its neighbours are about to collide at full speed. It counts by its nearness, so that nothing jumps where a fast
+// ball comes within reach.
 double Clusters::collect(int a, int b, double v_n) {
     for (;;) {
         collect_at(a, b, v_n);
         double fastest = v_n;
         for (const ClusterContact& c : contacts_) {
             const ClusterBall &p = members_[c.i], &q = members_[c.j];
-            fastest = std::max(fastest, dot(c.n, planar(p.v) - planar(q.v)));
+            fastest = std::max(fastest, c.turn * dot(c.n, planar(p.v) - planar(q.v)));
         }
-        if (members_.size() < 3 || !(fastest > kClusterFaster * v_n)) return v_n;
+        if (members_.size() < 3 || !(fastest > kClusterFaster * v_n)) break;
         v_n = fastest;
     }
+    share_turning();
+    return v_n;
 }
 
 // Every ball within `gap` of this ball has a box that overlaps the result: the box of a ball contains its present
@@ -90,7 +105,8 @@ void Clusters::collect_at(int a, int b, double v_n) {
         for (std::size_t j = i + 1; j < members_.size(); ++j) {
             const Gap near = gap_of(members_[i], members_[j], R);
             if (near.gap <= 2.0 * reach(near))
-                contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap});
+                contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap,
+                                     nearness(near.gap, reach(near))});
         }
     }
     // Sort by position; insertion sort preserves the order of equal elements and needs no memory.
@@ -103,6 +119,26 @@ void Clusters::collect_at(int a, int b, double v_n) {
                                              return before_place(place(p), place(q));
                                          });
         std::rotate(to, here, here + 1);
+    }
+}
+
+// A contact whose balls have no other one is an impact of two balls, and its normal stays as it was at the touch, as
+// in the pair kernel. So that nothing jumps where the last other ball gets out of reach, its normal turns by the
+// nearness of the nearest other contact of its balls, and by its own.
+void Clusters::share_turning() {
+    nearest_.assign(members_.size(), {});
+    for (const ClusterContact& c : contacts_) {
+        for (const int ball : {c.i, c.j}) {
+            std::array<double, 2>& two = nearest_[ball];  // the largest and the next
+            two[1] = std::max(two[1], std::min(two[0], c.turn));
+            two[0] = std::max(two[0], c.turn);
+        }
+    }
+    for (ClusterContact& c : contacts_) {
+        double other = 0.0;
+        for (const int ball : {c.i, c.j})
+            other = std::max(other, nearest_[ball][c.turn < nearest_[ball][0] ? 0 : 1]);
+        c.turn = std::min(c.turn, other);
     }
 }
 

@@ -1,6 +1,7 @@
 // Ball-ball impacts with a third ball within reach: finds the members of such a cluster and their motion after it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct ClustersMemory {
     ClusterMap map_;
     std::vector<ClusterBall> members_;
     std::vector<ClusterContact> contacts_;
+    std::vector<std::array<double, 2>> nearest_;  // per ball
 };
 
 class Clusters : private Borrowed<ClustersMemory> {
@@ -38,6 +40,7 @@ class Clusters : private Borrowed<ClustersMemory> {
 
   private:
     void collect_at(int a, int b, double v_n);
+    void share_turning();
     Box near_box(const ClusterBall& ball, double gap) const;
     ClusterBall member(int ball) const;
 

@@ -94,7 +94,8 @@ void ClusterMap::load(const std::vector<ClusterBall>& balls, const std::vector<C
         for (int k = 0; k < 3; ++k) motion_.push_back(R * ball.w[k] / V);
     }
     const double L = contact_length(V);
-    for (const ClusterContact& c : contacts) contacts_.push_back({c.i, c.j, c.n.x(), c.n.y(), -c.gap / L});
+    for (const ClusterContact& c : contacts)
+        contacts_.push_back({c.i, c.j, c.n.x(), c.n.y(), -c.gap / L, c.turn});
     const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
     numbers_.resize(
         std::max(numbers_.size(), kernel::contact_phase_numbers(m, n) + kCacheLine / sizeof(double)));
@@ -152,7 +153,8 @@ long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<Cl
                                      motion_.data(),
                                      contacts_.data(),
                                      on_cache_line(numbers_),
-                                     places_.data()};
+                                     places_.data(),
+                                     contact_length(V) / (2.0 * settings.R)};
     const long steps = settings.integrate(phase, law_of(settings, V), settings.longest_step,
                                           kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;

@@ -1,6 +1,6 @@
-// Many contacts at once: the compliant map (Hertz contacts of the whole cluster, frozen normals,
-// instantaneous for the engine) and the rigid symmetric projection. Source: clusters.md of the design notes
-// (equations 1 to 8); docs/design/hard_cases.md says what such a model can and cannot claim.
+// Many contacts at once: the compliant map (Hertz contacts of the whole cluster, which turn as the balls move; instantaneous
+// for the engine, which gets velocities and spins) and the rigid symmetric projection. Equations: docs/reference/physics.md;
+// docs/design/hard_cases.md says what such a model can and cannot claim.
 #pragma once
 
 #include <vector>
@@ -10,17 +10,17 @@
 
 namespace carom {
 
-/// [V] A contact of a cluster that closes faster than this sets the scale V itself: the step is made for
-/// approaches near V.
-inline constexpr double kClusterFaster = 2.0;
+/// [V] A contact of a cluster that closes faster than this, times its nearness, sets the scale V itself: the step is made
+/// for approaches near V. Above 1 by what the reach may jump where another contact sets it.
+inline constexpr double kClusterFaster = 1.05;
 /// [share of R] Gaps up to this are rounding of the positions: the balls touch.
 inline constexpr double kTouchUlp = 64.0 * 2.220446049250313e-16;
 
-/// [V] and [L/V] Regularisation of the friction in the compliant map, which errs by about 2e-3 V in stick (docs/design/hard_cases.md), and its
-/// longest steps: without friction, where they err by 3e-7 V, and with it, where 2e-5 V (largest of 40 racks 8e-5 V) is far below the former.
-inline constexpr double kClusterEpsilon = 2e-3;
+/// [V] and [L/V] Regularisation of the friction in the compliant map, from which its errors come: 6e-4 V in racks that touch, up to 2.7e-3 V
+/// where gaps of 0.3 mm let errors grow (docs/lab/2026-11-moving_normals.md); and its longest steps, without friction and with it.
+inline constexpr double kClusterEpsilon = 1.3e-3;
 inline constexpr double kClusterStep = 1.0 / 80.0;
-inline constexpr double kClusterFrictionStep = 1.0 / 16.0;
+inline constexpr double kClusterFrictionStep = 1.0 / 14.0;
 /// [L/V] A cluster that has not parted after this many contact times is resolved as rigid; the slowest of 16
 /// balls takes a few dozen.
 inline constexpr double kClusterTimeLimit = 200.0;
@@ -34,6 +34,8 @@ struct ClusterContact {
     int i, j;    ///< into the list of balls
     Vec2 n;      ///< unit, from i to j
     double gap;  ///< [m], >= 0; 0 where the balls touch
+    /// Share of the turning of the balls that the normal follows: kernel::HertzContact.
+    double turn = 1.0;
 };
 
 struct ClusterSettings {

@@ -6,6 +6,8 @@
 // part. Memory is laid out for whole registers: the velocity and the horizontal spin of a ball are one row of four
 // numbers.
 #include "carom/kernel/contact_phase.h"
+#include "contact_phase/flight.h"
+#include "contact_phase/state.h"
 #include "kernel_set.h"
 #include "numbers.h"
 #include "simd.h"
@@ -13,47 +15,14 @@
 namespace carom::kernel {
 namespace {
 
-using Four = Pack<4>;
-
-constexpr int kPerBall = 5;  // numbers of a ball in ContactPhase::motion
-constexpr int kStages = 4;   // of the Runge-Kutta step
-
-// Numbers of a ball here. A row holds velocities in the even places and spins in the odd ones: a contact feels the
-// difference of the velocities of its balls and the sum of their spins, which is one subtract_add().
-constexpr int kRow = 8;
-constexpr int kPlace[kPerBall] = {0, 2, 1, 3, 5};    // of v_x, v_y, R w_x, R w_y, R w_z in a row
-constexpr int kLift = 4, kTurn = 5, kStiffness = 7;  // of other numbers in a row: see Work
-
 // Stability of the step. The regularised friction is stiff: with k = mu_b F / |s|, friction over slip, the friction
 // of one contact makes its slip decay at the rate 7 k, and by the theorem of Gershgorin no rate of all contacts
 // together exceeds 7 times the largest sum of k over a ball (the cloth under the ball counts half). Runge-Kutta steps
-// are stable up to 2.78 over that rate. A step takes at most kStableShare over the largest sum.
-constexpr double kStableShare = 2.0 / 7.0;
+// are stable up to 2.78 over that rate; a step takes at most 2.5 over it.
+constexpr double kStableShare = 2.5 / 7.0;
 // Where a slip is still above epsilon, steps of that length would jump over the transition into stick. There k counts
 // kResolve times, but no more than its value in stick, mu_b F / epsilon.
-constexpr double kResolve = 8.0;
-
-CAROM_INLINE int padded(int n) {
-    return (n + 3) / 4 * 4;
-}
-
-struct Work {
-    int balls, contacts;
-    int rows, lanes;  // sizes of the arrays per ball and per contact
-    // The state, its stages and their slopes; of each ball a row (v_x, R w_x, v_y, R w_y | -, R w_z, -, -). In a
-    // slope the fifth number (kLift) is the sum of the vertical forces, the eighth (kStiffness) minus the sum of
-    // friction over slip.
-    double *y, *y_stage, *dy[kStages];
-    // Of each contact: overlap, its stages and their slopes, normal, and the largest overlap since the contact
-    // opened.
-    double *d, *d_stage, *rate[kStages], *nx, *ny, *memory;
-    int *i, *j;  // where the rows of the two balls begin
-    // The list of contacts that overlap, in their order: number, rows, normal.
-    int *active, *active_i, *active_j;
-    double *active_nx, *active_ny;
-    int* overlaps;  // of each four contacts a bit each: those that are in the list
-    int count;      // contacts in the list, with those that fill the last register
-};
+constexpr double kResolve = 4.0;
 
 // HertzLaw in lanes. kFalls: the friction between balls depends on the slip.
 template <bool kFalls>
@@ -73,67 +42,6 @@ CAROM_INLINE Four falling_exponential(Four x) {
     for (const double factor : kFactors) power = power * t + broadcast<4>(factor);
     for (int doubling = 0; doubling < 6; ++doubling) power = power * power;
     return power;
-}
-
-// The next `count` numbers of the scratch memory, set to zero.
-CAROM_INLINE double* take(double*& from, int count) {
-    double* taken = from;
-    from += count;
-    for (int n = 0; n < count; ++n) taken[n] = 0.0;
-    return taken;
-}
-
-// Contacts that fill up the last register are between one more ball, which rests, and itself.
-CAROM_INLINE Work lay_out(const ContactPhase& phase) {
-    Work w;
-    w.balls = phase.balls;
-    w.contacts = phase.contacts;
-    w.rows = phase.balls + 1;
-    w.lanes = (phase.contacts + kRow) / kRow * kRow;
-    double* next = phase.numbers;
-    w.y = take(next, kRow * padded(w.rows));
-    w.y_stage = take(next, kRow * padded(w.rows));
-    for (double*& dy : w.dy) dy = take(next, kRow * padded(w.rows));
-    w.d = take(next, w.lanes);
-    w.d_stage = take(next, w.lanes);
-    for (double*& rate : w.rate) rate = take(next, w.lanes);
-    w.nx = take(next, w.lanes);
-    w.ny = take(next, w.lanes);
-    w.memory = take(next, w.lanes);
-    w.active_nx = take(next, w.lanes);
-    w.active_ny = take(next, w.lanes);
-    w.i = phase.places;
-    w.j = w.i + w.lanes;
-    w.active = w.j + w.lanes;
-    w.active_i = w.active + w.lanes;
-    w.active_j = w.active_i + w.lanes;
-    w.overlaps = w.active_j + w.lanes;
-    for (int block = 0; block < w.lanes / 4; ++block) w.overlaps[block] = 0;
-    w.count = 0;
-    for (int b = 0; b < w.balls; ++b) {
-        for (int k = 0; k < kPerBall; ++k) w.y[kRow * b + kPlace[k]] = phase.motion[kPerBall * b + k];
-    }
-    for (int c = 0; c < w.lanes; ++c) {
-        const bool real = c < w.contacts;
-        w.i[c] = kRow * (real ? phase.contact[c].i : w.balls);
-        w.j[c] = kRow * (real ? phase.contact[c].j : w.balls);
-        if (!real) continue;
-        w.nx[c] = phase.contact[c].nx;
-        w.ny[c] = phase.contact[c].ny;
-        w.d[c] = phase.contact[c].overlap;
-    }
-    return w;
-}
-
-// d' = (v_i - v_j) . n of all contacts.
-CAROM_INLINE void rates(const Work& w, const double* y, double* rate) {
-    for (int c = 0; c < w.lanes; c += 4) {
-        Four dv[4];
-        for (int lane = 0; lane < 4; ++lane)
-            dv[lane] = load<4>(y + w.i[c + lane]) - load<4>(y + w.j[c + lane]);
-        transpose(dv[0], dv[1], dv[2], dv[3]);
-        store(rate + c, dv[0] * load<4>(w.nx + c) + dv[2] * load<4>(w.ny + c));
-    }
 }
 
 template <bool kFalls>
@@ -163,17 +71,16 @@ CAROM_INLINE void list_overlaps(Work& w, const double* d) {
         const int c = w.active[n];
         w.active_i[n] = w.i[c];
         w.active_j[n] = w.j[c];
-        w.active_nx[n] = w.nx[c];
-        w.active_ny[n] = w.ny[c];
     }
 }
 
 // Adds the forces of four contacts of the list to the slopes of their balls.
 template <bool kFalls>
 CAROM_INLINE void add_forces(const Work& w, const Law<kFalls>& law, const double* y, const double* d,
-                             int first, double* dy) {
+                             const double* n_x, const double* n_y, int first, double* dy) {
     const int *c = w.active + first, *i = w.active_i + first, *j = w.active_j + first;
-    const Four nx = load<4>(w.active_nx + first), ny = load<4>(w.active_ny + first);
+    const Four nx = pack(n_x[c[0]], n_x[c[1]], n_x[c[2]], n_x[c[3]]);
+    const Four ny = pack(n_y[c[0]], n_y[c[1]], n_y[c[2]], n_y[c[3]]);
     Four motion[4];
     for (int lane = 0; lane < 4; ++lane)
         motion[lane] = subtract_add(load<4>(y + i[lane]), load<4>(y + j[lane]));
@@ -235,9 +142,10 @@ CAROM_INLINE void add_cloth(const Work& w, const Law<kFalls>& law, const double*
 
 // Adds the right-hand side to dy, in units of V and L: forces are d^1.5, masses 1.
 template <bool kFalls>
-CAROM_INLINE void forces(Work& w, const Law<kFalls>& law, const double* y, const double* d, double* dy) {
+CAROM_INLINE void forces(Work& w, const Law<kFalls>& law, const double* y, const double* d, const double* nx,
+                         const double* ny, double* dy) {
     list_overlaps(w, d);
-    for (int n = 0; n < w.count; n += 4) add_forces(w, law, y, d, n, dy);
+    for (int n = 0; n < w.count; n += 4) add_forces(w, law, y, d, nx, ny, n, dy);
     if (law.cloth) add_cloth(w, law, y, dy);
 }
 
@@ -278,14 +186,14 @@ CAROM_INLINE double stable_step(const Work& w, const double* dy, double longest)
 // before the step.
 template <bool kFalls>
 CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double longest) {
-    forces(w, law, w.y, w.d, w.dy[0]);
+    forces(w, law, w.y, w.d, w.nx, w.ny, w.dy[0]);
     const double h = stable_step(w, w.dy[0], longest);
     const double share[kStages] = {0.0, 0.5 * h, 0.5 * h, h};
     for (int k = 1; k < kStages; ++k) {
         shift(w.y_stage, w.y, w.dy[k - 1], share[k], kRow * w.rows);
         shift(w.d_stage, w.d, w.rate[k - 1], share[k], w.lanes);
-        rates(w, w.y_stage, w.rate[k]);
-        forces(w, law, w.y_stage, w.d_stage, w.dy[k]);
+        rates(w, w.y_stage, share[k], w.rate[k]);
+        forces(w, law, w.y_stage, w.d_stage, w.nx_stage, w.ny_stage, w.dy[k]);
     }
     for (int c = 0; c < w.lanes; c += 4) store(w.d_stage + c, load<4>(w.d + c));
     combine<true>(w.y, w.dy, h / 6.0, kRow * w.rows);
@@ -319,15 +227,6 @@ CAROM_INLINE void remember(const Work& w, const double* before, const double* no
     }
 }
 
-// Whether all contacts are open and none would close within look_ahead.
-CAROM_INLINE bool finished(const Work& w, const double* rate, double look_ahead) {
-    for (int c = 0; c < w.contacts; ++c) {
-        if (w.d[c] > 0.0) return false;
-        if (rate[c] > 0.0 && -w.d[c] < look_ahead * rate[c]) return false;
-    }
-    return true;
-}
-
 template <bool kFalls>
 long integrate(const ContactPhase& phase, const HertzLaw& law, double longest_step, double look_ahead,
                double time_limit) {
@@ -343,18 +242,23 @@ long integrate(const ContactPhase& phase, const HertzLaw& law, double longest_st
                             broadcast<4>(law.mu_b_fall),
                             law.p,
                             law.mu_s > 0.0};
-    rates(w, w.y, w.rate[0]);
+    look(w);
     long steps = 0;
     double time = 0.0;
-    for (bool open = false; !open;) {
+    for (;;) {
         if (!(time < time_limit)) return -1;
-        const double h = step(w, lanes, longest_step);
+        const double longest = w.shares ? settle(phase, w, longest_step) : longest_step;
+        const double h = step(w, lanes, longest);
         ++steps;
         time += h;
-        rates(w, w.y, w.rate[1]);
+        turn_normals(w, h, w.rate[1], w.rate[2]);
         remember(w, w.rate[0], w.rate[1], h);
-        for (int c = 0; c < w.lanes; c += 4) store(w.rate[0] + c, load<4>(w.rate[1] + c));
-        open = finished(w, w.rate[0], look_ahead);
+        for (int c = 0; c < w.lanes; c += 4) store(w.rate[0] + c, load<4>(w.rate[2] + c));
+        if (any_overlap(w)) continue;
+        const double flight = next_touch(w);
+        if (!(flight < look_ahead)) break;
+        fly(phase, w, flight, look_ahead);
+        time += flight;
     }
     for (int b = 0; b < w.balls; ++b) {
         for (int k = 0; k < kPerBall; ++k) phase.motion[kPerBall * b + k] = w.y[kRow * b + kPlace[k]];

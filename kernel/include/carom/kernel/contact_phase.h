@@ -1,5 +1,5 @@
-// The contact phase of many equal balls at once: Hertz contacts with friction, frozen normals, in units of
-// the approach speed V and of L = (V^2 m / k)^0.4 (docs/reference/physics.md, several contacts at once).
+// The contact phase of many equal balls at once: Hertz contacts with friction, whose normals turn as the balls move, in
+// units of the approach speed V and of L = (V^2 m / k)^0.4 (docs/reference/physics.md, several contacts at once).
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,9 @@ struct HertzContact {
     int i, j;        ///< balls
     double nx, ny;   ///< unit normal from i to j
     double overlap;  ///< [L] at the start; negative: a gap
+    /// Share of the turning of the balls that the normal takes part in while the contact is closed. With 0 it stays as at
+    /// the touch, and the touch is where the balls would meet without the time that the contacts before took.
+    double turn = 1.0;
 };
 
 /// F = d^1.5 while a contact is loaded for the first time, d^1.5 (a + b (d / d_m)^p) below its largest
@@ -35,18 +38,20 @@ struct ContactPhase {
     const HertzContact* contact;
     double* numbers;
     int* places;
+    double curvature = 0.0;  ///< L/(2 R); 0: balls so large that the normals do not turn
 };
 
 constexpr std::size_t contact_phase_numbers(int balls, int contacts) noexcept {
-    return 48 * (static_cast<std::size_t>(balls) + 4) + 11 * (static_cast<std::size_t>(contacts) + 8);
+    return 48 * (static_cast<std::size_t>(balls) + 4) + 14 * (static_cast<std::size_t>(contacts) + 8);
 }
 constexpr std::size_t contact_phase_places(int contacts) noexcept {
     return 6 * (static_cast<std::size_t>(contacts) + 8);
 }
 
-/// Classical Runge-Kutta steps until every contact is open and none would close again within look_ahead
-/// [L/V]. A step is `longest_step` [L/V], or shorter where friction near stick is too stiff for it. The order
-/// in which a ball's contacts are given is the order of its sums.
+/// Classical Runge-Kutta steps until every contact is open and none would close again within look_ahead [L/V]. A step is `longest_step` [L/V], or
+/// shorter where friction near stick is too stiff for it. During a step normals turn at the speed of its start; after it, by the mean of both ends.
+/// While all contacts are open the balls fly on without a step; a contact that closes late in look_ahead turns less, at its end not at all.
+/// The order in which a ball's contacts are given is the order of its sums.
 /// @return the number of steps, or -1 if the contacts did not part within time_limit [L/V]
 using ContactPhaseFunction = long (*)(const ContactPhase& phase, const HertzLaw& law, double longest_step,
                                       double look_ahead, double time_limit) noexcept;

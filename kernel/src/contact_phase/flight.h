@@ -1,0 +1,155 @@
+// What happens between the contacts of a contact phase: flights, and contacts that turn less than the balls. Part of
+// contact_phase.cpp.
+#pragma once
+
+#include "carom/kernel/contact_phase.h"
+#include "contact_phase/state.h"
+#include "numbers.h"
+#include "simd.h"
+
+namespace carom::kernel {
+namespace {
+
+// Where a contact closes after a flight, its normal turns with the balls up to this share of the look-ahead; less from
+// there to the end, and so do contacts that close up to so long after it [L/V].
+constexpr double kFlight = 0.5, kSoonAfter = 0.5;
+// [longest steps] A contact that touches within this time touches at once.
+constexpr double kAtOnce = 1e-3;
+
+CAROM_INLINE bool any_overlap(const Work& w) {
+    int bits = 0;
+    for (int c = 0; c < w.lanes; c += 4) bits |= bits_less(broadcast<4>(0.0), load<4>(w.d + c));
+    return bits != 0;
+}
+
+constexpr double kNever = 1e300;
+
+// The motion of two balls along and across their line of centres, while nothing pushes them. Lengths in L, kappa = L/(2 R).
+struct Way {
+    double closing, across, speed2;  // speeds, and their square together
+    double kappa, gap, apart;        // kappa, and kappa times the distance of the centres
+
+    // When they touch: |z - v s| = 2 R, without the difference of numbers that are nearly equal.
+    double touch() const {
+        if (!(closing > 0.0)) return kNever;
+        const double q = gap * (2.0 + kappa * gap), c = apart * closing, root2 = c * c - kappa * speed2 * q;
+        return root2 < 0.0 ? kNever : q / (c + square_root(root2));
+    }
+    // When they touch or are nearest, from now on.
+    double nearest() const {
+        const double s = touch();
+        if (s < kNever) return s;
+        return closing > 0.0 && kappa > 0.0 ? apart * closing / (kappa * speed2) : 0.0;
+    }
+    double gap_after(double s) const {
+        const double change = s * (kappa * speed2 * s - 2.0 * apart * closing);
+        return gap + change / (square_root(apart * apart + kappa * change) + apart);
+    }
+};
+
+CAROM_INLINE Way way(const Work& w, int c, double nx, double ny, double gap) {
+    const double *i = w.y + w.i[c], *j = w.y + w.j[c];
+    const double x = i[0] - j[0], y = i[2] - j[2];
+    const double along = x * nx + y * ny, across = y * nx - x * ny;
+    return {along, across, along * along + across * across, w.curvature, gap, 1.0 + w.curvature * gap};
+}
+
+// The normal after a flight of length s.
+CAROM_INLINE void turn_by_flight(const Way& way, double s, double& nx, double& ny) {
+    const double along = way.apart - way.kappa * way.closing * s, across = -way.kappa * way.across * s;
+    const double x = nx * along - ny * across, y = ny * along + nx * across;
+    const double length = square_root(x * x + y * y);
+    nx = x / length;
+    ny = y / length;
+}
+
+// Rates and turning of a state whose normals did not come from a step.
+CAROM_INLINE void look(Work& w) {
+    for (int c = 0; c < w.lanes; ++c) {
+        w.nx_stage[c] = w.nx[c];
+        w.ny_stage[c] = w.ny[c];
+    }
+    turn_normals(w, 0.0, w.rate[1], w.rate[0]);
+}
+
+// When the next contact closes, if nothing overlaps.
+CAROM_INLINE double next_touch(const Work& w) {
+    double first = kNever;
+    for (int c = 0; c < w.contacts; ++c) {
+        if (w.rate[0][c] > 0.0) first = smallest(first, way(w, c, w.nx[c], w.ny[c], -w.d[c]).touch());
+    }
+    return first;
+}
+
+// Falls smoothly from 1 at x <= from to 0 at x >= to.
+CAROM_INLINE double falling(double x, double from, double to) {
+    if (!(x > from)) return 1.0;
+    if (!(x < to)) return 0.0;
+    const double t = (x - from) / (to - from);
+    return 1.0 - t * t * (3.0 - 2.0 * t);
+}
+
+// Moves all balls straight on for `time`, when the first contact closes. Where that takes almost the look-ahead, the caller is almost
+// about to take over, whose balls have not moved during the contacts: such contacts, and those that close soon after,
+// turn less.
+CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double look_ahead) {
+    const double less = 1.0 - falling(time, kFlight * look_ahead, look_ahead);
+    w.shares = false;
+    for (int c = 0; c < w.contacts; ++c) {
+        const Way path = way(w, c, w.nx[c], w.ny[c], -w.d[c]);
+        const double late = path.touch() - time;
+        w.d[c] = smallest(0.0, -path.gap_after(time));
+        if (late <= 0.0) w.d[c] = 0.0;
+        turn_by_flight(path, time, w.nx[c], w.ny[c]);
+        w.share[c] = phase.contact[c].turn * (1.0 - less * falling(late, 0.0, kSoonAfter));
+        w.bend[c] = w.curvature;
+        w.shares |= w.share[c] < 1.0 && w.curvature > 0.0;
+    }
+    look(w);
+}
+
+// A contact closes that turns less than the balls do: its normal goes from that of the balls to the one with which the balls
+// would meet if they had moved with their present velocities since the first touch, without any contact before.
+CAROM_INLINE void close_contact(const ContactPhase& phase, Work& w, int c, double time) {
+    double &nx = w.nx[c], &ny = w.ny[c];
+    turn_by_flight(way(w, c, nx, ny, largest(0.0, -w.d[c])), time, nx, ny);
+    double x = phase.contact[c].nx, y = phase.contact[c].ny;
+    const Way since = way(w, c, x, y, -phase.contact[c].overlap);
+    turn_by_flight(since, since.nearest(), x, y);
+    const double share = w.share[c];
+    nx = share * nx + (1.0 - share) * x;
+    ny = share * ny + (1.0 - share) * y;
+    const double length = square_root(nx * nx + ny * ny);
+    nx /= length;
+    ny /= length;
+    w.bend[c] = share * w.curvature;
+}
+
+// Contacts that turn less than the balls do so from their touch to their end. A step ends where one of them touches.
+// @return the longest step
+CAROM_INLINE double settle(const ContactPhase& phase, Work& w, double longest) {
+    double h = longest;
+    bool changed = false;
+    for (int c = 0; c < w.contacts; ++c) {
+        if (!(w.share[c] < 1.0)) continue;
+        const bool closed = w.bend[c] < w.curvature, open = !(w.d[c] > 0.0);
+        if (closed) {
+            if (!open || w.rate[0][c] > 0.0) continue;
+            w.bend[c] = w.curvature;
+            changed = true;
+            continue;
+        }
+        const double time = open ? way(w, c, w.nx[c], w.ny[c], -w.d[c]).touch() : 0.0;
+        if (time > kAtOnce * longest) {
+            h = smallest(h, time);
+            continue;
+        }
+        close_contact(phase, w, c, time);
+        changed = true;
+    }
+    if (changed) look(w);
+    return h;
+}
+
+}  // namespace
+}  // namespace carom::kernel

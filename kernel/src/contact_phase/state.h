@@ -1,0 +1,149 @@
+// The state of a contact phase, and how its normals turn. Part of contact_phase.cpp.
+#pragma once
+
+#include "carom/kernel/contact_phase.h"
+#include "numbers.h"
+#include "simd.h"
+
+namespace carom::kernel {
+namespace {
+
+using Four = Pack<4>;
+
+constexpr int kPerBall = 5;  // numbers of a ball in ContactPhase::motion
+constexpr int kStages = 4;   // of the Runge-Kutta step
+
+// Numbers of a ball here. A row holds velocities in the even places and spins in the odd ones: a contact feels the
+// difference of the velocities of its balls and the sum of their spins, which is one subtract_add().
+constexpr int kRow = 8;
+constexpr int kPlace[kPerBall] = {0, 2, 1, 3, 5};    // of v_x, v_y, R w_x, R w_y, R w_z in a row
+constexpr int kLift = 4, kTurn = 5, kStiffness = 7;  // of other numbers in a row: see Work
+
+CAROM_INLINE int padded(int n) {
+    return (n + 3) / 4 * 4;
+}
+
+struct Work {
+    int balls, contacts;
+    int rows, lanes;  // sizes of the arrays per ball and per contact
+    // The state, its stages and their slopes; of each ball a row (v_x, R w_x, v_y, R w_y | -, R w_z, -, -). In a
+    // slope the fifth number (kLift) is the sum of the vertical forces, the eighth (kStiffness) minus the sum of
+    // friction over slip.
+    double *y, *y_stage, *dy[kStages];
+    // Of each contact: overlap, its stages and their slopes, and the largest overlap since the contact opened.
+    double *d, *d_stage, *rate[kStages], *memory;
+    // Normal at the start of the step and at a stage, the speed at which it turns, and the curvature 1/(2 R) that it
+    // turns by: less than that of the balls where it turns less (see settle()).
+    double *nx, *ny, *nx_stage, *ny_stage, *turn, *bend;
+    double* share;  // of the turning, while the contact is closed
+    double curvature;
+    bool shares;  // whether one of them is below 1
+    int *i, *j;   // where the rows of the two balls begin
+    // The list of contacts that overlap, in their order: number, rows.
+    int *active, *active_i, *active_j;
+    int* overlaps;  // of each four contacts a bit each: those that are in the list
+    int count;      // contacts in the list, with those that fill the last register
+};
+
+// The next `count` numbers of the scratch memory, set to zero.
+CAROM_INLINE double* take(double*& from, int count) {
+    double* taken = from;
+    from += count;
+    for (int n = 0; n < count; ++n) taken[n] = 0.0;
+    return taken;
+}
+
+// Contacts that fill up the last register are between one more ball, which rests, and itself.
+CAROM_INLINE Work lay_out(const ContactPhase& phase) {
+    Work w;
+    w.balls = phase.balls;
+    w.contacts = phase.contacts;
+    w.rows = phase.balls + 1;
+    w.lanes = (phase.contacts + kRow) / kRow * kRow;
+    double* next = phase.numbers;
+    w.y = take(next, kRow * padded(w.rows));
+    w.y_stage = take(next, kRow * padded(w.rows));
+    for (double*& dy : w.dy) dy = take(next, kRow * padded(w.rows));
+    w.d = take(next, w.lanes);
+    w.d_stage = take(next, w.lanes);
+    for (double*& rate : w.rate) rate = take(next, w.lanes);
+    w.memory = take(next, w.lanes);
+    w.nx = take(next, w.lanes);
+    w.ny = take(next, w.lanes);
+    w.nx_stage = take(next, w.lanes);
+    w.ny_stage = take(next, w.lanes);
+    w.turn = take(next, w.lanes);
+    w.bend = take(next, w.lanes);
+    w.share = take(next, w.lanes);
+    w.curvature = phase.curvature;
+    w.shares = false;
+    w.i = phase.places;
+    w.j = w.i + w.lanes;
+    w.active = w.j + w.lanes;
+    w.active_i = w.active + w.lanes;
+    w.active_j = w.active_i + w.lanes;
+    w.overlaps = w.active_j + w.lanes;
+    for (int block = 0; block < w.lanes / 4; ++block) w.overlaps[block] = 0;
+    w.count = 0;
+    for (int b = 0; b < w.balls; ++b) {
+        for (int k = 0; k < kPerBall; ++k) w.y[kRow * b + kPlace[k]] = phase.motion[kPerBall * b + k];
+    }
+    for (int c = 0; c < w.lanes; ++c) {
+        const bool real = c < w.contacts;
+        w.i[c] = kRow * (real ? phase.contact[c].i : w.balls);
+        w.j[c] = kRow * (real ? phase.contact[c].j : w.balls);
+        if (!real) continue;
+        w.nx[c] = phase.contact[c].nx;
+        w.ny[c] = phase.contact[c].ny;
+        w.d[c] = phase.contact[c].overlap;
+        w.share[c] = phase.contact[c].turn;
+        w.bend[c] = phase.curvature;
+        w.shares |= w.share[c] < 1.0 && w.curvature > 0.0;
+    }
+    return w;
+}
+
+// The difference of the velocities of the balls of four contacts, x in [0] and y in [2].
+CAROM_INLINE void closing(const Work& w, const double* y, int c, Four (&dv)[4]) {
+    for (int lane = 0; lane < 4; ++lane) dv[lane] = load<4>(y + w.i[c + lane]) - load<4>(y + w.j[c + lane]);
+    transpose(dv[0], dv[1], dv[2], dv[3]);
+}
+
+// d' = (v_i - v_j) . n of all contacts, with the normals that have turned for `time`.
+CAROM_INLINE void rates(const Work& w, const double* y, double time, double* rate) {
+    for (int c = 0; c < w.lanes; c += 4) {
+        Four dv[4];
+        closing(w, y, c, dv);
+        const Four angle = time * load<4>(w.turn + c), nx = load<4>(w.nx + c), ny = load<4>(w.ny + c);
+        const Four x = nx - angle * ny, y_now = ny + angle * nx;
+        store(w.nx_stage + c, x);
+        store(w.ny_stage + c, y_now);
+        store(rate + c, dv[0] * x + dv[2] * y_now);
+    }
+}
+
+// After a step of length h: the rates with the normals of its last stage into `rate`, the normals of the new state, their
+// turning, and the rates of the new state into `next`. The normals move by the mean of the speeds at both ends.
+CAROM_INLINE void turn_normals(const Work& w, double h, double* rate, double* next) {
+    const Four one = broadcast<4>(1.0), curvature = broadcast<4>(w.curvature);
+    for (int c = 0; c < w.lanes; c += 4) {
+        Four dv[4];
+        closing(w, w.y, c, dv);
+        const Four x = load<4>(w.nx_stage + c), y = load<4>(w.ny_stage + c);
+        store(rate + c, dv[0] * x + dv[2] * y);
+        // z = x_j - x_i = (2 R - d) n moves by -(v_i - v_j): n' = -(v_i - v_j) . t / (2 R - d) t, t = (-n_y, n_x).
+        const Four turn =
+            load<4>(w.bend + c) * (dv[0] * y - dv[2] * x) / (one - curvature * load<4>(w.d + c));
+        const Four angle = (0.5 * h) * (load<4>(w.turn + c) + turn);
+        const Four nx = load<4>(w.nx + c), ny = load<4>(w.ny + c);
+        const Four shrink = one / square_root(one + angle * angle);
+        const Four nx_now = (nx - angle * ny) * shrink, ny_now = (ny + angle * nx) * shrink;
+        store(w.turn + c, turn);
+        store(w.nx + c, nx_now);
+        store(w.ny + c, ny_now);
+        store(next + c, dv[0] * nx_now + dv[2] * ny_now);
+    }
+}
+
+}  // namespace
+}  // namespace carom::kernel

@@ -1,0 +1,186 @@
+// Balls in contact, integrated plainly: Hertz springs with the unloading law of docs/reference/physics.md, friction with
+// almost sharp stick, and everything moves, positions too. It shares nothing with the kernel and is slow: the step is a
+// two-thousandth of L/V. SI units.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace carom::test {
+
+struct MovingBall {
+    std::array<double, 2> x, v;  ///< [m], [m/s]
+    std::array<double, 3> w;     ///< [rad/s]
+};
+
+struct MovingLaw {
+    double R = 0.028575, stiffness = 3.094e9;  ///< [m], k/m [m^-0.5 s^-2]
+    double mu_b = 0.05, mu_s = 0.2, e_b = 0.95;
+    double mu_b_more = 0.0, mu_b_fall = 0.0;  ///< friction mu_b + more exp(-fall |slip|), slip in m/s
+    double slip = 1e-4;                       ///< [V] regularisation of the friction
+    double step = 5e-4;                       ///< [L/V]
+    double look_ahead = 2.0;  ///< [L/V] it ends when all are open and none touches within this time
+};
+
+class MovingContacts {
+  public:
+    /// @param V  [m/s] scale of the step, of the regularisation and of the end
+    MovingContacts(std::vector<MovingBall> balls, const MovingLaw& law, double V)
+        : balls_(std::move(balls)), law_(law) {
+        const double length = std::pow(V * V / law.stiffness, 0.4);
+        unit_ = length / V;
+        slip_ = law.slip * V;
+        const double e2 = law.e_b * law.e_b;
+        while (e2 < 2.5 / (2.5 + power_)) power_ *= 2.0;
+        share_ = (1.0 - e2) * 0.4 / (0.4 - 1.0 / (2.5 + power_));
+        for (std::size_t i = 0; i < balls_.size(); ++i) {
+            for (std::size_t j = i + 1; j < balls_.size(); ++j) {
+                // The rounding of places that should touch is no gap.
+                const double gap = distance(balls_[i], balls_[j]) - 2.0 * law.R;
+                if (gap < 40.0 * length) pairs_.push_back({i, j, 0.0, gap < 1e-13 ? gap : 0.0});
+            }
+        }
+    }
+
+    /// Runs to the end; returns its duration [s], or -1 if there is none within 200 L/V.
+    double run() {
+        const double h = law_.step * unit_;
+        double time = 0.0;
+        for (; time < 200.0 * unit_; time += h) {
+            step(h);
+            const bool apart = all_open();
+            if (apart && !apart_) ends_.push_back(balls_);
+            apart_ = apart;
+            if (apart && finished()) return time;
+        }
+        return -1.0;
+    }
+
+    const std::vector<MovingBall>& balls() const { return balls_; }
+    /// The balls at every instant from which on no two of them touch, for a while.
+    const std::vector<std::vector<MovingBall>>& ends() const { return ends_; }
+
+  private:
+    struct Pair {
+        std::size_t i, j;
+        double most;    // largest overlap since the pair opened
+        double offset;  // [m] rounding at the start
+    };
+
+    static double distance(const MovingBall& a, const MovingBall& b) {
+        return std::hypot(b.x[0] - a.x[0], b.x[1] - a.x[1]);
+    }
+
+    double overlap(const std::vector<MovingBall>& at, const Pair& p) const {
+        return 2.0 * law_.R + p.offset - distance(at[p.i], at[p.j]);
+    }
+
+    double force(double d, double most) const {
+        const double loading = law_.stiffness * d * std::sqrt(d);
+        return d < most ? loading * (1.0 - share_ + share_ * std::pow(d / most, power_)) : loading;
+    }
+
+    // x' = v, v' and w' of all balls.
+    std::vector<MovingBall> slope(const std::vector<MovingBall>& at) const {
+        std::vector<MovingBall> s(at.size());
+        std::vector<double> up(at.size(), 0.0);
+        for (std::size_t b = 0; b < at.size(); ++b) s[b] = {at[b].v, {0.0, 0.0}, {0.0, 0.0, 0.0}};
+        const double R = law_.R;
+        for (const Pair& p : pairs_) {
+            const double d = overlap(at, p);
+            if (d <= 0.0) continue;
+            const MovingBall &a = at[p.i], &b = at[p.j];
+            const double length = distance(a, b);
+            const double n[2] = {(b.x[0] - a.x[0]) / length, (b.x[1] - a.x[1]) / length};
+            const double t[2] = {n[1], -n[0]};
+            const double F = force(d, p.most);
+            const double along = (a.v[0] - b.v[0]) * t[0] + (a.v[1] - b.v[1]) * t[1] - R * (a.w[2] + b.w[2]);
+            const double upward = R * ((a.w[0] + b.w[0]) * t[0] + (a.w[1] + b.w[1]) * t[1]);
+            const double size = std::sqrt(along * along + upward * upward + slip_ * slip_);
+            const double mu = law_.mu_b + law_.mu_b_more * std::exp(-law_.mu_b_fall * size);
+            const double f_t = -mu * F * along / size, f_z = -mu * F * upward / size;
+            for (std::size_t k = 0; k < 2; ++k) {
+                const double push = -F * n[k] + f_t * t[k];
+                s[p.i].v[k] += push;
+                s[p.j].v[k] -= push;
+                for (const std::size_t ball : {p.i, p.j}) s[ball].w[k] += 2.5 / R * f_z * t[k];
+            }
+            for (const std::size_t ball : {p.i, p.j}) s[ball].w[2] -= 2.5 / R * f_t;
+            up[p.i] += f_z;
+            up[p.j] -= f_z;
+        }
+        for (std::size_t b = 0; b < at.size(); ++b) {
+            if (up[b] >= 0.0) continue;
+            const double u[2] = {at[b].v[0] - R * at[b].w[1], at[b].v[1] + R * at[b].w[0]};
+            const double size = std::sqrt(u[0] * u[0] + u[1] * u[1] + slip_ * slip_);
+            const double f[2] = {law_.mu_s * up[b] * u[0] / size, law_.mu_s * up[b] * u[1] / size};
+            s[b].v[0] += f[0];
+            s[b].v[1] += f[1];
+            s[b].w[0] += 2.5 / R * f[1];
+            s[b].w[1] -= 2.5 / R * f[0];
+        }
+        return s;
+    }
+
+    static void add(std::vector<MovingBall>& to, const std::vector<MovingBall>& slope, double h) {
+        for (std::size_t b = 0; b < to.size(); ++b) {
+            for (std::size_t k = 0; k < 2; ++k) {
+                to[b].x[k] += h * slope[b].x[k];
+                to[b].v[k] += h * slope[b].v[k];
+            }
+            for (std::size_t k = 0; k < 3; ++k) to[b].w[k] += h * slope[b].w[k];
+        }
+    }
+
+    void step(double h) {
+        const std::vector<MovingBall> k1 = slope(balls_);
+        std::vector<MovingBall> at = balls_;
+        add(at, k1, 0.5 * h);
+        const std::vector<MovingBall> k2 = slope(at);
+        at = balls_;
+        add(at, k2, 0.5 * h);
+        const std::vector<MovingBall> k3 = slope(at);
+        at = balls_;
+        add(at, k3, h);
+        const std::vector<MovingBall> k4 = slope(at);
+        add(balls_, k1, h / 6.0);
+        add(balls_, k2, h / 3.0);
+        add(balls_, k3, h / 3.0);
+        add(balls_, k4, h / 6.0);
+        for (Pair& p : pairs_) {
+            const double d = overlap(balls_, p);
+            p.most = d > 0.0 ? std::max(p.most, d) : 0.0;
+        }
+    }
+
+    bool all_open() const {
+        return std::none_of(pairs_.begin(), pairs_.end(),
+                            [this](const Pair& p) { return overlap(balls_, p) > 0.0; });
+    }
+
+    bool finished() const {
+        for (const Pair& p : pairs_) {
+            const MovingBall &a = balls_[p.i], &b = balls_[p.j];
+            const double x[2] = {b.x[0] - a.x[0], b.x[1] - a.x[1]}, v[2] = {b.v[0] - a.v[0], b.v[1] - a.v[1]};
+            const double speed2 = v[0] * v[0] + v[1] * v[1], approach = -(x[0] * v[0] + x[1] * v[1]);
+            const double apart2 = x[0] * x[0] + x[1] * x[1] - 4.0 * law_.R * law_.R;
+            const double root2 = approach * approach - speed2 * apart2;
+            if (approach > 0.0 && root2 > 0.0 &&
+                apart2 < law_.look_ahead * unit_ * (approach + std::sqrt(root2)))
+                return false;
+        }
+        return true;
+    }
+
+    std::vector<MovingBall> balls_;
+    MovingLaw law_;
+    std::vector<Pair> pairs_;
+    std::vector<std::vector<MovingBall>> ends_;
+    bool apart_ = false;
+    double unit_, slip_, power_ = 1.0, share_;
+};
+
+}  // namespace carom::test
