@@ -19,6 +19,8 @@ namespace {
 constexpr int kMostBounces = 200;
 // [bounces] What a resting contact counts for that began and ended within that time: no row of impacts has one.
 constexpr int kHoldCounts = 20;
+// [bounces] What a cluster counts for that begins with this contact: it resolves all bounces of its balls at once, so that even a second one is rare.
+constexpr int kClusterCounts = 10;
 
 EventType with_phase(EventPhase phase, const Contact& contact, const Geometry& geometry) {
     const Partner partner = contact.with == With::kBall ? Partner::kBall
@@ -102,7 +104,8 @@ bool RestingContacts::chatters(const Contact& contact) const {
         const EventPhase phase = kind(e.type).phase;
         if (phase != EventPhase::kImpact && phase != EventPhase::kHold) continue;
         if (!contact_of(e).same(contact)) continue;
-        bounces += phase == EventPhase::kHold ? kHoldCounts : 1;
+        bounces += phase == EventPhase::kHold ? kHoldCounts
+                                              : (e.type == EventType::kBallCluster ? kClusterCounts : 1);
         if (bounces >= kMostBounces) return true;
     }
     return false;
