@@ -19,6 +19,9 @@ using Json = nlohmann::json;
 constexpr std::size_t kLongestName = 256;
 /// [bytes] What one byte of a text takes at most, where it is written as an escape: \u0000.
 constexpr std::size_t kLongestEscape = 6;
+/// The largest number of a record. What a scene may ask for stays far below it, in every unit; products of a few such numbers,
+/// of which states and orientations are made, are still finite.
+constexpr double kLargestNumber = 1e15;
 
 bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r';
@@ -158,7 +161,8 @@ double JsonValue::number() const {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     // The check of the whole text refuses what is too large, so this is too near to 0 for a double.
     if (error == std::errc::result_out_of_range) value = c == '-' ? -0.0 : 0.0;
-    if (!std::isfinite(value)) fail("expected a finite number");
+    if (!(std::abs(value) <= kLargestNumber))
+        fail("expected a number of at most 1e15, which no shot exceeds");
     return value;
 }
 

@@ -34,7 +34,9 @@ std::size_t segment_index(const std::vector<Segment>& segments, double t) {
 Eigen::Quaterniond rotation(const Vec3& turn) {
     const double angle = std::sqrt(turn.x() * turn.x() + turn.y() * turn.y() + turn.z() * turn.z());
     if (angle == 0.0) return Eigen::Quaterniond::Identity();
-    const auto [s, c] = sin_cos(0.5 * angle);
+    // A ball that spins for years turns farther than sin_cos can reduce; where it then stands is rounding.
+    constexpr double kTwoTurns = 12.566370614359172;
+    const auto [s, c] = sin_cos(0.5 * std::fmod(angle, kTwoTurns));
     const double k = s / angle;
     return {c, k * turn.x(), k * turn.y(), k * turn.z()};
 }
