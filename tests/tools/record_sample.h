@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 inline double any_double(Generator& rng) {
     for (;;) {
         const double value = std::bit_cast<double>(rng.next());
-        if (std::abs(value) <= 1e15) return value;
+        if (std::abs(value) <= 1e25) return value;
     }
 }
 
@@ -69,7 +69,7 @@ inline Record sample_record() {
         if (ball == 2) track.own = BallSize{0.03 / 7.0, 0.2 / 7.0};
         record.tracks.push_back(track);
     }
-    record.tracks[0].segments[0].v = Vec3(-0.0, 5e-324, 1e15);
+    record.tracks[0].segments[0].v = Vec3(-0.0, 5e-324, 1e25);
     record.events = {{0.0, EventType::kCueStrike, 0, -1},     {0.1, EventType::kBallBall, 0, 2},
                      {0.1, EventType::kBallCushion, 1, 0},    {0.2, EventType::kBallJaw, 1, 0},
                      {0.3, EventType::kBallPocket, 1, 0},     {1.0 / 3.0, EventType::kSlideRoll, 0, -1},

@@ -21,7 +21,7 @@ constexpr std::size_t kLongestName = 256;
 constexpr std::size_t kLongestEscape = 6;
 /// The largest number of a record. What a scene may ask for stays far below it, in every unit; products of a few such numbers,
 /// of which states and orientations are made, are still finite.
-constexpr double kLargestNumber = 1e15;
+constexpr double kLargestNumber = 1e25;
 
 bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r';
@@ -162,7 +162,7 @@ double JsonValue::number() const {
     // The check of the whole text refuses what is too large, so this is too near to 0 for a double.
     if (error == std::errc::result_out_of_range) value = c == '-' ? -0.0 : 0.0;
     if (!(std::abs(value) <= kLargestNumber))
-        fail("expected a number of at most 1e15, which no shot exceeds");
+        fail("expected a number of at most 1e25, which no shot exceeds");
     return value;
 }
 

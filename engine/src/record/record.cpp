@@ -43,7 +43,7 @@ Eigen::Quaterniond rotation(const Vec3& turn) {
 
 // [rad] The largest angle of a step, and [-] the number of steps that all balls of a record may take together. A record that
 // turns them more, which no shot does, is followed in larger steps, so that the work has a bound.
-constexpr double kLargestStep = 0.2, kMostSteps = 1e7;
+constexpr double kLargestStep = 0.2, kMostSteps = 1e6;
 
 // Returns how many steps it takes to follow w from w0 at the rate dw over `time`, if each turns the ball by `largest_step`.
 double step_count(const Vec3& w0, const Vec3& dw, double time, double largest_step) {
