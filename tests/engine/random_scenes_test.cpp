@@ -243,6 +243,31 @@ TEST(RandomSceneRegressions, SlipsThatEnd) {
     EXPECT_EQ(what_breaks(RandomScene(33636, DrawOrder::kFirstFirst).make()), "");
 }
 
+// A shot into a touching pack: a cluster parted what three contacts had held, and they were held again, 700 times at one instant.
+TEST(RandomSceneRegressions, ClustersThatRepeatEnd) {
+    for (const std::uint64_t seed : {7328u, 15806u})
+        settles_within(*family_scene("touching_pack", seed), 10000);
+}
+
+// Two balls in a lane as wide as both: a slip that went began again at once, in 126 000 intervals of 1e-18 s, until an error.
+TEST(RandomSceneRegressions, TwoBallsInALaneOfTwoDiameters) {
+    Scene scene = empty_scene();
+    scene.table.cushions = {
+        {"", {4.0 * scene.balls.R, 0.0}, {4.0 * scene.balls.R, 20.0 * scene.balls.R}, 0.03},
+        {"", {0.0, 20.0 * scene.balls.R}, {0.0, 0.0}, 0.03}};
+    scene.physics.ball_ball = ball_ball_model("inelastic");
+    scene.physics.cushion = &kSmooth;
+    scene.physics.clusters = ClusterModel::kSequential;
+    scene.balls.mu_sp = 0.01;
+    scene.balls.e_b = 0.9;
+    scene.balls.e_c = 0.8;
+    const double R = scene.balls.R;
+    add_ball(scene, "0", R, 10.0 * R, 0.0, 0.006, Vec3(2.0, 1.0, 0.0));
+    add_ball(scene, "1", 3.0 * R, 10.0 * R);
+    settles_within(scene, 2000);
+    EXPECT_EQ(what_breaks(scene), "");
+}
+
 /// Scenes in which contacts do not end well yet (docs/lab/2026-11-resting_steps.md): whoever mends one strikes it out.
 struct Open {
     const char* family;

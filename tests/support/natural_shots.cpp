@@ -14,6 +14,7 @@
 #include "carom/engine/table.h"
 #include "reference/random_impacts.h"
 #include "scene/rack.h"
+#include "support/families.h"
 
 namespace carom::test {
 namespace {
@@ -180,19 +181,12 @@ constexpr ShotFamily kShots[] = {
 }  // namespace
 
 std::span<const char* const> natural_families() {
-    static const auto names = [] {
-        std::array<const char*, std::size(kShots)> list{};
-        std::transform(std::begin(kShots), std::end(kShots), list.begin(),
-                       [](const ShotFamily& f) { return f.name; });
-        return list;
-    }();
-    return names;
+    return names_of<kShots>();
 }
 
 std::optional<Scene> natural_shot(std::string_view family, std::uint64_t seed) {
-    const auto row = std::find_if(std::begin(kShots), std::end(kShots),
-                                  [&](const ShotFamily& f) { return f.name == family; });
-    if (row == std::end(kShots)) return std::nullopt;
+    const ShotFamily* row = row_of(kShots, family);
+    if (row == nullptr) return std::nullopt;
     reference::Generator stream(seed + 0x51ull * static_cast<std::uint64_t>(row - std::begin(kShots)));
     return row->make(stream.next());
 }

@@ -131,7 +131,7 @@ void Complementarity::refine(std::vector<double>& w) {
 bool Complementarity::solve() {
     constexpr double kRounding = 1e-12;  // [-] relative; larger violations count as infeasible
     basic_.assign(size, 0);
-    for (std::size_t i = 0; i < size; ++i) basic_[i] = free[i] || q[i] < 0.0;
+    for (std::size_t i = 0; i < size; ++i) basic_[i] = q[i] < 0.0;
     std::vector<double> w(size);
     std::vector<std::size_t> wrong;
     std::size_t fewest = size + 1;
@@ -143,15 +143,13 @@ bool Complementarity::solve() {
         for (const double x : z) largest = std::max(largest, std::abs(x));
         wrong.clear();
         for (std::size_t i = 0; i < size; ++i) {
-            if (free[i]) continue;
             double scale = std::abs(q[i]);
             if (!basic_[i])
                 for (std::size_t j = 0; j < size; ++j) scale += std::abs(at(i, j) * z[j]);
             if (basic_[i] ? z[i] < -kRounding * largest : w[i] < -kRounding * scale) wrong.push_back(i);
         }
         if (wrong.empty()) {
-            for (std::size_t i = 0; i < size; ++i)
-                if (!free[i]) z[i] = std::max(0.0, z[i]);
+            for (std::size_t i = 0; i < size; ++i) z[i] = std::max(0.0, z[i]);
             return std::all_of(z.begin(), z.end(), [](double x) { return std::isfinite(x); });
         }
         if (wrong.size() < fewest) {

@@ -1,5 +1,5 @@
-// Dense linear complementarity problems of a few dozen unknowns: the forces in a group of resting contacts, and the
-// impulses of the plastic projection, which removes its closing speeds.
+// Dense linear complementarity problems of a few dozen unknowns: the steps of Newton's method for the impulses in a group of
+// resting contacts.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@ namespace carom {
 /// unique: redundant contacts share the load.
 inline constexpr double kContactSoftness = 1e-12;
 
-/// z >= 0, w = A z + q >= 0, z . w = 0. In rows with `free`, z may have either sign and w = 0.
+/// z >= 0, w = A z + q >= 0, z . w = 0.
 struct Complementarity {
-    /// All zero, none free.
-    explicit Complementarity(std::size_t n) : A(n * n, 0.0), q(n, 0.0), free(n, 0), z(n, 0.0), size(n) {}
+    /// All zero.
+    explicit Complementarity(std::size_t n) : A(n * n, 0.0), q(n, 0.0), z(n, 0.0), size(n) {}
 
     /// Block principal pivoting: exchanges all infeasible rows while their number decreases, otherwise one row
     /// (Murty's rule), which terminates for every P-matrix (Judice and Pires, "A block principal pivoting
@@ -29,7 +29,6 @@ struct Complementarity {
 
     std::vector<double> A;  ///< by rows
     std::vector<double> q;
-    std::vector<char> free;
     std::vector<double> z;  ///< result
     std::size_t size;
 

@@ -129,10 +129,7 @@ bool keep_short_bounces(Group& g, double h) {
 // A contact ends once its gap opens by more than rounding, and never at the instant at which it began, so that no
 // contact can begin and end forever. A contact without force that does not open (balls at rest, equal rolling) stays.
 void mark_released(Group& g) {
-    for (std::size_t c = 0; c < g.links.size(); ++c) {
-        g.group.contacts[c].force = g.links[c].J;
-        g.group.contacts[c].released = g.links[c].open;
-    }
+    for (std::size_t c = 0; c < g.links.size(); ++c) g.group.contacts[c].released = g.links[c].open;
 }
 
 void solve(Group& g) {

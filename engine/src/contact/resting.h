@@ -26,8 +26,7 @@ struct RestingContact {
     Contact contact;  ///< with a ball, a cushion or a nose
     Vec2 n =
         Vec2::Zero();  ///< unit, from the ball to the other or into the table's part; fixed over one interval
-    double began = 0.0;     ///< [s]
-    double force = 0.0;     ///< N / m [m/s^2]
+    double began = 0.0;     ///< [s] when it became one
     bool released = false;  ///< result: the gap opens
 };
 
@@ -50,8 +49,8 @@ struct RestingSurroundings {
     double gravity;
 };
 
-/// Solves for forces and accelerations at `now` [s] and writes the segments of all members. They end together at the
-/// first state transition, change of a direction, opening of a gap, or end of a cushion. Contacts that open are marked
+/// Solves the group from `now` [s] on and writes the segments of all members (resting_group.h). They end together: at the first
+/// state transition, at the end of a cushion, or when constant accelerations err by too much. Contacts that open are marked
 /// released; a contact without force that does not open stays.
 void solve_resting(RestingGroup& group, const RestingSurroundings& around, const MotionParams& motion,
                    double now);

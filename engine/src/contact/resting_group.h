@@ -36,6 +36,10 @@ struct Matrix {
     Vec2 operator*(const Vec2& a) const { return {xx * a.x() + xy * a.y(), xy * a.x() + yy * a.y()}; }
 };
 
+inline bool moves(const Vec2& a) {
+    return a.x() != 0.0 || a.y() != 0.0;
+}
+
 /// A ball of the group in the equations.
 struct Body {
     // At the start of the interval [m/s].

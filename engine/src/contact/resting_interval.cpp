@@ -38,10 +38,6 @@ constexpr double kNearly = 1e-2;
 // [-] Shortest next attempt, as a share of the last.
 constexpr double kShorter = 0.2;
 
-bool moves(const Vec2& a) {
-    return a.x() != 0.0 || a.y() != 0.0;
-}
-
 // First time at which |x + t D| = S t: friction S has then taken what x was and D brought.
 double time_gone(const Vec2& x, const Vec2& D, double S) {
     const double xx = dot(x, x), xD = dot(x, D), A = S * S - dot(D, D);
@@ -69,7 +65,7 @@ struct Moving {
 };
 
 Moving moving(const Group& g, const Body& b) {
-    if (b.u.x() != 0.0 || b.u.y() != 0.0) return {b.u, b.slip_end(), g.motion.slide * b.load};
+    if (moves(b.u)) return {b.u, b.slip_end(), g.motion.slide * b.load};
     if (b.mode == Mode::kSliding) return {Vec2::Zero(), b.slip_end(), 0.0};
     return {b.v, b.v_end, g.motion.roll};
 }

@@ -30,8 +30,8 @@ constexpr int kSearches = 8;
 constexpr double kSlopeLeft = 0.25;
 // [-] Mobility of a ball at rest in the derivatives only, so that balls at rest share a load; a sliding ball has 1.
 constexpr double kRestCompliance = 1e-9;
-// [of its coefficient] Accuracy of the friction between balls, and of the load. It is half as high in each step, up to 2^20, for contacts
-// that hold each other's slip.
+// [of its coefficient] Accuracy of the friction between balls, and of the load. It is halved in each step, up to 2^20 times, for
+// contacts that hold each other's slip.
 constexpr double kFrictionAccuracy = 1e-9;
 constexpr int kLooser = 20;
 // [of the accelerations that drive a group] Larger forces show that a wedge cannot be stabilised.
@@ -64,7 +64,7 @@ void slide(Body& b, const Vec2& friction) {
 // The motion of a ball under the impulses on it, and its derivatives.
 void respond(const Group& g, Body& b, double h, bool stops) {
     const double grip = g.motion.slide * b.load * h, drag = std::min(g.motion.roll * h, grip);
-    const bool slips = b.u.x() != 0.0 || b.u.y() != 0.0;
+    const bool slips = moves(b.u);
     if (b.guided && slips) {
         slide(b, -grip * b.guide);
         b.by_push = identity(1.0);
@@ -104,7 +104,7 @@ void respond(const Group& g, Body& b, double h, bool stops) {
         b.v_end = Vec2::Zero();
         b.by_push = b.by_couple = identity(kRestCompliance);
     }
-    if (b.v_end.x() == 0.0 && b.v_end.y() == 0.0) b.mode = Mode::kResting;
+    if (!moves(b.v_end)) b.mode = Mode::kResting;
     b.s_end = b.v_end;
 }
 
@@ -217,93 +217,123 @@ bool update(Group& g, double h, const StepOptions& options, int times) {
     return changed;
 }
 
-// Newton's method on J >= 0, rate >= 0, J rate = 0, which is piecewise smooth and, but for the friction between balls, monotone.
-bool solve_contacts(Group& g, double h, const StepOptions& options) {
-    std::vector<std::size_t> active;
-    for (std::size_t c = 0; c < g.links.size(); ++c) {
-        if (g.links[c].open)
-            g.links[c].J = 0.0;
-        else
-            active.push_back(c);
-    }
-    Complementarity problem(active.size());
-    std::vector<double> before(active.size());
-    for (int newton = 0;; ++newton) {
-        const bool stops = newton >= kStopsFrom && newton % 2 == 1;
-        respond(g, h, stops);
-        // What a solution takes from the one before: friction between balls, load on the cloth, turning of normals.
-        const bool changed = update(g, h, options, newton);
-        if (changed) respond(g, h, stops);
-        const double rounding = rate_rounding(g);
-        bool solved = true;
-        double worst = 0.0;
-        for (std::size_t k = 0; k < active.size(); ++k) {
-            const Link& link = g.links[active[k]];
-            const double rate = wanted_rate(g, link, h, options);
-            problem.q[k] = rate;
-            worst = std::max(worst, link.J > 0.0 ? std::abs(rate) : -rate);
-            solved = solved && (link.J > 0.0 ? std::abs(rate) <= rounding : rate >= -rounding);
+/// The impulses of the contacts that do not open, by Newton's method on J >= 0, rate >= 0, J rate = 0. That is piecewise smooth and, but
+/// for the friction between balls, monotone.
+class Newton {
+  public:
+    Newton(Group& g, double h, const StepOptions& options) : g_(g), h_(h), options_(options), problem_(0) {
+        for (std::size_t c = 0; c < g.links.size(); ++c) {
+            if (g.links[c].open)
+                g.links[c].J = 0.0;
+            else
+                active_.push_back(c);
         }
-        if (solved && !changed) return true;
-        if (newton == kNewtonSteps)
-            return !changed && worst * std::max(h, kShortestInterval) <= kOverlapDepth;
-        std::fill(problem.A.begin(), problem.A.end(), 0.0);
-        for (std::size_t k = 0; k < active.size(); ++k) before[k] = g.links[active[k]].J;
-        for (std::size_t k = 0; k < active.size(); ++k) {
-            const Link& column = g.links[active[k]];
+        problem_ = Complementarity(active_.size());
+        before_.resize(active_.size());
+    }
+
+    /// @return whether there is a solution
+    bool run() {
+        for (int newton = 0;; ++newton) {
+            const bool stops = newton >= kStopsFrom && newton % 2 == 1;
+            respond(g_, h_, stops);
+            // What a solution takes from the one before: friction between balls, load on the cloth, turning of normals.
+            const bool changed = update(g_, h_, options_, newton);
+            if (changed) respond(g_, h_, stops);
+            double worst = 0.0;
+            if (is_solved(worst) && !changed) return true;
+            if (newton == kNewtonSteps)
+                return !changed && worst * std::max(h_, kShortestInterval) <= kOverlapDepth;
+            linearise();
+            if (!problem_.solve()) return false;
+            search();
+        }
+    }
+
+  private:
+    double rate(std::size_t k) const { return wanted_rate(g_, g_.links[active_[k]], h_, options_); }
+
+    // Notes the rates, and the worst that is wrong.
+    bool is_solved(double& worst) {
+        const double rounding = rate_rounding(g_);
+        bool solved = true;
+        for (std::size_t k = 0; k < active_.size(); ++k) {
+            const double now = problem_.q[k] = rate(k);
+            const bool pressed = g_.links[active_[k]].J > 0.0;
+            worst = std::max(worst, pressed ? std::abs(now) : -now);
+            solved = solved && (pressed ? std::abs(now) <= rounding : now >= -rounding);
+        }
+        return solved;
+    }
+
+    // rate + A (J - J now) for the present kinds of motion.
+    void linearise() {
+        std::fill(problem_.A.begin(), problem_.A.end(), 0.0);
+        for (std::size_t k = 0; k < active_.size(); ++k) {
+            const Link& column = g_.links[active_[k]];
+            before_[k] = column.J;
             const auto add = [&](int body, const Vec2& dv) {
-                for (std::size_t r = 0; r < active.size(); ++r) {
-                    const Link& row = g.links[active[r]];
-                    if (row.i == body) problem.at(r, k) -= dot(row.n, dv);
-                    if (row.j == body) problem.at(r, k) += dot(row.n, dv);
+                for (std::size_t r = 0; r < active_.size(); ++r) {
+                    const Link& row = g_.links[active_[r]];
+                    if (row.i == body) problem_.at(r, k) -= dot(row.n, dv);
+                    if (row.j == body) problem_.at(r, k) += dot(row.n, dv);
                 }
             };
-            const Body& bi = g.bodies[column.i];
+            const Body& bi = g_.bodies[column.i];
             add(column.i, -(bi.by_push * column.n) - column.friction_z * (bi.by_couple * column.n));
             if (column.j < 0) continue;
-            const Body& bj = g.bodies[column.j];
+            const Body& bj = g_.bodies[column.j];
             add(column.j, bj.by_push * column.n - column.friction_z * (bj.by_couple * column.n));
         }
-        for (std::size_t r = 0; r < active.size(); ++r)
-            for (std::size_t k = 0; k < active.size(); ++k) problem.q[r] -= problem.at(r, k) * before[k];
-        if (!problem.solve()) return false;
-        // Without friction between balls the rates are the gradient of a convex function of the impulses: its least value on the way
-        // to the solution of the linear problem is taken, so that two kinds of motion do not alternate.
-        const auto go = [&](double share) {
-            for (std::size_t k = 0; k < active.size(); ++k)
-                g.links[active[k]].J = before[k] + share * (problem.z[k] - before[k]);
-        };
-        const auto slope = [&] {
-            double sum = 0.0;
-            for (std::size_t k = 0; k < active.size(); ++k)
-                sum += wanted_rate(g, g.links[active[k]], h, options) * (problem.z[k] - before[k]);
-            return sum;
-        };
+        for (std::size_t r = 0; r < active_.size(); ++r)
+            for (std::size_t k = 0; k < active_.size(); ++k) problem_.q[r] -= problem_.at(r, k) * before_[k];
+    }
+
+    // Without friction between balls the rates are the gradient of a convex function of the impulses: its least value on the way to the
+    // solution of the linear problem is taken, so that two kinds of motion do not alternate.
+    void search() {
         const double first = slope();
-        double low = 0.0, at_low = first, high = 1.0, at_high = 0.0;
+        double low = 0.0, at_low = first, high = 1.0;
         go(1.0);
-        respond(g, h);
-        at_high = slope();
+        double at_high = slope();
         for (int turn = 0; turn < kSearches && at_high > kSlopeLeft * std::abs(first) && at_low < 0.0;
              ++turn) {
             const double share = std::clamp(low + (high - low) * at_low / (at_low - at_high),
                                             low + 0.1 * (high - low), high - 0.1 * (high - low));
             go(share);
-            respond(g, h);
             const double here = slope();
             if (std::abs(here) <= kSlopeLeft * std::abs(first)) break;
             (here > 0.0 ? high : low) = share;
             (here > 0.0 ? at_high : at_low) = here;
         }
     }
-}
+
+    void go(double share) {
+        for (std::size_t k = 0; k < active_.size(); ++k)
+            g_.links[active_[k]].J = before_[k] + share * (problem_.z[k] - before_[k]);
+        respond(g_, h_);
+    }
+
+    double slope() const {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < active_.size(); ++k) sum += rate(k) * (problem_.z[k] - before_[k]);
+        return sum;
+    }
+
+    Group& g_;
+    const double h_;
+    const StepOptions options_;
+    std::vector<std::size_t> active_;  // links
+    Complementarity problem_;
+    std::vector<double> before_;  // impulses before the step, as active_
+};
 
 bool solve_with(Group& g, double h, const StepOptions& options) {
     if (!options.friction) {
         for (Link& link : g.links) link.friction_z = 0.0;
         for (Body& b : g.bodies) b.load = 1.0;
     }
-    return solve_contacts(g, h, options);
+    return Newton(g, h, options).run();
 }
 
 // Two opposing fixed normals cannot both be stabilised: the forces are then huge and mean nothing.

@@ -1,0 +1,324 @@
+// The plain program for the equations of the contact phase (docs/reference/physics.md, several contacts at once), which every
+// instruction set is compared with, bit for bit.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "carom/kernel/contact_phase.h"
+
+namespace carom::kernel {
+namespace {
+
+constexpr double kLookAhead = 2.0, kTimeLimit = 2000.0;
+
+struct Cluster {
+    std::vector<double> motion;
+    std::vector<HertzContact> contacts;
+    double curvature = 0.0;
+
+    int balls() const { return static_cast<int>(motion.size() / 5); }
+};
+
+struct Direction {
+    double x, y;
+};
+
+Direction turned(const Direction& n, double along, double across) {
+    const double x = n.x * along - n.y * across, y = n.y * along + n.x * across,
+                 length = std::sqrt(x * x + y * y);
+    return {x / length, y / length};
+}
+
+double falling(double x, double from, double to) {
+    if (x <= from) return 1.0;
+    if (x >= to) return 0.0;
+    const double t = (x - from) / (to - from);
+    return 1.0 - t * t * (3.0 - 2.0 * t);
+}
+
+// The equations one contact at a time, in the order that contact_phase.h promises.
+class Plain {
+  public:
+    Plain(const Cluster& c, const HertzLaw& law)
+        : start_(c.contacts), law_(law), curvature_(c.curvature), y(c.motion) {
+        for (const HertzContact& one : start_)
+            contacts_.push_back({one.overlap, 0.0, {one.nx, one.ny}, 0.0, one.turn, false});
+        look();
+    }
+
+    long run(double longest_step) {
+        double time = 0.0;
+        for (long steps = 1; time < kTimeLimit; ++steps) {
+            time += step(settle(longest_step));
+            if (overlapping()) continue;
+            const double flight = next_touch();
+            if (!(flight < kLookAhead)) return steps;
+            fly(flight);
+            time += flight;
+        }
+        return -1;
+    }
+
+  private:
+    struct Contact {
+        double d, memory;
+        Direction n;
+        double turn;   // angle a unit of time
+        double share;  // of the turning while closed
+        bool closed;
+    };
+    const std::vector<HertzContact> start_;
+    std::vector<Contact> contacts_;
+    const HertzLaw law_;
+    const double curvature_;
+
+  public:
+    std::vector<double> y;
+
+  private:
+    struct Slope {
+        std::vector<double> y, d, lift, limit;
+    };
+
+    Direction closing(const std::vector<double>& at, std::size_t c) const {
+        const double *i = &at[5 * static_cast<std::size_t>(start_[c].i)],
+                     *j = &at[5 * static_cast<std::size_t>(start_[c].j)];
+        return {i[0] - j[0], i[1] - j[1]};
+    }
+
+    double rate(const std::vector<double>& at, std::size_t c, const Direction& n) const {
+        const Direction v = closing(at, c);
+        return v.x * n.x + v.y * n.y;
+    }
+    double rate(std::size_t c) const { return rate(y, c, contacts_[c].n); }
+
+    double turning(std::size_t c, const Direction& n) const {
+        const Contact& contact = contacts_[c];
+        const Direction v = closing(y, c);
+        const double bend = contact.closed ? contact.share * curvature_ : curvature_;
+        return bend * (v.x * n.y - v.y * n.x) / (1.0 - curvature_ * contact.d);
+    }
+
+    void look() {
+        for (std::size_t c = 0; c < contacts_.size(); ++c) contacts_[c].turn = turning(c, contacts_[c].n);
+    }
+
+    bool overlapping() const {
+        return std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.d > 0.0; });
+    }
+
+    struct Way {
+        double closing, across, speed2, gap;
+    };
+
+    Way way(std::size_t c, const Direction& n, double gap) const {
+        const Direction v = closing(y, c);
+        const double along = v.x * n.x + v.y * n.y, across = v.y * n.x - v.x * n.y;
+        return {along, across, along * along + across * across, gap};
+    }
+
+    double touch(const Way& w) const {
+        if (!(w.closing > 0.0)) return 1e300;
+        const double apart = 1.0 + curvature_ * w.gap, q = w.gap * (2.0 + curvature_ * w.gap),
+                     c = apart * w.closing, root2 = c * c - curvature_ * w.speed2 * q;
+        return root2 < 0.0 ? 1e300 : q / (c + std::sqrt(root2));
+    }
+
+    Direction after(const Direction& n, const Way& w, double time) const {
+        return turned(n, 1.0 + curvature_ * w.gap - curvature_ * w.closing * time,
+                      -curvature_ * w.across * time);
+    }
+
+    double next_touch() const {
+        double first = 1e300;
+        for (std::size_t c = 0; c < contacts_.size(); ++c)
+            first = std::min(first, touch(way(c, contacts_[c].n, -contacts_[c].d)));
+        return first;
+    }
+
+    void fly(double time) {
+        const double less = 1.0 - falling(time, 0.5 * kLookAhead, kLookAhead);
+        for (std::size_t c = 0; c < contacts_.size(); ++c) {
+            Contact& contact = contacts_[c];
+            const Way w = way(c, contact.n, -contact.d);
+            const double late = touch(w) - time, apart = 1.0 + curvature_ * w.gap,
+                         change = time * (curvature_ * w.speed2 * time - 2.0 * apart * w.closing);
+            contact.d =
+                std::min(0.0, -(w.gap + change / (std::sqrt(apart * apart + curvature_ * change) + apart)));
+            if (late <= 0.0) contact.d = 0.0;
+            contact.n = after(contact.n, w, time);
+            contact.share = start_[c].turn * (1.0 - less * falling(late, 0.0, 0.5));
+            contact.closed = false;
+        }
+        look();
+    }
+
+    double settle(double longest) {
+        double h = longest;
+        bool changed = false;
+        for (std::size_t c = 0; c < contacts_.size(); ++c) {
+            Contact& contact = contacts_[c];
+            if (!(contact.share < 1.0) || curvature_ == 0.0) continue;
+            if (contact.closed && (contact.d > 0.0 || rate(c) > 0.0)) continue;
+            const bool open = !(contact.d > 0.0);
+            const double time = open && !contact.closed ? touch(way(c, contact.n, -contact.d)) : 0.0;
+            if (time > 1e-3 * longest) {
+                h = std::min(h, time);
+                continue;
+            }
+            changed = true;
+            contact.closed = !contact.closed;
+            if (contact.closed) close(c, time);
+        }
+        if (changed) look();
+        return h;
+    }
+
+    void close(std::size_t c, double time) {
+        Contact& contact = contacts_[c];
+        const Direction own = after(contact.n, way(c, contact.n, std::max(0.0, -contact.d)), time),
+                        first{start_[c].nx, start_[c].ny};
+        const Way since = way(c, first, -start_[c].overlap);
+        double met = touch(since);
+        if (!(met < 1e300))
+            met = since.closing > 0.0 && curvature_ > 0.0
+                      ? (1.0 + curvature_ * since.gap) * since.closing / (curvature_ * since.speed2)
+                      : 0.0;
+        const Direction other = after(first, since, met);
+        const double share = contact.share, x = share * own.x + (1.0 - share) * other.x,
+                     y_ = share * own.y + (1.0 - share) * other.y, length = std::sqrt(x * x + y_ * y_);
+        contact.n = {x / length, y_ / length};
+    }
+
+    void push(const std::vector<double>& at, double d, std::size_t c, double nx, double ny,
+              Slope& slope) const {
+        const auto i = static_cast<std::size_t>(start_[c].i), j = static_cast<std::size_t>(start_[c].j);
+        const double *yi = &at[5 * i], *yj = &at[5 * j];
+        double F = d * std::sqrt(d);
+        if (d < contacts_[c].memory) {
+            double share = d / contacts_[c].memory;
+            for (int p = law_.p; p > 1; p /= 2) share *= share;
+            F *= law_.a + law_.b * share;
+        }
+        const double sx = (yi[0] - yj[0]) * ny - (yi[1] - yj[1]) * nx - (yi[4] + yj[4]);
+        const double sz = (yi[2] + yj[2]) * ny - (yi[3] + yj[3]) * nx;
+        const double slip = std::sqrt(sx * sx + sz * sz + law_.epsilon * law_.epsilon);
+        const double mu = law_.mu_b_more > 0.0
+                              ? law_.mu_b + law_.mu_b_more * falling_exponential(law_.mu_b_fall * slip)
+                              : law_.mu_b;
+        const double k = -mu * F / slip;
+        const double fx = k * sx, fz = k * sz;
+        const double pushed[2] = {fx * ny - F * nx, -F * ny - fx * nx};
+        const double torque[3] = {2.5 * fz * ny, -2.5 * fz * nx, -2.5 * fx};
+        for (int n = 0; n < 2; ++n) {
+            slope.y[5 * i + n] += pushed[n];
+            slope.y[5 * j + n] -= pushed[n];
+        }
+        for (int n = 0; n < 3; ++n) {
+            slope.y[5 * i + 2 + n] += torque[n];
+            slope.y[5 * j + 2 + n] += torque[n];
+        }
+        slope.lift[i] += fz;
+        slope.lift[j] -= fz;
+        const double limit = std::max(4.0 * k, -(law_.mu_b + law_.mu_b_more) / law_.epsilon * F);
+        slope.limit[i] += limit;
+        slope.limit[j] += limit;
+    }
+
+    /// e^-x by the series of the kernel, whose bits it has.
+    static double falling_exponential(double x) {
+        const double t = std::min(x / 64.0, 1.0);
+        double power = 1.0 / 720.0;
+        for (const double factor : {-1.0 / 120.0, 1.0 / 24.0, -1.0 / 6.0, 0.5, -1.0, 1.0})
+            power = power * t + factor;
+        EXPECT_NEAR(power, std::exp(-t), 2e-4);
+        for (int doubling = 0; doubling < 6; ++doubling) power *= power;
+        EXPECT_TRUE(x > 10.0 || std::abs(power - std::exp(-x)) < 4e-8 * std::exp(-x)) << x;
+        return power;
+    }
+
+    // The slope of a state whose normals have turned for `time`.
+    Slope slope_at(const std::vector<double>& at, const std::vector<double>& d, double time) const {
+        const std::size_t balls = y.size() / 5;
+        Slope s{std::vector<double>(y.size(), 0.0),
+                {},
+                std::vector<double>(balls, 0.0),
+                std::vector<double>(balls, 0.0)};
+        for (std::size_t c = 0; c < contacts_.size(); ++c) {
+            const Direction n = predicted(c, time);
+            s.d.push_back(rate(at, c, n));
+            if (d[c] > 0.0) push(at, d[c], c, n.x, n.y, s);
+        }
+        const double sign = law_.published_slip_sign ? 1.0 : -1.0;
+        for (std::size_t b = 0; b < balls; ++b) {
+            if (!(s.lift[b] < 0.0)) continue;
+            const double ux = at[5 * b] + sign * at[5 * b + 3], uy = at[5 * b + 1] - sign * at[5 * b + 2];
+            const double k =
+                law_.mu_s * s.lift[b] / std::sqrt(ux * ux + uy * uy + law_.epsilon * law_.epsilon);
+            s.y[5 * b] += k * ux;
+            s.y[5 * b + 1] += k * uy;
+            s.y[5 * b + 2] += 2.5 * k * uy;
+            s.y[5 * b + 3] -= 2.5 * k * ux;
+            s.limit[b] += 0.5 * k;
+        }
+        return s;
+    }
+
+    Direction predicted(std::size_t c, double time) const {
+        const Direction n = contacts_[c].n;
+        const double angle = time * contacts_[c].turn;
+        return {n.x - angle * n.y, n.y + angle * n.x};
+    }
+
+    double step(double longest) {
+        std::array<Slope, 4> k;
+        std::vector<double> now;
+        for (const Contact& contact : contacts_) now.push_back(contact.d);
+        k[0] = slope_at(y, now, 0.0);
+        const double least = *std::min_element(k[0].limit.begin(), k[0].limit.end());
+        const double h = 2.5 / 7.0 < longest * -least ? 2.5 / 7.0 / -least : longest;
+        const double share[4] = {0.0, 0.5 * h, 0.5 * h, h};
+        for (std::size_t stage = 1; stage < 4; ++stage) {
+            std::vector<double> at = y, d = now;
+            for (std::size_t n = 0; n < at.size(); ++n) at[n] += share[stage] * k[stage - 1].y[n];
+            for (std::size_t c = 0; c < d.size(); ++c) d[c] += share[stage] * k[stage - 1].d[c];
+            k[stage] = slope_at(at, d, share[stage]);
+        }
+        for (std::size_t n = 0; n < y.size(); ++n)
+            y[n] += h / 6.0 * ((k[0].y[n] + k[3].y[n]) + 2.0 * (k[1].y[n] + k[2].y[n]));
+        for (std::size_t c = 0; c < contacts_.size(); ++c) {
+            Contact& contact = contacts_[c];
+            contact.d += h / 6.0 * ((k[0].d[c] + k[3].d[c]) + 2.0 * (k[1].d[c] + k[2].d[c]));
+            const Direction n = predicted(c, h);
+            remember(contact, now[c], h * k[0].d[c], h * rate(y, c, n));
+            const double turn = turning(c, n), angle = 0.5 * h * (contact.turn + turn),
+                         shrink = 1.0 / std::sqrt(1.0 + angle * angle);
+            contact.n = {(contact.n.x - angle * contact.n.y) * shrink,
+                         (contact.n.y + angle * contact.n.x) * shrink};
+            contact.turn = turn;
+        }
+        return h;
+    }
+
+    static void remember(Contact& contact, double before, double m0, double m1) {
+        if (!(contact.d > 0.0)) {
+            contact.memory = 0.0;
+            return;
+        }
+        contact.memory = std::max(contact.memory, contact.d);
+        if (!(m0 > 0.0 && m1 < 0.0)) return;
+        const double rise = contact.d - before, q2 = 3.0 * rise - 2.0 * m0 - m1, q3 = m0 + m1 - 2.0 * rise;
+        const double s = m0 / (std::sqrt(std::max(0.0, q2 * q2 - 3.0 * q3 * m0)) - q2);
+        if (s > 0.0 && s < 1.0)
+            contact.memory = std::max(contact.memory, before + s * (m0 + s * (q2 + s * q3)));
+    }
+};
+
+}  // namespace
+}  // namespace carom::kernel
