@@ -90,7 +90,7 @@ TEST(RecordFile, TheLargestNumbersGiveStates) {
         for (const char* key : {"r", "v", "w"}) last[key] = {1e25, -1e25, 1e25};
         last["a"] = {1e25, 1e25};
         last["dw"] = track == largest["tracks"][0] ? Json{1e25, 1e25} : Json{0.0, 0.0};
-        track["segments"] = {last};
+        track["segments"] = Json::array({last});
     }
     const Record record = parse_record(largest.dump(), "shot.json");
     for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball) {
