@@ -11,6 +11,8 @@ carom_packages=(
 # What continuous integration needs in addition: a second compiler with its sanitizers, the static checks, valgrind, what counts
 # lines, and what reads the completions and the man page.
 carom_check_packages=(clang clang-format clang-tidy glslang-tools valgrind llvm zsh groff-base)
+# What the Python package is built and tested with (tools/python.sh); its tests are left out where they are missing.
+carom_python_packages=(python3-dev python3-venv)
 # What tools/docs makes the site with; it is left out where they are missing.
 carom_docs_packages=(mkdocs mkdocs-material)
 # Mesa dropped OSMesa with 25.1: later releases do not have it, and what it does there EGL does.

@@ -247,6 +247,48 @@ TEST(Batch, AFailingRunIsAStatusAndTheOthersArePlayed) {
     ASSERT_EQ(batch.messages.size(), 1u);
     EXPECT_EQ(batch.messages[0].shot, 1u);
     EXPECT_NE(batch.messages[0].text.find("simulation stopped at t = "), std::string::npos);
+    // Played by itself, it also has the record up to there.
+    scene.ball[0].velocity.x() = 0.5;
+    try {
+        simulate(make_plan(scene, kIsa));
+        ADD_FAILURE() << "the run went on";
+    } catch (const SimulationError& error) {
+        EXPECT_EQ(error.what(), batch.messages[0].text);
+        ASSERT_NE(error.so_far(), nullptr);
+        EXPECT_EQ(error.so_far()->tracks.size(), 2u);
+        EXPECT_GT(error.so_far()->duration, 0.1);
+        EXPECT_GT(error.so_far()->tracks[0].segments.size(), 0u);
+    }
+}
+
+TEST(Batch, FillsTheArraysOfACallerAndNoOthers) {
+    const Scene scene = scene_of("draw");
+    const std::vector<double> speeds = {2.0, -1.0, 3.0};
+    const BatchColumn column{"cue.speed", speeds};
+    BatchOptions options;
+    options.hash = true;
+    const Batch whole = simulate_many(scene, speeds.size(), {&column, 1}, kIsa, options);
+    const std::size_t balls = scene.ball.size();
+    std::vector<double> xy(2 * speeds.size() * balls, 7.0);
+    std::vector<std::int32_t> pocket(speeds.size() * balls, 7);
+    std::vector<std::uint64_t> hash(speeds.size(), 7);
+    BatchArrays out;
+    out.x = xy.data();
+    out.y = xy.data() + 1;
+    out.place_stride = 2;
+    out.pocket = pocket.data();
+    out.hash = hash.data();
+    const auto messages = simulate_many(scene, speeds.size(), {&column, 1}, kIsa, options, out);
+    for (std::size_t i = 0; i < whole.x.size(); ++i) {
+        EXPECT_EQ(xy[2 * i], whole.x[i]);
+        EXPECT_EQ(xy[2 * i + 1], whole.y[i]);
+    }
+    EXPECT_EQ(xy[2 * balls], 0.0);  // of the second shot, which is none
+    EXPECT_EQ(pocket, whole.pocket);
+    EXPECT_EQ(hash, whole.hash);
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_EQ(messages[0].shot, 1u);
+    EXPECT_EQ(messages[0].text, whole.messages.at(0).text);
 }
 
 TEST(Batch, StopsWhenAsked) {

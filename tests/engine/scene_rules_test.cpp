@@ -46,6 +46,11 @@ TEST(BadScenes, GiveTheirExactMessage) {
             ADD_FAILURE() << file << " was accepted";
         } catch (const SceneError& error) {
             EXPECT_TRUE(matches(want, error.what())) << "want " << want << "\ngot  " << error.what();
+            const carom::SourceLocation at = error.where();
+            const std::string place =
+                at.line > 0 ? ":" + std::to_string(at.line) + ":" + std::to_string(at.column) : "";
+            EXPECT_EQ(error.what(), error.file() + place + ": " + error.message());
+            EXPECT_EQ(error.file(), file);
         }
     }
 }

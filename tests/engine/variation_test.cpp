@@ -307,5 +307,40 @@ TEST(Distribution, DrawsLieInTheirRangesAndReachTheirEnds) {
     EXPECT_EQ(seen, (std::set<std::int64_t>{-2, -1, 0, 1, 2}));
 }
 
+TEST(NewValues, StandInTheFileAsIfTheyHadBeenWrittenThere) {
+    const std::string text = with_values(kScene, "s.toml",
+                                         {{"cue.speed", "0.1"},
+                                          {"cue.offset.side", "-0.25"},
+                                          {"ball.ball.2.position", "[0.7, 1.7]"},
+                                          {"physics.cushion", "\"stronge\""},
+                                          {"table.pocket.p1.radius", "0.05"}});
+    const Scene scene = parse_scene(text, "s.toml"), before = parse_scene(kScene, "s.toml");
+    EXPECT_EQ(scene.cue->speed, 0.1);
+    EXPECT_EQ(scene.cue->side, -0.25);
+    EXPECT_EQ(scene.cue->height, 0.1);
+    EXPECT_EQ(scene.ball[1].position.x(), 0.7);
+    EXPECT_EQ(scene.physics.cushion, cushion_model("stronge"));
+    EXPECT_EQ(scene.table.pockets[0].radius, 0.05);
+    EXPECT_EQ(scene.table.cushions, before.table.cushions);
+    EXPECT_EQ(scene_text(parse_scene(with_values(kScene, "s.toml", {}), "s.toml")), scene_text(before));
+}
+
+TEST(NewValues, SayWhatIsWrong) {
+    const auto error_of = [](const std::string& key, const std::string& value) -> std::string {
+        try {
+            return with_values(kScene, "s.toml", {{key, value}});
+        } catch (const VariationError& error) {
+            return error.what();
+        }
+    };
+    EXPECT_EQ(error_of("cue.speed", "1, 2"), "cue.speed: expected one value, not 2");
+    EXPECT_EQ(error_of("cue.speed", "").rfind("cue.speed: expected one value, not 0", 0), 0u);
+    EXPECT_EQ(error_of("cue.speed", "x = 1").rfind("cue.speed: cannot read the values of value(x = 1)", 0),
+              0u);
+    EXPECT_EQ(error_of("ball.9.position", "[0, 0]").rfind("ball.9.position: it names no [[ball]]", 0), 0u);
+    EXPECT_EQ(error_of("speed", "1"), "speed: name a value in its section, such as cue.speed");
+    EXPECT_THROW(with_values("[", "s.toml", {}), SceneError);
+}
+
 }  // namespace
 }  // namespace carom::test

@@ -18,6 +18,9 @@ constexpr int kNoLayer = -1;
 /// The C interface stands beside the renderer: it uses what the engine may use, and nobody uses it.
 constexpr std::string_view kCInterface = "capi";
 constexpr int kCInterfaceLayer = 1;
+/// The Python package stands beside the program: it uses what the program may use, and nobody uses it.
+constexpr std::string_view kPython = "python";
+constexpr int kPythonLayer = 3;
 
 /// The rooms of one layer. A toolbox includes toolboxes to its left; a station, one step of the data's way, includes toolboxes.
 /// Stations never include each other: they meet in public types only. What lies in the folder itself is left of all.
@@ -251,7 +254,8 @@ bool is_source(const fs::path& file) {
 
 std::vector<std::string> layer_violations(const fs::path& root) {
     std::vector<std::string> found;
-    std::vector<std::pair<std::string_view, int>> folders = {{kCInterface, kCInterfaceLayer}};
+    std::vector<std::pair<std::string_view, int>> folders = {{kCInterface, kCInterfaceLayer},
+                                                             {kPython, kPythonLayer}};
     for (std::size_t i = 0; i < kLayers.size(); ++i) folders.emplace_back(kLayers[i], static_cast<int>(i));
     for (const auto& [name, layer] : folders) {
         const fs::path folder = root / name;

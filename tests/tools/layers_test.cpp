@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(Layers, NoIncludePointsUpwards) {
-    for (const char* layer : {"kernel", "engine", "render", "capi", "tools"}) {
+    for (const char* layer : {"kernel", "engine", "render", "capi", "tools", "python"}) {
         ASSERT_TRUE(fs::exists(fs::path(CAROM_SOURCE_DIR) / layer)) << layer;
     }
     for (const std::string& violation : layer_violations(CAROM_SOURCE_DIR)) ADD_FAILURE() << violation;
@@ -52,6 +52,7 @@ class LayersSelfTest : public ::testing::Test {
         put("capi/src/c.cpp",
             "#include \"carom/carom.h\"\n#include \"c.h\"\n#include \"carom/engine/e.h\"\n");
         put("capi/src/c.h", "#pragma once\n");
+        put("python/src/p.cpp", "#include <nanobind/nanobind.h>\n#include \"carom/render/r.h\"\n");
         put("tests/support/s.h", "#pragma once\n");
     }
 
@@ -92,6 +93,8 @@ TEST_F(LayersSelfTest, SeesEveryKindOfViolation) {
         {"capi/src/c.cpp", "#include \"../../tools/u.h\"\n", "upwards to tools"},
         {"capi/CMakeLists.txt", "target_link_libraries(carom_c carom::render)\n", "links carom::render"},
         {"render/src/r.cpp", "#include \"carom/carom.h\"\n", "outside the layers"},
+        {"python/src/p.cpp", "#include \"base/b.h\"\n", "engine/src, which is not public"},
+        {"tools/carom/p.cpp", "#include \"../../python/src/p.cpp\"\n", "outside the layers"},
         {"render/src/r.cpp", "#include HEADER\n", "not a literal name"},
         {"kernel/src/k.cpp", "#include \"ladder/l.h\"\n", "kernel/ladder, which is not public"},
         {"kernel/src/march/m.h", "#include \"tolerance/t.h\"\n", "another station"},

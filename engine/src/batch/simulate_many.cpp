@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <span>
@@ -37,61 +38,72 @@ std::vector<SceneNumber> numbers_of(const Scene& scene, std::size_t shots,
     return numbers;
 }
 
-void set_up(Batch& batch, const Scene& scene, std::size_t shots, bool hash) {
-    batch.shots = shots;
-    batch.balls = scene.ball.size();
-    batch.status.assign(shots, ShotStatus::kInvalid);
-    batch.duration.assign(shots, 0.0);
-    batch.events.assign(shots, 0);
-    batch.first_hit.assign(shots, -1);
-    const std::size_t places = shots * batch.balls;
-    batch.x.assign(places, 0.0);
-    batch.y.assign(places, 0.0);
-    batch.pocket.assign(places, -1);
-    batch.fell.assign(places, -1);
-    batch.cushions.assign(places, 0);
-    if (hash) batch.hash.assign(shots, 0);
+template <class T>
+void fill(T* array, std::size_t count, T value, std::size_t stride = 1) {
+    for (std::size_t i = 0; array != nullptr && i < count; ++i) array[i * stride] = value;
 }
 
-void keep(Batch& batch, std::size_t shot, const Outcome& outcome) {
-    batch.duration[shot] = outcome.duration;
-    batch.events[shot] = outcome.events;
-    batch.first_hit[shot] = outcome.first_hit;
-    if (!batch.hash.empty()) batch.hash[shot] = outcome.hash;
-    std::size_t at = shot * batch.balls;
+/// What a shot without a result has.
+void clear(const BatchArrays& out, std::size_t shot, std::size_t balls) {
+    const std::size_t at = shot * balls;
+    const auto from = [](auto* array, std::size_t first) { return array ? array + first : nullptr; };
+    fill(from(out.duration, shot), 1, 0.0);
+    fill(from(out.events, shot), 1, std::int64_t{0});
+    fill(from(out.first_hit, shot), 1, -1);
+    fill(from(out.hash, shot), 1, std::uint64_t{0});
+    fill(from(out.x, at * out.place_stride), balls, 0.0, out.place_stride);
+    fill(from(out.y, at * out.place_stride), balls, 0.0, out.place_stride);
+    fill(from(out.pocket, at), balls, -1);
+    fill(from(out.fell, at), balls, -1);
+    fill(from(out.cushions, at), balls, 0);
+}
+
+void keep(const BatchArrays& out, std::size_t shot, const Outcome& outcome) {
+    const auto put = [](auto* array, std::size_t at, const auto& value) {
+        if (array != nullptr) array[at] = value;
+    };
+    put(out.duration, shot, outcome.duration);
+    put(out.events, shot, outcome.events);
+    put(out.first_hit, shot, outcome.first_hit);
+    put(out.hash, shot, outcome.hash);
+    std::size_t at = shot * outcome.balls.size();
     for (const BallOutcome& ball : outcome.balls) {
-        batch.x[at] = ball.position.x();
-        batch.y[at] = ball.position.y();
-        batch.pocket[at] = ball.pocket;
-        batch.fell[at] = ball.fell;
-        batch.cushions[at] = ball.cushions;
+        put(out.x, at * out.place_stride, ball.position.x());
+        put(out.y, at * out.place_stride, ball.position.y());
+        put(out.pocket, at, ball.pocket);
+        put(out.fell, at, ball.fell);
+        put(out.cushions, at, ball.cushions);
         ++at;
     }
 }
 
 /// What the threads share.
 struct Work {
-    Work(const Scene& base, std::span<const BatchColumn> list, const std::vector<SceneNumber>& keys,
-         kernel::Isa set, const BatchOptions& how, Batch& out)
+    Work(const Scene& base, std::size_t count, std::span<const BatchColumn> list,
+         const std::vector<SceneNumber>& keys, kernel::Isa set, const BatchOptions& how,
+         const BatchArrays& arrays)
         : scene(base),
+          shots(count),
           columns(list),
           numbers(keys),
           isa(set),
           options(how),
           simulate(how.simulate),
-          batch(out) {
-        simulate.hash = how.hash;
+          out(arrays) {
+        simulate.hash = out.hash != nullptr;
         simulate.profile = false;
         simulate.progress = nullptr;
     }
 
     const Scene& scene;
+    std::size_t shots;
     std::span<const BatchColumn> columns;
     const std::vector<SceneNumber>& numbers;
     kernel::Isa isa;
     const BatchOptions& options;
     SimulateOptions simulate;
-    Batch& batch;
+    const BatchArrays& out;
+    std::vector<Batch::Message> messages;
     std::atomic<std::size_t> next{0};
     std::atomic<bool> stopped{false};
     std::mutex mutex;
@@ -104,7 +116,7 @@ struct Work {
     }
     void tell(std::size_t shot, const std::string& text) {
         const std::lock_guard lock(mutex);
-        batch.messages.push_back({shot, text});
+        messages.push_back({shot, text});
     }
 
     ShotStatus play(Simulator& simulator, std::size_t shot) const {
@@ -123,15 +135,17 @@ struct Work {
             Simulator simulator(scene, isa);
             while (!stopped) {
                 const std::size_t first = next.fetch_add(kBlock);
-                if (first >= batch.shots) return;
-                for (std::size_t shot = first; shot < std::min(first + kBlock, batch.shots); ++shot) {
+                if (first >= shots) return;
+                for (std::size_t shot = first; shot < std::min(first + kBlock, shots); ++shot) {
                     if (options.stop && options.stop()) throw BatchStopped("the batch was stopped");
                     const ShotStatus status = play(simulator, shot);
-                    batch.status[shot] = status;
-                    if (has_result(status))
-                        keep(batch, shot, simulator.outcome());
-                    else
+                    if (out.status != nullptr) out.status[shot] = status;
+                    if (has_result(status)) {
+                        keep(out, shot, simulator.outcome());
+                    } else {
+                        clear(out, shot, scene.ball.size());
                         tell(shot, simulator.message());
+                    }
                 }
             }
         } catch (...) {
@@ -142,12 +156,11 @@ struct Work {
 
 }  // namespace
 
-Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const BatchColumn> columns,
-                    kernel::Isa isa, const BatchOptions& options) {
+std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
+                                          std::span<const BatchColumn> columns, kernel::Isa isa,
+                                          const BatchOptions& options, const BatchArrays& out) {
     const std::vector<SceneNumber> numbers = numbers_of(scene, shots, columns);
-    Batch batch;
-    set_up(batch, scene, shots, options.hash);
-    Work work(scene, columns, numbers, isa, options, batch);
+    Work work(scene, shots, columns, numbers, isa, options, out);
     const std::size_t wanted = options.threads > 0 ? static_cast<std::size_t>(options.threads)
                                                    : std::max(1u, std::thread::hardware_concurrency());
     const std::size_t most = std::min(wanted, (shots + kBlock - 1) / kBlock);
@@ -160,8 +173,39 @@ Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const Batch
     work.play_all();
     for (std::thread& thread : threads) thread.join();
     if (work.error) std::rethrow_exception(work.error);
-    std::sort(batch.messages.begin(), batch.messages.end(),
+    std::sort(work.messages.begin(), work.messages.end(),
               [](const Batch::Message& p, const Batch::Message& q) { return p.shot < q.shot; });
+    return std::move(work.messages);
+}
+
+Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const BatchColumn> columns,
+                    kernel::Isa isa, const BatchOptions& options) {
+    Batch batch;
+    batch.shots = shots;
+    batch.balls = scene.ball.size();
+    const std::size_t places = shots * batch.balls;
+    batch.status.resize(shots);
+    batch.duration.resize(shots);
+    batch.events.resize(shots);
+    batch.first_hit.resize(shots);
+    batch.x.resize(places);
+    batch.y.resize(places);
+    batch.pocket.resize(places);
+    batch.fell.resize(places);
+    batch.cushions.resize(places);
+    if (options.hash) batch.hash.resize(shots);
+    BatchArrays out;
+    out.status = batch.status.data();
+    out.duration = batch.duration.data();
+    out.events = batch.events.data();
+    out.first_hit = batch.first_hit.data();
+    out.x = batch.x.data();
+    out.y = batch.y.data();
+    out.pocket = batch.pocket.data();
+    out.fell = batch.fell.data();
+    out.cushions = batch.cushions.data();
+    if (options.hash) out.hash = batch.hash.data();
+    batch.messages = simulate_many(scene, shots, columns, isa, options, out);
     return batch;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -91,21 +92,21 @@ void Log::tell_progress() {
     options_.progress(events_.size(), balls_.now());
 }
 
-void Log::fail_crowded() const {
+void Log::fail_crowded() {
     if (is_crowded())
         fail(fmt::format("more than {} events within {:g} s of simulated time", kEventCap, kEventCapSpan));
     fail(fmt::format("{} rounds without an event", kQuietCap));
 }
 
-void Log::fail(const std::string& why) const {
+void Log::fail(const std::string& why) {
     std::string text = fmt::format("simulation stopped at t = {:.17g} s after {} events: {}\n", balls_.now(),
                                    events_.size(), why);
     const std::size_t count = events_.size();
-    const Record record = record_so_far();
+    const Record frame = record_so_far();
     text += "last events:\n";
     for (std::size_t i = count > 8 ? count - 8 : 0; i < count; ++i) {
         const Event& e = events_[i];
-        text += fmt::format("  {:.17g} {} {} {}\n", e.time, name(e.type), id(e.a), record.partner_id(e));
+        text += fmt::format("  {:.17g} {} {} {}\n", e.time, name(e.type), id(e.a), frame.partner_id(e));
     }
     text += "balls that move (id state x y vx vy wx wy wz):\n";
     for (int i = 0; i < balls_.count(); ++i) {
@@ -117,7 +118,9 @@ void Log::fail(const std::string& why) const {
                             name(s.state), r.x(), r.y(), v.x(), v.y(), w.x(), w.y(), w.z());
     }
     text.pop_back();  // a message has no final line break
-    throw SimulationError(text);
+    if (keep_ != Keep::kRecord) throw SimulationError(text);
+    if (costs_) event_costs_.resize(events_.size());
+    throw SimulationError(text, std::make_shared<const Record>(record(StopReason::kEvents)));
 }
 
 // All of the record that no event and no segment of this run says.

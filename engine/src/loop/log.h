@@ -85,8 +85,8 @@ class Log : private Borrowed<LogMemory> {
     /// Marks the present iteration as long, so that progress is reported at its end.
     void note_long_round() { long_round_ = true; }
 
-    /// @throws SimulationError with the state of all balls that move
-    [[noreturn]] void fail(const std::string& why) const;
+    /// @throws SimulationError with the state of all balls that move, and the record if one is kept. The log is empty afterwards.
+    [[noreturn]] void fail(const std::string& why);
 
     /// The record; the log is empty afterwards.
     Record record(StopReason why);
@@ -101,7 +101,7 @@ class Log : private Borrowed<LogMemory> {
         const std::vector<Event>& e = events_;
         return e.size() > kEventCap && balls_.now() - e[e.size() - 1 - kEventCap].time < kEventCapSpan;
     }
-    [[noreturn]] void fail_crowded() const;
+    [[noreturn]] void fail_crowded();
     void book_costs();
     void tell_progress();
 

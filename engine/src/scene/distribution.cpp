@@ -13,9 +13,7 @@
 #include "scene/toml_depth.h"
 
 namespace carom::detail {
-namespace {
 
-/// What stands between the brackets, as TOML values.
 toml::array arguments(std::string_view name, std::string_view text) {
     const std::string line = fmt::format("v = [{}\n]", text);
     if (const auto deep = too_deep(line)) fail("values of {}: {}", name, deep->what);
@@ -30,6 +28,8 @@ toml::array arguments(std::string_view name, std::string_view text) {
         "between them",
         name, text);
 }
+
+namespace {
 
 double number(std::string_view name, const toml::array& list, std::size_t i) {
     const toml::node& node = list[i];

@@ -26,6 +26,9 @@ using Drawn = std::variant<double, std::int64_t, const toml::node*>;
 /// Draws a value.
 using Distribution = std::function<Drawn(SplitMix64& random)>;
 
+/// What stands between the brackets of `name`(`text`), as TOML values. @throws std::invalid_argument
+toml::array arguments(std::string_view name, std::string_view text);
+
 /// @param text  "uniform(0,1)" and the like
 /// @param own  the number that the file has, null where there is none; normal(sd) is around it
 /// @throws std::invalid_argument saying what is wrong

@@ -25,7 +25,9 @@ void check_size(std::string_view text, const std::string& name) {
     throw SceneError(path, {}, fmt::format("cannot be read: {}", why));
 }
 
-std::string read_text(const std::string& path) {
+}  // namespace
+
+std::string read_scene_text(const std::string& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     if (!std::filesystem::exists(status)) cannot_read(path, "there is no such file; check the path");
@@ -39,8 +41,6 @@ std::string read_text(const std::string& path) {
     text.resize(static_cast<std::size_t>(in.gcount()));
     return text;
 }
-
-}  // namespace
 
 namespace detail {
 
@@ -63,7 +63,7 @@ toml::table toml_from(std::string_view text, const std::string& name) {
 }
 
 toml::table read_toml(const std::string& path) {
-    return toml_from(read_text(path), path);
+    return toml_from(read_scene_text(path), path);
 }
 
 Scene scene_from(const toml::table& file, const std::string& name) {
@@ -89,14 +89,16 @@ Scene scene_from(const toml::table& file, const std::string& name) {
 SceneError::SceneError(const std::string& file, SourceLocation where, const std::string& message)
     : std::runtime_error(where.line > 0 ? fmt::format("{}:{}:{}: {}", file, where.line, where.column, message)
                                         : fmt::format("{}: {}", file, message)),
-      message_(message) {}
+      file_(file),
+      message_(message),
+      where_(where) {}
 
 Scene parse_scene(std::string_view text, const std::string& name) {
     return detail::scene_from(detail::toml_from(text, name), name);
 }
 
 Scene read_scene(const std::string& path) {
-    return parse_scene(read_text(path), path);
+    return parse_scene(read_scene_text(path), path);
 }
 
 }  // namespace carom

@@ -292,6 +292,23 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
                                      kVariationTrials, shot(0).error));
 }
 
+std::string with_values(std::string_view text, const std::string& name, const std::vector<NewValue>& values) {
+    toml::table file = detail::toml_from(text, name);
+    for (const NewValue& value : values) {
+        try {
+            const std::vector<Step> path = find_path(file, value.key);
+            const toml::array list = detail::arguments("value", value.value);
+            if (list.size() != 1) fail("expected one value, not {}", list.size());
+            put_value(file, path, list.get(0));
+        } catch (const std::invalid_argument& error) {
+            throw VariationError(value.key + ": " + error.what());
+        }
+    }
+    std::ostringstream out;
+    out << file;
+    return out.str();
+}
+
 const Scene& Variation::base() const {
     return parts_->base;
 }

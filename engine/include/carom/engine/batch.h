@@ -81,6 +81,19 @@ struct BatchOptions {
     std::function<bool()> stop{};
 };
 
+/// Where the outcomes of n shots of b balls go: arrays of n or of n x b, as in Batch, in memory of the caller's. Null: not wanted.
+struct BatchArrays {
+    ShotStatus* status = nullptr;
+    double* duration = nullptr;
+    std::int64_t* events = nullptr;
+    std::int32_t* first_hit = nullptr;
+    double *x = nullptr, *y = nullptr;
+    std::size_t place_stride =
+        1;  ///< from a ball's number to the next one's in x and in y: 2 where x and y alternate
+    std::int32_t *pocket = nullptr, *fell = nullptr, *cushions = nullptr;
+    std::uint64_t* hash = nullptr;
+};
+
 class BatchStopped : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -112,5 +125,11 @@ struct Batch {
 /// @throws std::bad_alloc, and std::system_error where the system gives no threads
 Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const BatchColumn> columns,
                     kernel::Isa isa, const BatchOptions& options = {});
+
+/// The same into arrays that are there already: memory is taken for the threads and the messages only. BatchOptions::hash is not
+/// read. @return the messages, in the order of the shots
+std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
+                                          std::span<const BatchColumn> columns, kernel::Isa isa,
+                                          const BatchOptions& options, const BatchArrays& out);
 
 }  // namespace carom

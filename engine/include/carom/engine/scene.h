@@ -36,9 +36,12 @@ class SceneError : public std::runtime_error {
 
     /// "what is wrong and what to do", without the place.
     const std::string& message() const noexcept { return message_; }
+    const std::string& file() const noexcept { return file_; }
+    SourceLocation where() const noexcept { return where_; }
 
   private:
-    std::string message_;
+    std::string file_, message_;
+    SourceLocation where_;
 };
 
 // The structs below compare all that they hold, so that a test which compares a whole one cannot forget a
@@ -405,6 +408,9 @@ inline constexpr Field<Scene> kBallPresetFields[] = {
 
 /// Reads and validates a scene file. @throws SceneError
 Scene read_scene(const std::string& path);
+
+/// The content of a scene file, for parse_scene. @throws SceneError
+std::string read_scene_text(const std::string& path);
 
 /// The same from text; `name` stands for the file in messages.
 Scene parse_scene(std::string_view text, const std::string& name);

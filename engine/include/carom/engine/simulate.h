@@ -7,6 +7,8 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "carom/engine/plan.h"
@@ -33,7 +35,14 @@ struct SimulateOptions {
 /// holds a dump of the state.
 class SimulationError : public std::runtime_error {
   public:
-    using std::runtime_error::runtime_error;
+    explicit SimulationError(const std::string& dump, std::shared_ptr<const Record> so_far = nullptr)
+        : std::runtime_error(dump), so_far_(std::move(so_far)) {}
+
+    /// The record up to the failure; null where the run kept no record.
+    const std::shared_ptr<const Record>& so_far() const noexcept { return so_far_; }
+
+  private:
+    std::shared_ptr<const Record> so_far_;
 };
 
 /// Runs a plan to rest, to its stop time or to its number of events; StopReason has the one other end.

@@ -74,4 +74,12 @@ class Variation {
     std::shared_ptr<const Parts> parts_;
 };
 
+/// A scene file with other values: KEY is written as in a rule above, and its VALUE as in the file ("3.5", "[0.1, 0.2]", "\"carom\"").
+/// @return the new file, without its comments; whether it is a valid scene is for parse_scene to say
+/// @throws SceneError for text that is no TOML, VariationError for a key or a value that cannot be read
+struct NewValue {
+    std::string key, value;
+};
+std::string with_values(std::string_view text, const std::string& name, const std::vector<NewValue>& values);
+
 }  // namespace carom

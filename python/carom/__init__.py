@@ -1,0 +1,28 @@
+"""carom: event-based billiards.
+
+A `Scene` says what stands on the table and how it is struck, `simulate` plays it, and the `Record` says exactly what happened.
+`simulate_many` plays many shots that differ in numbers. SI units throughout: metres, seconds, radians per second; angles whose
+names end in `_deg` are degrees. The table's frame has x along the short side, y along the long side and z up from the cloth.
+
+Long calls run without the GIL, and Ctrl-C ends them. Results have the same bits on every machine and with any number of threads.
+"""
+
+from carom._carom import VERSION as __version__
+from carom._errors import SceneError, SimulationError
+from carom._record import Event, Record, TablePlan
+from carom._scene import Scene
+from carom._simulate import Shots, ShotStatus, simulate, simulate_many
+
+__all__ = [
+    "Event",
+    "Record",
+    "Scene",
+    "SceneError",
+    "ShotStatus",
+    "Shots",
+    "SimulationError",
+    "TablePlan",
+    "__version__",
+    "simulate",
+    "simulate_many",
+]

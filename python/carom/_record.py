@@ -1,0 +1,209 @@
+"""Records."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from carom import _carom
+
+if TYPE_CHECKING:
+    from typing import Self
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from carom._scene import Scene
+
+
+def _dtype(members: list[tuple[str, str, int]], size: int) -> np.dtype[np.void]:
+    names, formats, offsets = zip(*members)
+    return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": size})
+
+
+_EVENT = _dtype(_carom.event_members(), _carom.EVENT_SIZE)
+_SEGMENT = _dtype(_carom.segment_members(), _carom.SEGMENT_SIZE)
+_NO_NUMBERS = np.empty(0)
+_NO_KINDS = np.empty(0, np.uint8)
+
+
+class Event(NamedTuple):
+    """One event, with names: its time [s], its type, the ball, and what the ball met ("" for nothing)."""
+
+    time: float
+    type: str
+    a: str
+    b: str
+
+
+class TablePlan(NamedTuple):
+    """The table as a plan draws it; lengths in m."""
+
+    preset: str
+    corner: tuple[float, float]  # of smallest x and y
+    width: float  # along x, between the nose lines
+    length: float  # along y
+    cushions: list[tuple[str, float, float, float, float]]  # id, x and y of one end, of the other
+    jaws: list[tuple[str, float, float, float]]  # id, x and y of the centre, radius
+    pockets: list[tuple[str, float, float, float]]
+
+
+class Record:
+    """What happened in a shot: motion segments in closed form, and events. Immutable.
+
+    Arrays that are views share the record's memory, are read-only, and keep it alive. Balls are in the order of `ids`.
+    """
+
+    __slots__ = ("_native", "__weakref__")
+    _native: _carom.Record
+
+    #: The names of `events["type"]`, by number.
+    EVENT_TYPES: tuple[str, ...] = tuple(_carom.event_names())
+    #: The names of `segments[i]["state"]` and of `motion()`, by number.
+    MOTIONS: tuple[str, ...] = tuple(_carom.motion_names())
+
+    def __init__(self) -> None:
+        raise TypeError("a Record comes from carom.simulate or Record.load")
+
+    @classmethod
+    def _of(cls, native: _carom.Record) -> Self:
+        record = cls.__new__(cls)
+        record._native = native
+        return record
+
+    @property
+    def duration(self) -> float:
+        """How long the shot lasted [s]."""
+        return self._native.duration
+
+    @property
+    def stopped(self) -> str:
+        """Why it ended: "at_rest", "time", "events", or "endless" (balls move for ever, and nothing more happens)."""
+        return self._native.stopped
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """The balls, in the order of every array's ball axis."""
+        return tuple(self._native.ids)
+
+    @property
+    def radii(self) -> NDArray[np.float64]:
+        """Radius of every ball [m]: (balls,)."""
+        return np.array([self._native.radius(i) for i in range(self._native.balls)])
+
+    @property
+    def masses(self) -> NDArray[np.float64]:
+        """Mass of every ball [kg]: (balls,)."""
+        return np.array([self._native.mass(i) for i in range(self._native.balls)])
+
+    @property
+    def table(self) -> TablePlan:
+        """The table, for drawing."""
+        return TablePlan(**self._native.table)
+
+    @property
+    def events(self) -> NDArray[np.void]:
+        """The events in order, a structured view without a copy: time [s], type (`EVENT_TYPES`), a (ball), b (the other ball, or
+        the number of the cushion, jaw or pocket; -1 for none), detail. Columns: `events["time"]`."""
+        return _carom.events_of(self._native).view(_EVENT)
+
+    def event_list(self) -> list[Event]:
+        """The events with names instead of numbers."""
+        return [Event(*event) for event in self._native.event_list()]
+
+    @property
+    def segments(self) -> tuple[NDArray[np.void], ...]:
+        """For every ball its motion segments in order, structured views without a copy: start [s]; r [m], v [m/s] and w [rad/s] at
+        the start; a [m/s^2] and dw [rad/s^2], both of x and y and constant; spin_decay [rad/s^2]; duration [s] until the ball's
+        own transition; state (`MOTIONS`); held (in a resting contact); ends (the transition comes). Of segments with the same
+        start the last one holds. While a ball falls, r_z is where that began, and v_z how fast it falls."""
+        return tuple(_carom.segments_of(self._native, i).view(_SEGMENT) for i in range(self._native.balls))
+
+    @property
+    def clusters(self) -> list[list[int]]:
+        """The balls of every "ball_cluster" event; `events["detail"]` is its place here."""
+        return self._native.clusters
+
+    def states(self, t: ArrayLike, *, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Position [m], velocity [m/s] and spin [rad/s] of every ball, exact at any time.
+
+        t: times [s] of any shape; before 0 the start, after the end the end
+        out: a contiguous array to fill, instead of a new one
+
+        Returns t.shape + (balls, 3, 3). Raises ValueError for a time that is not a number, or an `out` of another shape.
+        """
+        times, shape = self._times(t)
+        states = _output(out, (*shape, self._native.balls, 3, 3))
+        self._native.states(times, states.reshape(-1), _NO_KINDS)
+        return states
+
+    def motion(self, t: ArrayLike) -> NDArray[np.uint8]:
+        """How every ball moves, a number of `MOTIONS`: t.shape + (balls,). Raises ValueError for a time that is not a number."""
+        times, shape = self._times(t)
+        kinds = np.empty((*shape, self._native.balls), np.uint8)
+        self._native.states(times, _NO_NUMBERS, kinds.reshape(-1))
+        return kinds
+
+    def orientations(self, t: ArrayLike) -> NDArray[np.float64]:
+        """How every ball is turned since the start, quaternions x, y, z, w from the ball to the table: t.shape + (balls, 4). Raises
+        ValueError for a time that is not a number."""
+        times, shape = self._times(t)
+        turned = np.empty((*shape, self._native.balls, 4))
+        self._native.orientations(times, turned.reshape(-1))
+        return turned
+
+    def final_scene(self, *, scene: Scene | None = None, cue: Any = None) -> Scene:
+        """The scene for the next shot: the balls where and as they are at the end, without those in pockets.
+
+        scene: the one that was played; needed for a record that was loaded from a file, which has no physics
+        cue: what strikes then, as for Scene; None for nothing
+
+        Raises ValueError without a scene, and SceneError where the result is none, as when no ball is left.
+        """
+        from carom._scene import Scene, _section
+
+        native = self._native.scene_after(None if scene is None else scene._native)
+        after = Scene._of(native)
+        return after if cue is None else after.replace(cue=_section(cue, "preset"))
+
+    def hash(self) -> str:
+        """64 bits of all bits of segments and events, as 16 hexadecimal digits: equal on every machine."""
+        return self._native.hash()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the record as JSON, whole or not at all: what `carom simulate -o` writes. Raises ValueError for a name that does
+        not end in .json, OSError where the file cannot be written."""
+        name = os.fspath(path)
+        if not name.endswith(".json"):
+            raise ValueError(f"{name}: a record is saved as .json")
+        try:
+            self._native.save(name)
+        except RuntimeError as error:
+            raise OSError(str(error)) from None
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """A record that `save` or `carom simulate -o` wrote. Raises SceneError where the file is none."""
+        return cls._of(_carom.load_record(os.fspath(path)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError("a Record does not pickle: send its scene and play it again, which gives the same bits; or save it")
+
+    def __repr__(self) -> str:
+        return f"<carom.Record: {self._native.balls} balls, {len(self.events)} events, {self.duration:.3f} s, {self.stopped}>"
+
+    @staticmethod
+    def _times(t: ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
+        times = np.asarray(t, np.float64)
+        if np.isnan(times).any():
+            raise ValueError("a time is not a number")
+        return np.ascontiguousarray(times).reshape(-1), times.shape
+
+
+def _output(out: NDArray[np.float64] | None, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    if out is None:
+        return np.empty(shape)
+    if out.shape != shape or out.dtype != np.float64 or not out.flags.c_contiguous or not out.flags.writeable:
+        raise ValueError(f"out: expected a writable contiguous array of float64 with the shape {shape}")
+    return out

@@ -1,0 +1,168 @@
+"""Scenes."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom import _carom, _toml
+from carom._errors import SceneError
+
+if TYPE_CHECKING:
+    from typing import Self
+
+    from numpy.typing import NDArray
+
+
+def _placeless(error: SceneError) -> SceneError:
+    """The text of a scene that was built in code is nobody's: its lines say nothing."""
+    return SceneError(re.sub(r" in line \d+", "", error.message), error.file)
+
+
+def _section(value: str | Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    return {key: value} if isinstance(value, str) else value
+
+
+class Scene:
+    """A table, its balls, perhaps a shot. Immutable and valid.
+
+    Sections and keys are those of scene files (docs/reference/scene_format.md):
+    `Scene(table="carom", balls="carom", rack="three_cushion", cue={"ball": "white", "speed": 4})`. A text stands for the preset of a table, of balls or
+    of a cue, and for the game of a rack.
+
+    table: table, "nine_foot" if it is left out
+    balls: material of all balls
+    ball: a mapping for each ball that is placed by itself
+    rack: balls that are placed together
+    cue: what strikes a ball; without it nothing is struck
+    physics, effects, stop, render: as in files
+
+    Raises SceneError where the engine refuses the scene.
+
+    A scene pickles as its text. Two scenes are equal if `text()` is equal.
+    """
+
+    __slots__ = ("_native",)
+    _native: _carom.Scene
+
+    def __init__(
+        self,
+        *,
+        table: str | Mapping[str, Any] | None = None,
+        balls: str | Mapping[str, Any] | None = None,
+        ball: Sequence[Mapping[str, Any]] | None = None,
+        rack: str | Mapping[str, Any] | None = None,
+        cue: str | Mapping[str, Any] | None = None,
+        physics: Mapping[str, Any] | None = None,
+        **sections: Mapping[str, Any],
+    ) -> None:
+        tree: dict[str, Any] = {}
+        for name, text_is, part in (("table", "preset", table), ("balls", "preset", balls), ("rack", "game", rack), ("cue", "preset", cue)):
+            if part is not None:
+                tree[name] = _section(part, text_is)
+        if ball is not None:
+            tree["ball"] = ball
+        if physics is not None:
+            tree["physics"] = physics
+        self._native = _from_tree(tree | sections, "scene")
+
+    @classmethod
+    def _of(cls, native: _carom.Scene) -> Self:
+        scene = cls.__new__(cls)
+        scene._native = native
+        return scene
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """The scene in a TOML file. Raises SceneError with the place of the mistake, also where the file cannot be read."""
+        name = os.fspath(path)
+        return cls._of(_carom.parse_scene(_carom.read_scene_text(name), name))
+
+    @classmethod
+    def loads(cls, text: str, name: str = "scene") -> Self:
+        """The scene in a TOML text; `name` stands for the file in messages. Raises SceneError with the place of the mistake."""
+        return cls._of(_carom.parse_scene(text, name))
+
+    @classmethod
+    def from_dict(cls, tree: Mapping[str, Any], name: str = "scene") -> Self:
+        """The scene that a file with this content describes: what `tomllib.load` gives. Numbers and arrays of numpy will do.
+        Raises SceneError, in the words for a file but without a line."""
+        return cls._of(_from_tree(tree, name))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The file as a tree, as it was written: `Scene.from_dict(scene.to_dict()) == scene`."""
+        import tomllib
+
+        return tomllib.loads(self._native.source)
+
+    def replace(self, **changes: Any) -> Self:
+        """The scene with other values.
+
+        A key with dots names one value, as `carom sweep --vary` writes it: `scene.replace(**{"cue.speed": 3, "balls.mu_s": 0.18})`,
+        "ball.cue.position.x", "table.pocket.p1.radius". A key without dots replaces a whole section, and None removes it:
+        `scene.replace(cue={"speed": 3, "aim_deg": 88})`.
+
+        Raises SceneError for an unknown key, and where the engine refuses the result.
+        """
+        native, name = self._native, self._native.file
+        sections = {key: part for key, part in changes.items() if "." not in key}
+        if sections:
+            tree = {key: part for key, part in (self.to_dict() | sections).items() if part is not None}
+            native = _from_tree(tree, name)
+        values = [(key, _toml.value(value, key, name)) for key, value in changes.items() if "." in key]
+        if values:
+            try:
+                native = _carom.parse_scene(native.changed(values), name)
+            except SceneError as error:
+                raise _placeless(error) from None
+        return self._of(native)
+
+    def text(self) -> str:
+        """The scene as a TOML file with every value written out. `Scene.loads(scene.text())` is the same scene to the bit; a rack
+        is written as its balls."""
+        return self._native.text
+
+    @property
+    def source(self) -> str:
+        """The TOML that the scene was read from."""
+        return self._native.source
+
+    @property
+    def file(self) -> str:
+        """The name that stands in messages."""
+        return self._native.file
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """The balls, in the order of every array's ball axis."""
+        return tuple(self._native.ids)
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """Where the balls are at the start [m]: (balls, 2), a copy."""
+        out = np.empty((self._native.balls, 2))
+        self._native.positions(out.reshape(-1))
+        return out
+
+    def __eq__(self, other: object) -> bool:
+        return self.text() == other.text() if isinstance(other, Scene) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.text())
+
+    def __reduce__(self) -> tuple[Any, tuple[str, str]]:
+        return type(self).loads, (self._native.source, self._native.file)
+
+    def __repr__(self) -> str:
+        return f"<carom.Scene {self.file}: {', '.join(self.ids[:4])}{', ...' if len(self.ids) > 4 else ''}>"
+
+
+def _from_tree(tree: Mapping[str, Any], name: str) -> _carom.Scene:
+    try:
+        return _carom.parse_scene(_toml.document(tree, name), name)
+    except SceneError as error:
+        raise _placeless(error) from None

@@ -1,0 +1,63 @@
+// The extension module carom._carom: errors, signals, and the parts put together.
+#include <nanobind/stl/string.h>
+
+#include <chrono>
+#include <exception>
+#include <string>
+#include <thread>
+
+#include "native.h"
+
+namespace carom::python {
+namespace {
+
+double seconds_now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// [s] Between two looks at the signals: short for a person, and long beside what taking the GIL costs.
+constexpr double kSignalPeriod = 0.05;
+
+void translate(const std::exception_ptr& error, void*) {
+    try {
+        std::rethrow_exception(error);
+    } catch (const SceneError& wrong) {
+        const nb::object type = nb::module_::import_("carom._errors").attr("SceneError");
+        const SourceLocation at = wrong.where();
+        const nb::object value = type(wrong.message(), wrong.file(), at.line, at.column);
+        PyErr_SetObject(type.ptr(), value.ptr());
+    }
+}
+
+}  // namespace
+
+kernel::Isa chosen_isa() {
+    const auto [isa, problem] = kernel::isa_from_environment();
+    if (*problem != '\0') throw nb::value_error(problem);
+    return isa;
+}
+
+SignalWatch::SignalWatch() : caller_(std::this_thread::get_id()), next_(seconds_now() + kSignalPeriod) {}
+
+bool SignalWatch::stopped() {
+    if (std::this_thread::get_id() != caller_) return false;
+    if (raised_) return true;
+    const double now = seconds_now();
+    if (now < next_) return false;
+    next_ = now + kSignalPeriod;
+    const nb::gil_scoped_acquire gil;
+    raised_ = PyErr_CheckSignals() != 0;
+    return raised_;
+}
+
+}  // namespace carom::python
+
+NB_MODULE(_carom, m) {
+    using namespace carom::python;
+    m.doc() = "The engine of carom for the package's own sources; use the package.";
+    m.attr("VERSION") = CAROM_VERSION;
+    nb::register_exception_translator(translate);
+    add_scenes(m);
+    add_records(m);
+    add_shots(m);
+}

@@ -1,0 +1,56 @@
+// What the parts of the extension module share. The Python sources in python/carom are the interface that people see; the module
+// takes flat arrays, which they have checked and shaped.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "carom/engine/record.h"
+#include "carom/engine/scene.h"
+#include "carom/kernel/isa.h"
+
+namespace carom::python {
+
+namespace nb = nanobind;
+
+/// A valid scene, and the text that it was read from.
+struct NativeScene {
+    std::shared_ptr<const Scene> scene;
+    std::string source;
+};
+
+struct NativeRecord {
+    Record record;
+    std::shared_ptr<const Scene> scene;  ///< that was played; null for a record from a file
+};
+
+/// A contiguous array of the caller's, to read or to fill.
+template <class T>
+using Flat = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+/// The instruction set that CAROM_ISA names, or else the widest one. @throws nb::value_error
+kernel::Isa chosen_isa();
+
+/// Lets Ctrl-C end a long computation without the GIL. Signals are looked for by the thread that made the watch, some 20 times a
+/// second.
+class SignalWatch {
+  public:
+    SignalWatch();
+    /// Whether a signal handler of Python's has raised an exception; it is then set. Any thread may call.
+    bool stopped();
+
+  private:
+    std::thread::id caller_;
+    double next_;
+    bool raised_ = false;
+};
+
+void add_scenes(nb::module_& m);
+void add_records(nb::module_& m);
+void add_shots(nb::module_& m);
+
+}  // namespace carom::python

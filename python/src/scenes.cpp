@@ -1,0 +1,59 @@
+// Scenes: read, changed, written.
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "carom/engine/variation.h"
+#include "native.h"
+
+namespace carom::python {
+namespace {
+
+NativeScene parse(const std::string& text, const std::string& name) {
+    return {std::make_shared<const Scene>(parse_scene(text, name)), text};
+}
+
+std::string changed(const NativeScene& scene,
+                    const std::vector<std::pair<std::string, std::string>>& values) {
+    std::vector<NewValue> list;
+    for (const auto& [key, value] : values) list.push_back({key, value});
+    try {
+        return with_values(scene.source, scene.scene->file, list);
+    } catch (const VariationError& error) {
+        throw SceneError(scene.scene->file, {}, error.what());
+    }
+}
+
+std::vector<std::string> ids(const NativeScene& scene) {
+    std::vector<std::string> list;
+    for (const BallStart& ball : scene.scene->ball) list.push_back(ball.id);
+    return list;
+}
+
+void positions(const NativeScene& scene, const Flat<double>& out) {
+    double* at = out.data();
+    for (const BallStart& ball : scene.scene->ball) at = std::copy_n(ball.position.data(), 2, at);
+}
+
+}  // namespace
+
+void add_scenes(nb::module_& m) {
+    nb::class_<NativeScene>(m, "Scene")
+        .def_prop_ro("source", [](const NativeScene& s) { return s.source; })
+        .def_prop_ro("file", [](const NativeScene& s) { return s.scene->file; })
+        .def_prop_ro("text", [](const NativeScene& s) { return scene_text(*s.scene); })
+        .def_prop_ro("ids", ids)
+        .def_prop_ro("balls", [](const NativeScene& s) { return s.scene->ball.size(); })
+        .def("positions", positions, nb::arg("out").noconvert())
+        .def("changed", changed);
+    m.def("read_scene_text", read_scene_text);
+    m.def("parse_scene", parse);
+}
+
+}  // namespace carom::python

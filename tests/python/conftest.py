@@ -1,0 +1,34 @@
+"""Where the repository and the program are. The package is the one that Python finds: tests/python/CMakeLists.txt points PYTHONPATH
+at the build, and an installed wheel is tested without it."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import subprocess
+
+import pytest
+
+SOURCE = pathlib.Path(os.environ.get("CAROM_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
+SCENES = sorted((SOURCE / "scenes").glob("*.toml"))
+BAD_SCENES = sorted((SOURCE / "tests/data/bad_scenes").glob("*.toml"))
+
+
+def carom_program(*arguments: object) -> str:
+    """What the program prints. Its own tests are elsewhere; here it is what Python has to agree with."""
+    program = os.environ.get("CAROM_PROGRAM", SOURCE / "build/release/carom")
+    return subprocess.run([program, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
+
+
+@pytest.fixture
+def draw_scene():
+    import carom
+
+    return carom.Scene.load(SOURCE / "scenes/draw.toml")
+
+
+@pytest.fixture
+def break_scene():
+    import carom
+
+    return carom.Scene.load(SOURCE / "scenes/eight_ball_break.toml")

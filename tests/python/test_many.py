@@ -1,0 +1,132 @@
+"""Batches: the bits of single shots, failures that stay where they are, arrays that are reused."""
+
+from __future__ import annotations
+
+import carom
+import numpy as np
+import pytest
+from carom import ShotStatus
+
+RANDOM = np.random.default_rng(7)
+
+
+def cues(n):
+    return np.column_stack(
+        [RANDOM.uniform(1, 6, n), RANDOM.uniform(0, 360, n), np.zeros(n), RANDOM.uniform(-0.3, 0.3, n), RANDOM.uniform(-0.3, 0.3, n)]
+    )
+
+
+def one_by_one(scene, cue, xy, params, i):
+    """Shot i as a scene of its own."""
+    changes = {f"cue.{key}": cue[i, k] for k, key in enumerate(("speed", "aim_deg", "elevation_deg"))}
+    changes["cue.offset"] = [cue[i, 3], cue[i, 4]]
+    for k, ball in enumerate(scene.ids):
+        changes[f"ball.{ball}.position"] = xy[i, k]
+    return scene.replace(**changes, **{key: values[i] for key, values in params.items()})
+
+
+def test_a_batch_has_the_bits_of_single_shots(draw_scene):
+    n = 60
+    cue = cues(n)
+    xy = draw_scene.positions + RANDOM.uniform(-0.02, 0.02, (n, len(draw_scene.ids), 2))
+    params = {"balls.mu_s": RANDOM.uniform(0.15, 0.25, n), "physics.gravity": RANDOM.uniform(9.7, 9.9, n)}
+    shots = carom.simulate_many(draw_scene, cue=cue, xy=xy, params=params, hashes=True)
+    assert not shots.messages
+    for i in range(n):
+        record = carom.simulate(one_by_one(draw_scene, cue, xy, params, i))
+        assert f"{shots.hash[i]:016x}" == record.hash()
+        assert shots.duration[i] == record.duration and shots.events[i] == len(record.events)
+        assert shots.status[i] == ShotStatus.AT_REST and record.stopped == "at_rest"
+        assert (shots.xy[i] == record.states(record.duration)[:, 0, :2]).all()
+        cushions = [e.a for e in record.event_list() if e.type in ("ball_cushion", "ball_jaw", "ball_cushion_hold", "ball_jaw_hold")]
+        assert shots.cushions[i].tolist() == [cushions.count(ball) for ball in record.ids]
+        fallen = [e.a for e in record.event_list() if e.type == "ball_pocket"]
+        assert [ball for _, ball in sorted((f, b) for f, b in zip(shots.fell[i], record.ids) if f >= 0)] == fallen
+        assert ((shots.pocket[i] >= 0) == (shots.fell[i] >= 0)).all()
+
+
+@pytest.mark.parametrize("threads", [0, 2, 3])
+def test_threads_change_nothing(break_scene, threads):
+    cue = cues(40) * [1, 0.02, 1, 1, 1] + [3, 88, 0, 0, 0]
+    one = carom.simulate_many(break_scene, cue=cue, hashes=True)
+    assert (one.first_hit >= 0).sum() > 30 and (one.hash != 0).all()
+    many = carom.simulate_many(break_scene, cue=cue, hashes=True, threads=threads)
+    for a, b in zip(one, many):
+        assert np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b
+
+
+def test_a_bad_shot_has_a_status_and_the_others_are_played(draw_scene):
+    cue = cues(6)
+    good = carom.simulate_many(draw_scene, cue=cue)
+    cue[1, 0] = -1
+    cue[2, 0] = np.nan
+    cue[4, 3] = 0.9
+    shots = carom.simulate_many(draw_scene, cue=cue)
+    assert shots.status.tolist() == [0, ShotStatus.INVALID, ShotStatus.INVALID, 0, ShotStatus.INVALID, 0]
+    assert sorted(shots.messages) == [1, 2, 4] and "out of range" in shots.messages[1]
+    for i in (1, 2, 4):
+        assert np.isnan(shots.duration[i]) and np.isnan(shots.xy[i]).all()
+        assert shots.events[i] == 0 and shots.first_hit[i] == -1
+        assert (shots.pocket[i] == -1).all() and (shots.fell[i] == -1).all() and (shots.cushions[i] == 0).all()
+    for i in (0, 3, 5):
+        assert np.array_equal(shots.xy[i], good.xy[i]) and shots.duration[i] == good.duration[i]
+
+
+def test_a_run_that_cannot_go_on_is_a_status():
+    scene = carom.Scene(
+        table={"cushion": []},
+        balls={"mu_b": 0, "e_b": 0},
+        physics={"clusters": "sequential"},
+        ball=[{"id": "a", "position": [0, 0], "velocity": [-0.5, 0]}, {"id": "b", "position": [0.2, 0], "mass": 0.34}],
+    )
+    shots = carom.simulate_many(scene, params={"ball.a.velocity.x": [-0.5, 0.5, -0.4]})
+    assert shots.status.tolist() == [0, ShotStatus.FAILED, 0]
+    assert shots.messages[1].startswith("simulation stopped at t = ")
+
+
+def test_out_is_filled_and_returned(draw_scene):
+    cue = cues(10)
+    fresh = carom.simulate_many(draw_scene, cue=cue, hashes=True)
+    out = carom.Shots.empty(10, len(draw_scene.ids), hashes=True)
+    again = carom.simulate_many(draw_scene, cue=cue, out=out, hashes=True)
+    for mine, given, wanted in zip(again, out, fresh):
+        if isinstance(given, np.ndarray):
+            assert mine is given and np.array_equal(given, wanted)
+    assert carom.simulate_many(draw_scene, cue=cue, out=out).hash is None
+    with pytest.raises(ValueError, match="out.status: expected a writable contiguous array of uint8 with the shape .11,."):
+        carom.simulate_many(draw_scene, cue=cues(11), out=out)
+    with pytest.raises(ValueError, match="out.hash"):
+        carom.simulate_many(draw_scene, cue=cue, out=carom.Shots.empty(10, 2), hashes=True)
+    locked = out.xy
+    locked.flags.writeable = False
+    with pytest.raises(ValueError, match="out.xy"):
+        carom.simulate_many(draw_scene, cue=cue, out=out)
+
+
+def test_limits_are_those_of_a_single_shot(break_scene):
+    assert carom.simulate_many(break_scene, shots=2, until=0.5).duration.tolist() == [0.5, 0.5]
+    few = carom.simulate_many(break_scene, shots=2, max_events=10)
+    assert few.events.tolist() == [10, 10] and (few.status == ShotStatus.EVENTS).all()
+    assert carom.simulate_many(break_scene, shots=0).xy.shape == (0, 16, 2)
+
+
+def test_what_does_not_fit_is_refused(draw_scene):
+    two = len(draw_scene.ids)
+    for arguments, message in [
+        (dict(), "nothing that says how many shots"),
+        (dict(cue=np.zeros((3, 4))), r"cue: expected the shape \(n, 5\), not \(3, 4\)"),
+        (dict(cue=np.zeros((3, 5)), shots=4), "cue: 3 values for 4 shots"),
+        (dict(xy=np.zeros((3, two + 1, 2))), "xy: expected the shape"),
+        (dict(params={"cue.sped": [1.0]}), "cue.sped: it names no number"),
+        (dict(params={"cue.speed": [1.0]}, cue=np.zeros((1, 5))), "cue.speed: the key is there twice"),
+        (dict(shots=1, threads=-1), "threads=-1"),
+        (dict(shots=-1), "shots=-1"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            carom.simulate_many(draw_scene, **arguments)
+
+
+def test_names_of_the_engine_and_the_enumeration_agree():
+    from carom import _carom
+
+    assert _carom.status_names() == [status.name.lower() for status in ShotStatus]
