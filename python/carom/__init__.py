@@ -7,10 +7,13 @@ names end in `_deg` are degrees. The table's frame has x along the short side, y
 Long calls run without the GIL, and Ctrl-C ends them. Results have the same bits on every machine and with any number of threads.
 """
 
+from carom import kernel, sweep
 from carom._carom import VERSION as __version__
 from carom._errors import SceneError, SimulationError
+from carom._program import accuracy, margin
 from carom._record import Event, Record, TablePlan
 from carom._scene import Scene
+from carom._render import render
 from carom._simulate import Shots, ShotStatus, simulate, simulate_many
 
 __all__ = [
@@ -23,6 +26,11 @@ __all__ = [
     "SimulationError",
     "TablePlan",
     "__version__",
+    "accuracy",
+    "kernel",
+    "margin",
+    "render",
     "simulate",
     "simulate_many",
+    "sweep",
 ]

@@ -103,6 +103,16 @@ class Record:
         return TablePlan(**self._native.table)
 
     @property
+    def fps(self) -> float:
+        """Frames per second that the scene asks for ([render])."""
+        return self._native.fps
+
+    @property
+    def picture_size(self) -> tuple[int, int]:
+        """Width and height that the scene asks for [pixels]."""
+        return self._native.picture_size
+
+    @property
     def events(self) -> NDArray[np.void]:
         """The events in order, a structured view without a copy: time [s], type (`EVENT_TYPES`), a (ball), b (the other ball, or
         the number of the cushion, jaw or pocket; -1 for none), detail. Columns: `events["time"]`."""

@@ -59,12 +59,30 @@ class Shots(NamedTuple):
     duration: NDArray[np.float64]  # (n,) [s]
     events: NDArray[np.int64]  # (n,)
     first_hit: NDArray[np.int32]  # (n,) the ball that the struck ball met first, or -1
-    xy: NDArray[np.float64]  # (n, b, 2) [m] at the end; of a pocketed ball the pocket
+    xy: NDArray[np.float64]  # (n, b, 2) [m] at the end; of a pocketed ball the pocket, NaN for one that was left out
     pocket: NDArray[np.int32]  # (n, b) the pocket that holds the ball, or -1
     fell: NDArray[np.int32]  # (n, b) 0 for the ball that fell first, 1, ..., or -1
     cushions: NDArray[np.int32]  # (n, b) how often the ball met a cushion or a jaw
     hash: NDArray[np.uint64] | None  # (n,) int(record.hash(), 16), where it was asked for
     messages: dict[int, str]  # shot: why it has no result
+
+    @property
+    def places(self) -> NDArray[np.float64]:
+        """Where balls are that are still on the table: (n, b, 2) [m], NaN for the others; a copy, for `simulate_many(xy=...)`."""
+        return np.where((self.pocket >= 0)[:, :, None], np.nan, self.xy)
+
+    def _native(self) -> _carom.ShotArrays:
+        return _carom.ShotArrays(
+            self.status,
+            self.duration,
+            self.events,
+            self.first_hit,
+            self.xy.reshape(-1),
+            self.pocket.reshape(-1),
+            self.fell.reshape(-1),
+            self.cushions.reshape(-1),
+            np.empty(0, np.uint64) if self.hash is None else self.hash,
+        )
 
     @classmethod
     def empty(cls, shots: int, balls: int, *, hashes: bool = False) -> Shots:
@@ -127,7 +145,7 @@ def simulate_many(
     of threads; one that fails has its status and does not raise for the others.
 
     cue: (n, 5): speed [m/s], aim_deg, elevation_deg, side, height; the scene has to have a cue
-    xy: (n, balls, 2) places at the start [m]
+    xy: (n, balls, 2) places at the start [m]; a ball with NaN twice is left out of its shot
     params: (n,) for each key, such as "balls.mu_s", "physics.gravity", "ball.cue.velocity.y", "cue.offset.side"
     shots: n, where nothing else says it
     until, max_events: limits of every shot, as for `simulate`
@@ -142,12 +160,16 @@ def simulate_many(
         raise ValueError(f"threads={threads}: expected at least 0")
     ids = scene.ids
     columns = _Columns(shots)
+    absent = np.empty(0, np.uint8)
     if cue is not None:
         columns.add("cue", list(_CUE_KEYS), _array("cue", cue, (5,), "(n, 5)"))
     if xy is not None:
         keys = [f"ball.{ball}.position.{axis}" for ball in ids for axis in "xy"]
         places = _array("xy", xy, (len(ids), 2), f"(n, {len(ids)}, 2)")
         columns.add("xy", keys, places)
+        gone = np.isnan(places).all(axis=2)
+        if gone.any():
+            absent = gone.astype(np.uint8).reshape(-1)
     for key, values in (params or {}).items():
         columns.add(key, [key], _array(key, values, (), "(n,)"))
     n = columns.shots
@@ -156,23 +178,7 @@ def simulate_many(
     if n < 0:
         raise ValueError(f"shots={n}: expected at least 0")
     into = Shots.empty(n, len(ids), hashes=hashes) if out is None else _checked(out, n, len(ids), hashes)
-    failures = _carom.simulate_many(
-        scene._native,
-        n,
-        columns.columns,
-        until,
-        max_events,
-        threads,
-        into.status,
-        into.duration,
-        into.events,
-        into.first_hit,
-        into.xy.reshape(-1),
-        into.pocket.reshape(-1),
-        into.fell.reshape(-1),
-        into.cushions.reshape(-1),
-        np.empty(0, np.uint64) if into.hash is None else into.hash,
-    )
+    failures = _carom.simulate_many(scene._native, n, columns.columns, absent, until, max_events, threads, into._native())
     return into._replace(messages=dict(failures))
 
 

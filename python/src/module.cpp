@@ -60,4 +60,7 @@ NB_MODULE(_carom, m) {
     add_scenes(m);
     add_records(m);
     add_shots(m);
+    add_batches(m);
+    add_impacts(m);
+    add_frames(m);
 }

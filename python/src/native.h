@@ -5,7 +5,9 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -24,7 +26,7 @@ struct NativeScene {
 };
 
 struct NativeRecord {
-    Record record;
+    std::shared_ptr<const Record> record;
     std::shared_ptr<const Scene> scene;  ///< that was played; null for a record from a file
 };
 
@@ -34,6 +36,9 @@ using Flat = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 /// The instruction set that CAROM_ISA names, or else the widest one. @throws nb::value_error
 kernel::Isa chosen_isa();
+
+/// Of two limits the smaller one; nothing where there is none.
+std::optional<std::int64_t> fewer(std::optional<std::int64_t> a, std::optional<std::int64_t> b);
 
 /// Lets Ctrl-C end a long computation without the GIL. Signals are looked for by the thread that made the watch, some 20 times a
 /// second.
@@ -52,5 +57,8 @@ class SignalWatch {
 void add_scenes(nb::module_& m);
 void add_records(nb::module_& m);
 void add_shots(nb::module_& m);
+void add_batches(nb::module_& m);
+void add_impacts(nb::module_& m);
+void add_frames(nb::module_& m);
 
 }  // namespace carom::python

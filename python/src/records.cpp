@@ -57,7 +57,7 @@ std::vector<Member> segment_members() {
 }
 
 int ball_count(const NativeRecord& r) {
-    return static_cast<int>(r.record.tracks.size());
+    return static_cast<int>(r.record->tracks.size());
 }
 
 /// Nine numbers and a kind of motion for every ball at every time. Empty outputs are not wanted.
@@ -68,7 +68,7 @@ void states(const NativeRecord& r, const Flat<const double>& times, const Flat<d
     const nb::gil_scoped_release no_gil;
     for (std::size_t k = 0; k < times.size(); ++k) {
         for (int ball = 0; ball < ball_count(r); ++ball) {
-            const BallState s = r.record.state_at(ball, times.data()[k]);
+            const BallState s = r.record->state_at(ball, times.data()[k]);
             if (kind != nullptr) *kind++ = static_cast<std::uint8_t>(s.state);
             if (at == nullptr) continue;
             for (const Vec3* row : {&s.position, &s.velocity, &s.spin}) at = std::copy_n(row->data(), 3, at);
@@ -81,7 +81,7 @@ void orientations(const NativeRecord& r, const Flat<const double>& times, const 
     const nb::gil_scoped_release no_gil;
     for (std::size_t k = 0; k < times.size(); ++k)
         for (int ball = 0; ball < ball_count(r); ++ball)
-            at = std::copy_n(r.record.orientation_at(ball, times.data()[k]).coeffs().data(), 4, at);
+            at = std::copy_n(r.record->orientation_at(ball, times.data()[k]).coeffs().data(), 4, at);
 }
 
 /// The scene for the next shot, with the physics of `scene`. @throws nb::value_error for another scene's balls
@@ -90,25 +90,25 @@ NativeScene scene_after_record(const NativeRecord& r, const NativeScene* other) 
     if (scene == nullptr)
         throw nb::value_error(
             "the record comes from a file, which has no physics: give the scene that was played");
-    if (!std::equal(scene->ball.begin(), scene->ball.end(), r.record.tracks.begin(), r.record.tracks.end(),
+    if (!std::equal(scene->ball.begin(), scene->ball.end(), r.record->tracks.begin(), r.record->tracks.end(),
                     [](const BallStart& ball, const BallTrack& track) { return ball.id == track.id; }))
         throw nb::value_error("the scene has other balls than the record");
-    const Scene after = scene_after(*scene, r.record);
+    const Scene after = scene_after(*scene, *r.record);
     const std::string text = scene_text(after);
     return {std::make_shared<const Scene>(parse_scene(text, scene->file)), text};
 }
 
 std::vector<std::tuple<double, std::string, std::string, std::string>> event_list(const NativeRecord& r) {
     std::vector<std::tuple<double, std::string, std::string, std::string>> list;
-    for (const Event& e : r.record.events)
-        list.emplace_back(e.time, name(e.type), r.record.tracks.at(static_cast<std::size_t>(e.a)).id,
-                          r.record.partner_id(e));
+    for (const Event& e : r.record->events)
+        list.emplace_back(e.time, name(e.type), r.record->tracks.at(static_cast<std::size_t>(e.a)).id,
+                          r.record->partner_id(e));
     return list;
 }
 
 /// Cushions as (from, to), jaws and pockets as (centre, radius), with their ids: what a plan of the table draws.
 nb::typed<nb::dict, nb::str, nb::any> table_of(const NativeRecord& r) {
-    const Table& table = r.record.table;
+    const Table& table = r.record->table;
     nb::list cushions, jaws, pockets;
     for (const Cushion& c : table.cushions)
         cushions.append(nb::make_tuple(c.id, c.from.x(), c.from.y(), c.to.x(), c.to.y()));
@@ -128,7 +128,7 @@ nb::typed<nb::dict, nb::str, nb::any> table_of(const NativeRecord& r) {
 
 std::vector<std::string> track_ids(const NativeRecord& r) {
     std::vector<std::string> list;
-    for (const BallTrack& track : r.record.tracks) list.push_back(track.id);
+    for (const BallTrack& track : r.record->tracks) list.push_back(track.id);
     return list;
 }
 
@@ -148,35 +148,39 @@ std::vector<std::string> names_in_files() {
 
 void add_records(nb::module_& m) {
     nb::class_<NativeRecord>(m, "Record")
-        .def_prop_ro("duration", [](const NativeRecord& r) { return r.record.duration; })
+        .def_prop_ro("duration", [](const NativeRecord& r) { return r.record->duration; })
         .def_prop_ro("stopped",
                      [](const NativeRecord& r) {
-                         return std::string(name(static_cast<ShotStatus>(r.record.stopped)));
+                         return std::string(name(static_cast<ShotStatus>(r.record->stopped)));
                      })
         .def_prop_ro("ids", track_ids)
         .def_prop_ro("balls", ball_count)
         .def_prop_ro("table", table_of)
+        .def_prop_ro("fps", [](const NativeRecord& r) { return r.record->render.fps; })
+        .def_prop_ro(
+            "picture_size",
+            [](const NativeRecord& r) { return std::tuple(r.record->render.width, r.record->render.height); })
         .def_prop_ro("has_scene", [](const NativeRecord& r) { return r.scene != nullptr; })
-        .def_prop_ro("clusters", [](const NativeRecord& r) { return r.record.clusters; })
-        .def("radius", [](const NativeRecord& r, int ball) { return r.record.size(ball).R; })
-        .def("mass", [](const NativeRecord& r, int ball) { return r.record.size(ball).m; })
+        .def_prop_ro("clusters", [](const NativeRecord& r) { return r.record->clusters; })
+        .def("radius", [](const NativeRecord& r, int ball) { return r.record->size(ball).R; })
+        .def("mass", [](const NativeRecord& r, int ball) { return r.record->size(ball).m; })
         .def("event_list", event_list)
-        .def("hash", [](const NativeRecord& r) { return r.record.hash(); })
+        .def("hash", [](const NativeRecord& r) { return r.record->hash(); })
         .def("states", states, nb::arg("times"), nb::arg("rvw").noconvert(), nb::arg("kinds").noconvert())
         .def("orientations", orientations, nb::arg("times"), nb::arg("out").noconvert())
         .def("scene_after", scene_after_record, nb::arg("scene").none())
-        .def("save", [](const NativeRecord& r, const std::string& path) { write_record(r.record, path); });
+        .def("save", [](const NativeRecord& r, const std::string& path) { write_record(*r.record, path); });
     // Functions, because only they get the object itself, which the views keep alive.
     m.def("events_of", [](nb::handle_t<NativeRecord> r) {
-        return bytes_of(nb::cast<const NativeRecord&>(r).record.events, r);
+        return bytes_of(nb::cast<const NativeRecord&>(r).record->events, r);
     });
     m.def("segments_of", [](nb::handle_t<NativeRecord> r, int ball) {
         return bytes_of(
-            nb::cast<const NativeRecord&>(r).record.tracks.at(static_cast<std::size_t>(ball)).segments, r);
+            nb::cast<const NativeRecord&>(r).record->tracks.at(static_cast<std::size_t>(ball)).segments, r);
     });
     m.def("load_record", [](const std::string& path) {
         const nb::gil_scoped_release no_gil;
-        return NativeRecord{read_record(path), nullptr};
+        return NativeRecord{std::make_shared<const Record>(read_record(path)), nullptr};
     });
     m.attr("EVENT_SIZE") = sizeof(Event);
     m.attr("SEGMENT_SIZE") = sizeof(Segment);

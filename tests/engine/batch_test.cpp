@@ -16,6 +16,7 @@
 
 #include "base/splitmix64.h"
 #include "support/engine_cases.h"
+#include "support/pages.h"
 #include "support/random_scenes.h"
 
 namespace carom::test {
@@ -289,6 +290,113 @@ TEST(Batch, FillsTheArraysOfACallerAndNoOthers) {
     ASSERT_EQ(messages.size(), 1u);
     EXPECT_EQ(messages[0].shot, 1u);
     EXPECT_EQ(messages[0].text, whole.messages.at(0).text);
+}
+
+TEST(Batch, BallsThatAreLeftOutAreNotThere) {
+    SplitMix64 random(11);
+    const Scene scene = scene_of("eight_ball_break");
+    const std::size_t balls = scene.ball.size();
+    Columns columns(30);
+    columns.add("cue.aim_deg", random, 80.0, 100.0).add("ball.1.position.y", random, 1.85, 1.9);
+    // All balls, some, none but the cue ball, and not even that.
+    std::vector<std::uint8_t> absent(columns.shots * balls);
+    for (std::size_t i = 0; i < columns.shots; ++i)
+        for (std::size_t b = 0; b < balls; ++b)
+            absent[i * balls + b] = i % 5 == 0   ? 0
+                                    : i % 5 == 1 ? b > 0
+                                    : i == 2     ? 1
+                                                 : b > 0 && random.below(2) == 0;
+    BatchOptions options;
+    options.hash = true;
+    options.absent = absent;
+    for (const int threads : {1, 2}) {
+        options.threads = threads;
+        std::vector<BatchColumn> list;
+        for (std::size_t k = 0; k < columns.keys.size(); ++k)
+            list.push_back({columns.keys[k], columns.values[k]});
+        const Batch batch = simulate_many(scene, columns.shots, list, kIsa, options);
+        for (std::size_t i = 0; i < columns.shots; ++i) {
+            Scene shot = columns.shot(scene, i);
+            std::vector<BallStart> left;
+            for (std::size_t b = 0; b < balls; ++b)
+                if (absent[i * balls + b] == 0) left.push_back(shot.ball[b]);
+            shot.ball = left;
+            if (i == 2) {
+                EXPECT_EQ(batch.status[i], ShotStatus::kInvalid);
+                EXPECT_EQ(batch.x[i * balls], 0.0);
+                continue;
+            }
+            const Record record = simulate(make_plan(shot, kIsa));
+            EXPECT_EQ(fmt::format("{:016x}", batch.hash[i]), record.hash());
+            EXPECT_EQ(batch.duration[i], record.duration);
+            int ball = 0;
+            for (std::size_t b = 0; b < balls; ++b) {
+                const std::size_t at = i * balls + b;
+                if (absent[at] != 0) {
+                    EXPECT_TRUE(std::isnan(batch.x[at]) && std::isnan(batch.y[at]));
+                    EXPECT_EQ(batch.pocket[at], -1);
+                    EXPECT_EQ(batch.fell[at], -1);
+                    EXPECT_EQ(batch.cushions[at], 0);
+                    EXPECT_NE(batch.first_hit[i], static_cast<int>(b));
+                    continue;
+                }
+                const BallState end = record.state_at(ball, record.duration);
+                EXPECT_EQ(batch.x[at], end.position.x());
+                EXPECT_EQ(batch.pocket[at], end.pocket);
+                if (ball == first_hit(record, 0)) {
+                    EXPECT_EQ(batch.first_hit[i], static_cast<int>(b));
+                }
+                ++ball;
+            }
+        }
+    }
+    options.absent = std::span(absent).first(3);
+    EXPECT_THROW(simulate_many(scene, 1, {}, kIsa, options), std::invalid_argument);
+}
+
+TEST(Batch, ShotsOfAVariationAreThoseOfItsScenes) {
+    const std::string text = read_source("scenes/draw.toml");
+    // Of the second, not every value is a number of the scene.
+    for (const std::vector<std::string>& rules :
+         {std::vector<std::string>{"cue.aim_deg=normal(2)", "cue.speed=uniform(-0.1,4)"},
+          std::vector<std::string>{"cue.aim_deg=normal(2)",
+                                   "physics.cushion=list(\"smooth\",\"stronge\",\"none\")"}}) {
+        const Variation variation = Variation::from_text(text, "draw", rules, 5);
+        constexpr std::size_t kShots = 40, kFirst = 7;
+        std::vector<double> duration(kShots);
+        std::vector<ShotStatus> status(kShots);
+        std::vector<std::uint64_t> hash(kShots);
+        BatchArrays out;
+        out.duration = duration.data();
+        out.status = status.data();
+        out.hash = hash.data();
+        for (const int threads : {1, 3}) {
+            BatchOptions options;
+            options.threads = threads;
+            std::vector<std::string> values;
+            const auto messages = simulate_many(variation, kFirst, kShots, kIsa, options, out, values);
+            ASSERT_EQ(values.size(), 2 * kShots);
+            std::size_t message = 0;
+            for (std::size_t i = 0; i < kShots; ++i) {
+                const VariedShot shot = variation.shot(kFirst + i);
+                EXPECT_EQ(values[2 * i], shot.values[0]);
+                EXPECT_EQ(values[2 * i + 1], shot.values[1]);
+                if (!shot.scene) {
+                    EXPECT_EQ(status[i], ShotStatus::kInvalid);
+                    ASSERT_LT(message, messages.size());
+                    EXPECT_EQ(messages[message].shot, i);
+                    EXPECT_EQ(messages[message++].text, shot.error);
+                    continue;
+                }
+                const Record record = simulate(make_plan(*shot.scene, kIsa));
+                EXPECT_EQ(fmt::format("{:016x}", hash[i]), record.hash());
+                EXPECT_EQ(duration[i], record.duration);
+            }
+            EXPECT_EQ(message, messages.size());
+            EXPECT_GT(message, 0u);
+            EXPECT_LT(message, kShots);
+        }
+    }
 }
 
 TEST(Batch, StopsWhenAsked) {

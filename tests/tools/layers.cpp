@@ -209,7 +209,7 @@ std::string public_violation(const fs::path& root, const std::string& from, int 
 std::string include_violation(const fs::path& root, const fs::path& file, int layer, const Include& include) {
     if (include.name.empty()) return "is not a literal name, so that its layer cannot be known";
     const std::string from = path_below(root, file);
-    if (starts_with(from, kCInterface) &&
+    if ((starts_with(from, kCInterface) || starts_with(from, kPython)) &&
         (include.name == "carom/carom.h" || include.name == "carom/version.h"))
         return "";
     if (starts_with(include.name, "carom/")) return public_violation(root, from, layer, include.name);

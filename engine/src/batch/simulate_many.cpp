@@ -4,7 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <functional>
+#include <limits>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -43,49 +46,102 @@ void fill(T* array, std::size_t count, T value, std::size_t stride = 1) {
     for (std::size_t i = 0; array != nullptr && i < count; ++i) array[i * stride] = value;
 }
 
-/// What a shot without a result has.
-void clear(const BatchArrays& out, std::size_t shot, std::size_t balls) {
+/// What a shot without a result has, and a ball that is left out.
+void clear(const BatchArrays& out, std::size_t shot, std::size_t balls, double place) {
     const std::size_t at = shot * balls;
     const auto from = [](auto* array, std::size_t first) { return array ? array + first : nullptr; };
     fill(from(out.duration, shot), 1, 0.0);
     fill(from(out.events, shot), 1, std::int64_t{0});
     fill(from(out.first_hit, shot), 1, -1);
     fill(from(out.hash, shot), 1, std::uint64_t{0});
-    fill(from(out.x, at * out.place_stride), balls, 0.0, out.place_stride);
-    fill(from(out.y, at * out.place_stride), balls, 0.0, out.place_stride);
+    fill(from(out.x, at * out.place_stride), balls, place, out.place_stride);
+    fill(from(out.y, at * out.place_stride), balls, place, out.place_stride);
     fill(from(out.pocket, at), balls, -1);
     fill(from(out.fell, at), balls, -1);
     fill(from(out.cushions, at), balls, 0);
 }
 
-void keep(const BatchArrays& out, std::size_t shot, const Outcome& outcome) {
+/// @param balls  of the scene; `present` says which of them the outcome has, or is null where it has all
+void keep(const BatchArrays& out, std::size_t shot, const Outcome& outcome, std::size_t balls,
+          const std::vector<int>* present) {
     const auto put = [](auto* array, std::size_t at, const auto& value) {
         if (array != nullptr) array[at] = value;
     };
+    const auto ball_of = [present](int i) { return present != nullptr && i >= 0 ? (*present)[i] : i; };
     put(out.duration, shot, outcome.duration);
     put(out.events, shot, outcome.events);
-    put(out.first_hit, shot, outcome.first_hit);
+    put(out.first_hit, shot, ball_of(outcome.first_hit));
     put(out.hash, shot, outcome.hash);
-    std::size_t at = shot * outcome.balls.size();
-    for (const BallOutcome& ball : outcome.balls) {
+    for (int i = 0; i < static_cast<int>(outcome.balls.size()); ++i) {
+        const BallOutcome& ball = outcome.balls[i];
+        const std::size_t at = shot * balls + static_cast<std::size_t>(ball_of(i));
         put(out.x, at * out.place_stride, ball.position.x());
         put(out.y, at * out.place_stride, ball.position.y());
         put(out.pocket, at, ball.pocket);
         put(out.fell, at, ball.fell);
         put(out.cushions, at, ball.cushions);
-        ++at;
     }
 }
 
+/// A thread of a batch: what it plays with, and the balls of its last shot if they are not all.
+struct Player {
+    Player(const Scene& scene, kernel::Isa isa) : whole(scene, isa) {}
+
+    Simulator whole;
+    std::optional<Simulator> part;  // for shots without some of the balls
+    Simulator* last = &whole;
+    std::vector<int> present;
+};
+using PlayShot = std::function<ShotStatus(Player&, std::size_t shot, const SimulateOptions&)>;
+
+/// Shots that differ in the numbers of columns.
+struct ColumnShots {
+    const Scene& scene;
+    std::span<const BatchColumn> columns;
+    std::vector<SceneNumber> numbers;
+    std::span<const std::uint8_t> absent;
+    kernel::Isa isa;
+
+    Change put(Scene& into, std::size_t shot) const {
+        Change change = Change::kNumbers;
+        for (std::size_t k = 0; k < numbers.size(); ++k)
+            change = std::max(change, numbers[k].put(into, columns[k].values[shot]));
+        return change;
+    }
+
+    ShotStatus operator()(Player& player, std::size_t shot, const SimulateOptions& options) const {
+        const std::size_t balls = scene.ball.size();
+        const auto gone = absent.subspan(absent.empty() ? 0 : shot * balls, absent.empty() ? 0 : balls);
+        const bool some = std::any_of(gone.begin(), gone.end(), [](std::uint8_t ball) { return ball != 0; });
+        if (some && !player.part) player.part.emplace(scene, isa);
+        player.last = some ? &*player.part : &player.whole;
+        try {
+            if (!some) return player.whole.play(put(player.whole.scene(), shot), options);
+            Scene without = scene;
+            put(without, shot);
+            player.present.clear();
+            std::vector<BallStart> left;
+            for (std::size_t i = 0; i < balls; ++i) {
+                if (gone[i] != 0) continue;
+                player.present.push_back(static_cast<int>(i));
+                left.push_back(std::move(without.ball[i]));
+            }
+            without.ball = std::move(left);
+            validate(without);
+            return player.last->play(without, options);
+        } catch (const SceneError& refused) {
+            return player.last->refuse(refused.message());
+        }
+    }
+};
+
 /// What the threads share.
 struct Work {
-    Work(const Scene& base, std::size_t count, std::span<const BatchColumn> list,
-         const std::vector<SceneNumber>& keys, kernel::Isa set, const BatchOptions& how,
+    Work(const Scene& base, std::size_t count, PlayShot how_to_play, kernel::Isa set, const BatchOptions& how,
          const BatchArrays& arrays)
         : scene(base),
           shots(count),
-          columns(list),
-          numbers(keys),
+          play(std::move(how_to_play)),
           isa(set),
           options(how),
           simulate(how.simulate),
@@ -97,8 +153,7 @@ struct Work {
 
     const Scene& scene;
     std::size_t shots;
-    std::span<const BatchColumn> columns;
-    const std::vector<SceneNumber>& numbers;
+    PlayShot play;
     kernel::Isa isa;
     const BatchOptions& options;
     SimulateOptions simulate;
@@ -119,38 +174,51 @@ struct Work {
         messages.push_back({shot, text});
     }
 
-    ShotStatus play(Simulator& simulator, std::size_t shot) const {
-        Change change = Change::kNumbers;
-        try {
-            for (std::size_t k = 0; k < numbers.size(); ++k)
-                change = std::max(change, numbers[k].put(simulator.scene(), columns[k].values[shot]));
-        } catch (const SceneError& refused) {
-            return simulator.refuse(refused.message());
-        }
-        return simulator.play(change, simulate);
+    void play_one(Player& player, std::size_t shot) {
+        const std::size_t balls = scene.ball.size();
+        const ShotStatus status = play(player, shot, simulate);
+        if (out.status != nullptr) out.status[shot] = status;
+        const bool some = player.last != &player.whole;
+        if (!has_result(status) || some)
+            clear(out, shot, balls, has_result(status) ? std::numeric_limits<double>::quiet_NaN() : 0.0);
+        if (has_result(status))
+            keep(out, shot, player.last->outcome(), balls, some ? &player.present : nullptr);
+        else
+            tell(shot, player.last->message());
     }
 
     void play_all() noexcept {
         try {
-            Simulator simulator(scene, isa);
+            Player player(scene, isa);
             while (!stopped) {
                 const std::size_t first = next.fetch_add(kBlock);
                 if (first >= shots) return;
                 for (std::size_t shot = first; shot < std::min(first + kBlock, shots); ++shot) {
                     if (options.stop && options.stop()) throw BatchStopped("the batch was stopped");
-                    const ShotStatus status = play(simulator, shot);
-                    if (out.status != nullptr) out.status[shot] = status;
-                    if (has_result(status)) {
-                        keep(out, shot, simulator.outcome());
-                    } else {
-                        clear(out, shot, scene.ball.size());
-                        tell(shot, simulator.message());
-                    }
+                    play_one(player, shot);
                 }
             }
         } catch (...) {
             stop(std::current_exception());
         }
+    }
+
+    std::vector<Batch::Message> run() {
+        const std::size_t wanted = options.threads > 0 ? static_cast<std::size_t>(options.threads)
+                                                       : std::max(1u, std::thread::hardware_concurrency());
+        const std::size_t most = std::min(wanted, (shots + kBlock - 1) / kBlock);
+        std::vector<std::thread> threads;
+        try {
+            for (std::size_t i = 1; i < most; ++i) threads.emplace_back([this] { play_all(); });
+        } catch (...) {
+            stop(std::current_exception());
+        }
+        play_all();
+        for (std::thread& thread : threads) thread.join();
+        if (error) std::rethrow_exception(error);
+        std::sort(messages.begin(), messages.end(),
+                  [](const Batch::Message& p, const Batch::Message& q) { return p.shot < q.shot; });
+        return std::move(messages);
     }
 };
 
@@ -159,23 +227,24 @@ struct Work {
 std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
                                           std::span<const BatchColumn> columns, kernel::Isa isa,
                                           const BatchOptions& options, const BatchArrays& out) {
-    const std::vector<SceneNumber> numbers = numbers_of(scene, shots, columns);
-    Work work(scene, shots, columns, numbers, isa, options, out);
-    const std::size_t wanted = options.threads > 0 ? static_cast<std::size_t>(options.threads)
-                                                   : std::max(1u, std::thread::hardware_concurrency());
-    const std::size_t most = std::min(wanted, (shots + kBlock - 1) / kBlock);
-    std::vector<std::thread> threads;
-    try {
-        for (std::size_t i = 1; i < most; ++i) threads.emplace_back([&work] { work.play_all(); });
-    } catch (...) {
-        work.stop(std::current_exception());
-    }
-    work.play_all();
-    for (std::thread& thread : threads) thread.join();
-    if (work.error) std::rethrow_exception(work.error);
-    std::sort(work.messages.begin(), work.messages.end(),
-              [](const Batch::Message& p, const Batch::Message& q) { return p.shot < q.shot; });
-    return std::move(work.messages);
+    if (!options.absent.empty() && options.absent.size() != shots * scene.ball.size())
+        throw std::invalid_argument("absent: expected a value for every ball of every shot");
+    const ColumnShots play{scene, columns, numbers_of(scene, shots, columns), options.absent, isa};
+    return Work(scene, shots, std::cref(play), isa, options, out).run();
+}
+
+std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint64_t first, std::size_t shots,
+                                          kernel::Isa isa, const BatchOptions& options,
+                                          const BatchArrays& out, std::vector<std::string>& values) {
+    const std::size_t keys = variation.keys().size();
+    values.assign(shots * keys, {});
+    const auto play = [&](Player& player, std::size_t shot, const SimulateOptions& how) {
+        std::vector<std::string> drawn;
+        const ShotStatus status = player.whole.play(variation, first + shot, drawn, how);
+        std::move(drawn.begin(), drawn.end(), values.begin() + static_cast<std::ptrdiff_t>(shot * keys));
+        return status;
+    };
+    return Work(variation.base(), shots, play, isa, options, out).run();
 }
 
 Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const BatchColumn> columns,

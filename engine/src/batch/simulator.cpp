@@ -1,8 +1,10 @@
 #include "carom/engine/batch.h"
 
+#include <cstdint>
 #include <exception>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace carom {
 
@@ -36,6 +38,14 @@ ShotStatus Simulator::play(const Scene& scene, const SimulateOptions& options) {
     planner_.scene() = scene;
     checked_ = true;
     return run(false, options);
+}
+
+ShotStatus Simulator::play(const Variation& variation, std::uint64_t index, std::vector<std::string>& values,
+                           const SimulateOptions& options) {
+    if (const auto change = variation.put(index, scene(), values)) return play(*change, options);
+    VariedShot shot = variation.shot(index);
+    values = std::move(shot.values);
+    return shot.scene ? play(*shot.scene, options) : refuse(std::move(shot.error));
 }
 
 ShotStatus Simulator::run(bool same_table, const SimulateOptions& options) {

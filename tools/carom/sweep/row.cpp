@@ -2,8 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <utility>
 
 #include "report/table.h"
 #include "setup.h"
@@ -24,14 +22,6 @@ std::string sweep_header(const Variation& variation) {
 
 SweepPlayer::SweepPlayer(const Variation& variation, kernel::Isa isa)
     : variation_(variation), simulator_(variation.base(), isa), options_(interruptible()) {}
-
-ShotStatus SweepPlayer::play(std::uint64_t index) {
-    if (const auto change = variation_.put(index, simulator_.scene(), values_))
-        return simulator_.play(*change, options_);
-    VariedShot shot = variation_.shot(index);
-    values_ = std::move(shot.values);
-    return shot.scene ? simulator_.play(*shot.scene, options_) : simulator_.refuse(std::move(shot.error));
-}
 
 void SweepPlayer::append_results(std::string& rows) {
     const std::vector<BallStart>& balls = variation_.base().ball;
@@ -57,7 +47,7 @@ void SweepPlayer::append_results(std::string& rows) {
 }
 
 ShotStatus SweepPlayer::append(std::uint64_t index, std::string& rows) {
-    const ShotStatus status = play(index);
+    const ShotStatus status = simulator_.play(variation_, index, values_, options_);
     append_csv(rows, static_cast<std::int64_t>(index));
     for (const std::string& value : values_) append_csv(rows, value);
     append_csv(rows, name(status));

@@ -24,7 +24,6 @@ class SweepPlayer {
     ShotStatus append(std::uint64_t index, std::string& rows);
 
   private:
-    ShotStatus play(std::uint64_t index);
     void append_results(std::string& rows);
 
     const Variation& variation_;

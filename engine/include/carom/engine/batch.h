@@ -14,6 +14,7 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/scene_number.h"
 #include "carom/engine/simulate.h"
+#include "carom/engine/variation.h"
 
 namespace carom {
 
@@ -51,6 +52,10 @@ class Simulator {
     ShotStatus play(Change change, const SimulateOptions& options = {});
     /// The same for a scene of its own, which is valid (it comes from a reader).
     ShotStatus play(const Scene& scene, const SimulateOptions& options = {});
+    /// The same for a shot of a variation whose base() this simulator was made for. All shots have to be of this one.
+    /// @param values  receives what was drawn, as VariedShot
+    ShotStatus play(const Variation& variation, std::uint64_t index, std::vector<std::string>& values,
+                    const SimulateOptions& options = {});
     /// Sets the message of a shot that cannot be played. @return kInvalid
     ShotStatus refuse(std::string why);
 
@@ -77,6 +82,9 @@ struct BatchOptions {
     int threads = 0;             ///< 0: one for each core. The results do not depend on it.
     bool hash = false;           ///< fill Batch::hash
     SimulateOptions simulate{};  ///< `progress` is not called, nothing is profiled
+    /// Empty, or for every ball of every shot whether it is left out (not 0). Such a shot is that of the scene without these balls; they
+    /// have no numbers (NaN) as x and y, no pocket and no cushion.
+    std::span<const std::uint8_t> absent{};
     /// Called by each thread between shots; true ends the batch with an exception of type BatchStopped.
     std::function<bool()> stop{};
 };
@@ -131,5 +139,11 @@ Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const Batch
 std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
                                           std::span<const BatchColumn> columns, kernel::Isa isa,
                                           const BatchOptions& options, const BatchArrays& out);
+
+/// Plays shots first, first + 1, ... of a variation, which differ in what its rules say; otherwise the same. `options.absent` is not read.
+/// @param values  receives what was drawn: for every shot a text for every key, as VariedShot has them
+std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint64_t first, std::size_t shots,
+                                          kernel::Isa isa, const BatchOptions& options,
+                                          const BatchArrays& out, std::vector<std::string>& values);
 
 }  // namespace carom

@@ -1,0 +1,114 @@
+"""The program `carom`, which is part of the package: the command, and its reports as data."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from carom._scene import Scene
+
+_PROGRAM = os.path.join(os.path.dirname(__file__), "bin", "carom")
+
+
+def main() -> NoReturn:
+    """The command `carom`."""
+    os.execv(_PROGRAM, ["carom", *sys.argv[1:]])
+
+
+def _column(values: list[str]) -> Any:
+    try:
+        return np.array(values, np.float64)
+    except ValueError:
+        return values
+
+
+def _report(arguments: Sequence[str], scene: Scene | None, table: bool) -> dict[str, Any]:
+    """Runs a command with --json, and with --csv where `table` says so: then its columns stand under "table"."""
+    import csv
+    import json
+    import subprocess
+    import tempfile
+
+    with tempfile.TemporaryDirectory(prefix="carom-") as folder:
+        command = [_PROGRAM, *arguments, "--json"]
+        if scene is not None:
+            path = os.path.join(folder, "scene.toml")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(scene.source)
+            command.append(path)
+        rows = os.path.join(folder, "table.csv")
+        if table:
+            command += ["--csv", rows]
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+        if done.returncode == 2:
+            raise ValueError(done.stderr.strip().replace(f"{folder}{os.sep}", ""))
+        if done.returncode != 0:
+            raise RuntimeError(done.stderr.strip() or f"carom ended with the status {done.returncode}")
+        result: dict[str, Any] = json.loads(done.stdout)
+        if table:
+            with open(rows, encoding="utf-8", newline="") as file:
+                header, *lines = csv.reader(file)
+            result["table"] = {name: _column([line[k] for line in lines]) for k, name in enumerate(header)}
+        return result
+
+
+def margin(
+    scene: Scene, *, runs: int = 5, fps: float | None = None, size: tuple[int, int] | None = None, render: bool = True, backend: str = "egl"
+) -> dict[str, Any]:
+    """What every frame of a shot costs against 1/fps: the report of `carom margin` as data (docs/guide/margin.md).
+
+    runs: every frame counts with its median over so many
+    fps, size: as [render] of the scene if they are left out
+    render: whether frames are drawn, read back, encoded and written, too
+    backend: "egl" or "osmesa"
+
+    Returns the keys of `carom margin --json`, times in ms, and "table": for every column an array with a number for each frame. Wall
+    times: another load on the machine is in them. Raises ValueError for bad input, RuntimeError where nothing can draw.
+    """
+    options = ["margin", "--repeat", str(runs), "--gl", backend]
+    if not render:
+        options.append("--no-render")
+    if fps is not None:
+        options += ["--fps", repr(float(fps))]
+    if size is not None:
+        options += ["--size", f"{size[0]}x{size[1]}"]
+    return _report(options, scene, table=True)
+
+
+def accuracy(
+    scene: Scene | None = None,
+    *,
+    target: float | None = None,
+    march: Sequence[int] | None = None,
+    tolerances: Sequence[float] | None = None,
+    runs: int = 5,
+    box2d: bool = False,
+) -> dict[str, Any]:
+    """What accuracy costs: the report of `carom accuracy` as data (docs/guide/accuracy.md), for a shot, or, without a scene, for
+    single impacts.
+
+    target: of a shot, the error allowed at the end [m], which decides what is recommended
+    march, tolerances: of a shot, the settings to compare
+    runs: interleaved rounds; minimum, median and maximum are over them
+    box2d: of a shot, also the same in Box2D
+
+    Returns the keys of `carom accuracy --json`: "rows" and more. Raises ValueError for bad input.
+    """
+    options = ["accuracy"] if scene is not None else ["accuracy", "kernel"]
+    options += ["--repeat", str(runs)]
+    if scene is None and (target is not None or march is not None or tolerances is not None or box2d):
+        raise ValueError("target, march, tolerances and box2d are for a scene; give one")
+    if target is not None:
+        options += ["--target", repr(float(target))]
+    if march is not None:
+        options += ["--march", ",".join(str(int(n)) for n in march)]
+    if tolerances is not None:
+        options += ["--tolerance", ",".join(repr(float(e)) for e in tolerances)]
+    if box2d:
+        options.append("--box2d")
+    return _report(options, scene, table=False)

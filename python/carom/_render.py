@@ -1,0 +1,89 @@
+"""Pictures as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from carom import _carom
+from carom._record import Record
+from carom._scene import Scene
+from carom._simulate import simulate
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+#: What a picture may have at most on a side [pixels].
+_LARGEST = 16384
+
+
+def render(
+    shot: Scene | Record,
+    *,
+    camera: str = "scene",
+    size: tuple[int, int] | None = None,
+    fps: float | None = None,
+    times: ArrayLike | None = None,
+    overlays: Sequence[str] = (),
+    backend: Literal["auto", "egl", "osmesa"] = "auto",
+) -> Iterator[NDArray[np.uint8]]:
+    """Draws a shot without a display: an iterator of frames, (height, width, 3) sRGB with the top row first, each the caller's own.
+
+    shot: a record, or a scene that is then simulated
+    camera: "top", "rail", "player" or "follow"; "scene" is what [render] of the scene says
+    size: (width, height) in pixels; as [render] if it is left out
+    fps: frames per second of the shot, from its start to its end; as [render] if it is left out
+    times: instead of fps, the times [s] to draw, in any order
+    overlays: of "trails", "events", "spin", "ghost" and "clock"
+    backend: the library that draws; "auto" takes EGL, or else OSMesa
+
+    Memory does not grow with the number of frames. The first frame takes the longest: the table is drawn once. All frames are drawn by
+    the thread that asks for the first.
+
+    Raises RuntimeError where no library can draw; the message names the packages. Raises ValueError for what does not exist.
+    """
+    record = simulate(shot) if isinstance(shot, Scene) else shot
+    width, height = record.picture_size if size is None else size
+    if not (1 <= width <= _LARGEST and 1 <= height <= _LARGEST):
+        raise ValueError(f"size={size}: expected 1 to {_LARGEST} pixels on each side")
+    rate = record.fps if fps is None else fps
+    if not (0 < rate < np.inf):
+        raise ValueError(f"fps={fps}: expected a number greater than 0")
+    moments = None if times is None else np.asarray(times, np.float64).reshape(-1)
+    if moments is not None and np.isnan(moments).any():
+        raise ValueError("a time is not a number")
+    unknown = set(overlays) - {"trails", "events", "spin", "ghost", "clock"}
+    if isinstance(overlays, str) or unknown:
+        raise ValueError(f"overlays: expected a list of trails, events, spin, ghost and clock, not {overlays!r}")
+    if camera not in ("scene", "top", "rail", "player", "follow"):
+        raise ValueError(f"camera={camera!r}: expected scene, top, rail, player or follow")
+    if backend not in ("auto", "egl", "osmesa"):
+        raise ValueError(f"backend={backend!r}: expected auto, egl or osmesa")
+    return _frames(record, camera, int(width), int(height), float(rate), moments, ",".join(overlays), backend)
+
+
+def _frames(
+    record: Record, camera: str, width: int, height: int, fps: float, times: NDArray[np.float64] | None, overlays: str, backend: str
+) -> Iterator[NDArray[np.uint8]]:
+    drawing = _open(record, camera, width, height, backend, overlays)
+    if times is None:
+        count = _carom.frame_count(0.0, record.duration, fps)
+        moments: Iterator[float] = (_carom.frame_time(0.0, k, fps) for k in range(count))
+    else:
+        moments = iter(times.tolist())
+    for time in moments:
+        frame = np.empty((height, width, 3), np.uint8)
+        drawing.draw(time, frame.reshape(-1))
+        yield frame
+
+
+def _open(record: Record, camera: str, width: int, height: int, backend: str, overlays: str) -> _carom.Frames:
+    problems = []
+    for name in ("egl", "osmesa") if backend == "auto" else (backend,):
+        try:
+            return _carom.Frames(record._native, camera, width, height, name, overlays)
+        except RuntimeError as error:
+            problems.append(str(error))
+    raise RuntimeError("; ".join(problems))

@@ -1,0 +1,41 @@
+"""The reports of the program as data. What they measure is tested in C++; here, that it arrives."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import carom
+import numpy as np
+import pytest
+
+
+def test_margin_is_a_dict_of_arrays(draw_scene):
+    report = carom.margin(draw_scene, runs=2, fps=30, render=False)
+    frames = report["frames"]
+    assert frames == 1 + int(carom.simulate(draw_scene).duration * 30)
+    assert report["runs"]["count"] == 2 and report["budget_ms"] == 1000 / 30
+    table = report["table"]
+    assert all(len(values) == frames for values in table.values())
+    assert (table["time"] == np.arange(frames) / 30).all()
+    assert table["simulate_ms"].max() == pytest.approx(report["stages"]["simulate"]["max"])
+    for bad in (dict(fps=-1), dict(size=(0, 1))):
+        with pytest.raises(ValueError, match="--fps|--size"):
+            carom.margin(draw_scene, **bad)
+
+
+def test_accuracy_has_a_row_for_every_setting(draw_scene):
+    report = carom.accuracy(draw_scene, march=[100], tolerances=[1e-3, 1e-6], runs=1, target=0.01)
+    rows = {(row["method"], row["setting"]): row for row in report["rows"]}
+    assert rows.keys() >= {("march", "N=100"), ("tolerance", "0.001"), ("tolerance", "1e-06")}
+    assert all(row["ns"] > 0 for row in rows.values())
+    assert report["gain"] > 0
+    with pytest.raises(ValueError, match="--target"):
+        carom.accuracy(draw_scene, target=-1.0)
+    with pytest.raises(ValueError, match="are for a scene"):
+        carom.accuracy(target=1e-3)
+
+
+def test_the_command_is_the_program():
+    done = subprocess.run([sys.executable, "-c", "from carom._program import main; main()", "--version"], capture_output=True, text=True, check=True)
+    assert carom.__version__ in done.stdout

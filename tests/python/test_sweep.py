@@ -1,0 +1,90 @@
+"""Sweeps: the table of `carom sweep`, bit for bit."""
+
+from __future__ import annotations
+
+import carom
+import numpy as np
+import pytest
+from carom import sweep
+from conftest import SOURCE, carom_program, rows_of
+
+RULES = {
+    "draw": ["cue.aim_deg=normal(2)", "cue.speed=uniform(-0.5,4)", "cue.offset.side=list(0.1,-0.1)"],
+    "eight_ball_break": ["rack.seed=integer(1,9)", "cue.aim_deg=normal(0.3)"],
+    "three_cushion": ['physics.cushion=list("smooth","stronge","none")', "cue.speed=list(3,4)"],
+}
+
+
+def same(text, value):
+    """Whether a cell of a CSV file is the value, to the bit."""
+    if value is None:
+        return text == ""
+    if isinstance(value, float):
+        return text == "" if np.isnan(value) else float(text) == value
+    return text == str(value)
+
+
+@pytest.mark.parametrize("name", RULES)
+@pytest.mark.parametrize("threads", [1, 3])
+def test_columns_are_those_of_the_program(tmp_path, name, threads):
+    path, count = SOURCE / f"scenes/{name}.toml", 60
+    rules = RULES[name]
+    carom_program("sweep", path, "--count", count, "--seed", 4, "-o", tmp_path / "s.csv", *[word for rule in rules for word in ("--vary", rule)])
+    header, *rows = rows_of(tmp_path / "s.csv")
+    scene = carom.Scene.load(path)
+    columns = sweep.columns(scene, rules, count, seed=4, threads=threads)
+    assert list(columns) == header
+    assert len(rows) == count
+    for k, column in enumerate(header):
+        values = columns[column].tolist() if isinstance(columns[column], np.ndarray) else columns[column]
+        wrong = [(row[k], value) for row, value in zip(rows, values) if not same(row[k], value)]
+        assert not wrong, (column, wrong[:3])
+    assert set(columns["outcome"]) >= {"at_rest"}
+    part = sweep.columns(scene, rules, count, seed=4, first=20, last=45)
+    for column, values in part.items():
+        np.testing.assert_array_equal(values, columns[column][20:45])
+
+
+def test_a_mapping_says_the_same():
+    scene = carom.Scene.load(SOURCE / "scenes/draw.toml")
+    rules = ["cue.speed=list(2.0,2.5)", "cue.aim_deg=normal(1)"]
+    one = sweep.columns(scene, rules, 10)
+    two = sweep.columns(scene, {"cue.speed": [2.0, 2.5], "cue.aim_deg": "normal(1)"}, 10)
+    for name in one:
+        np.testing.assert_array_equal(one[name], two[name])
+    assert one["cue.speed"].dtype == np.float64
+    assert sweep.columns(scene, {"cue.speed": [2, 3]}, 5)["cue.speed"].dtype == np.int64
+
+
+def test_what_is_wrong_is_said(draw_scene):
+    for call, message in [
+        (lambda: sweep.columns(draw_scene, "cue.speed=uniform(2,4)", 5), "vary: expected a list"),
+        (lambda: sweep.columns(draw_scene, ["cue.speed=gauss(2)"], 5), "unknown distribution"),
+        (lambda: sweep.columns(draw_scene, ["cue.speed=list(-1)"], 5), "none of the first"),
+        (lambda: sweep.columns(draw_scene, {"cue.speed": [2.0]}, 5, last=6), "first=0, last=6"),
+        (lambda: sweep.columns(draw_scene, {"cue.speed": [2.0]}, 5, threads=-1), "threads=-1"),
+        (lambda: sweep.columns(draw_scene, {"cue.speed": [2.0]}, 5, seed=-1), "seed=-1"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            call()
+
+
+def test_a_table_has_the_columns_and_where_they_come_from(draw_scene, tmp_path):
+    pyarrow = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    rules = RULES["draw"]
+    columns = sweep.columns(draw_scene, rules, 80, seed=2)
+    table = sweep.table(draw_scene, rules, 80, seed=2)
+    assert table.column_names == list(columns)
+    assert set(table["outcome"].to_pylist()) == {"at_rest", "invalid"}
+    for name, values in columns.items():
+        values = values.tolist() if isinstance(values, np.ndarray) else values
+        wanted = [None if isinstance(value, float) and np.isnan(value) else value for value in values]
+        assert table[name].to_pylist() == wanted, name
+    parquet.write_table(table, tmp_path / "t.parquet")
+    again = parquet.read_table(tmp_path / "t.parquet")
+    assert again.equals(table)
+    about = {key.decode(): value.decode() for key, value in again.schema.metadata.items()}
+    assert carom.Scene.loads(about["carom.scene"]) == draw_scene
+    assert (about["carom.seed"], about["carom.first"], about["carom.last"], about["carom.version"]) == ("2", "0", "80", carom.__version__)
+    assert pyarrow.types.is_int64(table.schema.field("events").type)
