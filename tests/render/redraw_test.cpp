@@ -30,7 +30,7 @@ Stage stage_of(const std::string& camera, const std::string& overlay = "") {
     options.camera = camera;
     options.overlay = parse_overlay(overlay);
     options.size = {480, 270};
-    options.table_samples = kMovingSamples + 1;  // the least for which it is looked at where the cloth is
+    options.table_samples = 2;
     return Stage(broken_rack(), options);
 }
 
@@ -91,7 +91,7 @@ TEST(RedrawLines, AnOverlayThatComesAndGoesLeavesNothing) {
 TEST(RedrawLines, TheSizeMayChange) {
     StageOptions options;
     options.camera = "top";
-    options.table_samples = kMovingSamples + 1;
+    options.table_samples = 2;
     Renderer renderer;
     for (const FrameSize size : {FrameSize{160, 90}, FrameSize{200, 120}, FrameSize{160, 90}}) {
         options.size = size;

@@ -110,7 +110,9 @@ std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth
 }
 
 std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPicture& after, FrameSize size) {
-    if (!before.table || before.table != after.table || before.overlay || after.overlay) return {whole(size)};
+    // Smoothing reaches one pixel beyond what moved, and takes place in a picture that was read as a whole.
+    if (!before.table || before.table != after.table || before.overlay || after.overlay || after.edges)
+        return {whole(size)};
     std::vector<PixelBox> boxes;
     const auto add_missing = [&boxes](const DrawnPicture& from, const DrawnPicture& in) {
         for (const DrawnBall& ball : from.balls) {

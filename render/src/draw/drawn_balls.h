@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "carom/render/draw_list.h"
+#include "draw/table_edges.h"
+#include "draw/view.h"
 
 namespace carom::render {
 
@@ -39,14 +41,22 @@ struct DrawnBall {
     bool operator==(const DrawnBall&) const = default;
 };
 
+/// The edges that are smoothed in a picture after it was read, under a camera that moves.
+struct EdgesInView {
+    std::shared_ptr<const TableEdges> table;
+    View view;
+    std::vector<PixelBox> skip;  ///< panels with text
+};
+
 /// Identifies one drawing of the table: pictures that share the pointer show the same table.
 struct TableDrawing {};
 
 /// One picture: the drawing of the table, and what was drawn over it.
 struct DrawnPicture {
-    std::shared_ptr<const TableDrawing> table;  ///< null: nothing has been drawn
-    bool overlay = false;                       ///< has lines or boxes, which may be anywhere in the image
-    std::vector<DrawnBall> balls;               ///< in the order of drawing, the farthest first
+    std::shared_ptr<const TableDrawing> table;   ///< null: nothing has been drawn
+    bool overlay = false;                        ///< has lines or boxes, which may be anywhere in the image
+    std::vector<DrawnBall> balls;                ///< in the order of drawing, the farthest first
+    std::shared_ptr<const EdgesInView> edges{};  ///< null if the table was drawn with many samples
 };
 
 /// For each square of pixels, whether it shows nothing but cloth.

@@ -25,7 +25,11 @@ float f(double value) {
 }  // namespace
 
 OverlayLayer::OverlayLayer(const gl::Api& api, GLuint glyphs) : api_(api), glyphs_(glyphs) {
-    line_program_ = shaders::make_program(api, shaders::kLineVertex, shaders::kLineFragment, {"u_occluders"});
+    for (std::size_t i = 0; i < line_programs_.size(); ++i) {
+        line_programs_[i] =
+            shaders::make_program(api, shaders::kLineVertex, shaders::kLineFragment, {"u_occluders"},
+                                  i == 0 ? shaders::kManySamples : shaders::kOneSample);
+    }
     box_program_ = shaders::make_program(api, shaders::kBoxVertex, shaders::kBoxFragment, {"u_glyphs"});
     const auto make = [&](GLuint& array, GLuint& buffer) {
         api.GenVertexArrays(1, &array);
@@ -50,7 +54,7 @@ OverlayLayer::OverlayLayer(const gl::Api& api, GLuint glyphs) : api_(api), glyph
     attribute(2, 1, sizeof(BoxInstance), offsetof(BoxInstance, glyph));
 }
 
-void OverlayLayer::draw_lines(const DrawList& list, GLuint occluders, LineLayer layer) {
+void OverlayLayer::draw_lines(const DrawList& list, Occluders occluders, LineLayer layer) {
     const Vec3 origin(list.table->origin.x(), list.table->origin.y(), 0.0);
     std::vector<LineInstance> instances;
     for (const DrawLine& line : list.lines) {
@@ -67,8 +71,8 @@ void OverlayLayer::draw_lines(const DrawList& list, GLuint occluders, LineLayer 
     api_.BindBuffer(GL_ARRAY_BUFFER, line_buffer_);
     api_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(instances.size() * sizeof(LineInstance)),
                     instances.data(), GL_STREAM_DRAW);
-    api_.UseProgram(line_program_);
-    gl::bind_texture(api_, 0, occluders);
+    api_.UseProgram(line_programs_[occluders.one_sample ? 1 : 0]);
+    gl::bind_texture(api_, 0, occluders.texture);
     api_.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(instances.size()));
 }
 

@@ -8,6 +8,7 @@
 
 #include "carom/render/error.h"
 #include "draw/drawn_balls.h"
+#include "draw/edge_smoother.h"
 #include "draw/overlay_layer.h"
 #include "draw/shaders.h"
 #include "draw/static_layer.h"
@@ -28,7 +29,7 @@ struct Renderer::Impl {
         GLuint shadow_program = 0, ball_program = 0, array = 0, buffer = 0;
         std::vector<BallInstance> instances;
     };
-    BallBatch plain, other;
+    BallBatch plain, other, moving;  // moving: in place of other, under a camera that moves
     GLuint glyphs = 0, view_buffer = 0;
     // Two images are used alternately: one can be read while the next one is drawn.
     struct Target {
@@ -41,6 +42,7 @@ struct Renderer::Impl {
     std::shared_ptr<const TableMesh> table;  // the mesh that the static layer shows
     Camera camera;
     int table_samples = 0;
+    bool camera_moves = false;
     std::function<void(int, int)> on_table;
     std::shared_ptr<const TableDrawing> drawn_table;  // identifies the drawing in the static layer
     ClothMap cloth;
@@ -56,10 +58,10 @@ struct Renderer::Impl {
         overlay_layer = std::make_unique<OverlayLayer>(api, glyphs);
         api.GenBuffers(1, &view_buffer);
         make_batch(plain, shaders::kPlain);
-        make_batch(other, "");
     }
 
     void make_batch(BallBatch& batch, const char* defines) {
+        if (batch.array != 0) return;
         batch.shadow_program = shaders::make_program(api, shaders::kShadowVertex, shaders::kShadowFragment,
                                                      {"u_background"}, defines);
         batch.ball_program = shaders::make_program(api, shaders::kBallVertex, shaders::kBallFragment,
@@ -97,13 +99,13 @@ struct Renderer::Impl {
     }
 
     // Fills both batches with the chosen balls.
-    void upload(const std::vector<DrawnBall>& balls, const std::vector<bool>& chosen) {
+    void upload(const std::vector<DrawnBall>& balls, const std::vector<bool>& chosen, BallBatch& not_plain) {
         plain.instances.clear();
-        other.instances.clear();
+        not_plain.instances.clear();
         for (std::size_t i = 0; i < balls.size(); ++i) {
-            if (chosen[i]) (balls[i].plain ? plain : other).instances.push_back(balls[i].instance);
+            if (chosen[i]) (balls[i].plain ? plain : not_plain).instances.push_back(balls[i].instance);
         }
-        for (BallBatch* batch : {&plain, &other}) {
+        for (BallBatch* batch : {&plain, &not_plain}) {
             if (batch->instances.empty()) continue;
             api.BindBuffer(GL_ARRAY_BUFFER, batch->buffer);
             api.BufferData(GL_ARRAY_BUFFER,
@@ -135,17 +137,23 @@ struct Renderer::Impl {
     }
 
     void draw_table(const DrawList& list) {
-        if (table == list.table && camera == list.camera && table_samples == list.table_samples) return;
-        // With a camera that moves, the cloth map would be valid for one frame only: it is not made.
-        const bool stays = list.table_samples > kMovingSamples;
+        if (table == list.table && camera == list.camera && table_samples == list.table_samples &&
+            camera_moves == list.camera_moves) {
+            return;
+        }
         table = nullptr;  // until the drawing is complete: on_table may throw
-        table_layer->draw(*list.table, size, list.table_samples, !stays, on_table);
+        if (list.camera_moves)
+            table_layer->draw_once(*list.table, size);
+        else
+            table_layer->draw(*list.table, size, list.table_samples, on_table);
         table = list.table;
         camera = list.camera;
         table_samples = list.table_samples;
+        camera_moves = list.camera_moves;
         drawn_table = std::make_shared<TableDrawing>();
         cloth = ClothMap();
-        if (!stays) return;
+        // With a camera that moves, the cloth map would be valid for one frame only: it is not made.
+        if (camera_moves) return;
         table_pixels.resize(std::size_t{4} * static_cast<std::size_t>(size.width) *
                             static_cast<std::size_t>(size.height));
         read_boxes(table_layer->framebuffer(), {{0, 0, size.width, size.height}}, table_pixels.data());
@@ -177,24 +185,46 @@ struct Renderer::Impl {
         next->table = drawn_table;
         next->overlay = !list.lines.empty() || !list.boxes.empty();
         next->balls = visible_balls(list, cloth);
+        if (camera_moves) next->edges = edges_to_smooth(list, view);
+        BallBatch& not_plain = camera_moves ? moving : other;
+        make_batch(not_plain, camera_moves ? shaders::kOneSample : shaders::kManySamples);
         std::vector<PixelBox> boxes = differing_boxes(*target.shows, *next, size);
-        upload(next->balls, balls_inside(next->balls, boxes));
+        upload(next->balls, balls_inside(next->balls, boxes), not_plain);
         restore_table(boxes, target);
         target.shows = std::move(next);
 
         api.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
         api.Disable(GL_DEPTH_TEST);
         api.Enable(GL_BLEND);
+        draw_over_table(list, not_plain);
+    }
+
+    void draw_over_table(const DrawList& list, const BallBatch& not_plain) {
+        // Under a camera that moves, alpha is the mark of the face. It stays under a shadow, and falls to 0 under what
+        // is painted over the table, because the edges of the table are not seen there.
         // Shadows only darken. The same blend factor for all channels is a fast path of the driver.
-        api.BlendFuncSeparate(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+        api.BlendFuncSeparate(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO,
+                              camera_moves ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
         draw_shadows(plain);
-        draw_shadows(other);
-        api.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-        overlay_layer->draw_lines(list, table_layer->occluders(), LineLayer::kUnderBalls);
+        draw_shadows(not_plain);
+        api.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, camera_moves ? GL_ZERO : GL_SRC_ALPHA,
+                              GL_ONE_MINUS_SRC_ALPHA);
+        const OverlayLayer::Occluders occluders{table_layer->occluders(), camera_moves};
+        overlay_layer->draw_lines(list, occluders, LineLayer::kUnderBalls);
         draw_balls(plain);
-        draw_balls(other);
-        overlay_layer->draw_lines(list, table_layer->occluders(), LineLayer::kOverBalls);
+        draw_balls(not_plain);
+        overlay_layer->draw_lines(list, occluders, LineLayer::kOverBalls);
         overlay_layer->draw_boxes(list);
+    }
+
+    std::shared_ptr<const EdgesInView> edges_to_smooth(const DrawList& list, const View& view) const {
+        auto edges = std::make_shared<EdgesInView>(EdgesInView{table_layer->edges(), view, {}});
+        for (const DrawBox& box : list.boxes) {
+            if (box.glyph >= 0) continue;
+            edges->skip.push_back({static_cast<int>(box.low.x()), static_cast<int>(box.low.y()),
+                                   static_cast<int>(box.high.x()) + 1, static_cast<int>(box.high.y()) + 1});
+        }
+        return edges;
     }
 
     void read_boxes(GLuint framebuffer, const std::vector<PixelBox>& boxes, std::uint8_t* rgba) {
@@ -217,6 +247,8 @@ struct Renderer::Impl {
         read_boxes(target.framebuffer, differing_boxes(shows ? *shows : DrawnPicture{}, *target.shows, size),
                    image.rgbx.data());
         shows = target.shows;
+        if (const auto& smooth = target.shows->edges)
+            smooth_edges(image, smooth->table->edges, smooth->view, smooth->skip);
     }
 };
 

@@ -35,9 +35,18 @@ inline constexpr int kMaxHoles = 128;        ///< [-] largest number of holes th
 inline constexpr const char* kClothOnly = "#define CLOTH\n";
 inline constexpr const char* kWoodOnly = "#define WOOD\n";
 inline constexpr const char* kFloorOnly = "#define FLOOR\n";
+inline constexpr const char* kChalkOnly = "#define CHALK\n";
+inline constexpr const char* kShadeOnly = "#define SHADE\n";
 inline constexpr const char* kTheRest = "#define REST\n";
-/// Put before the sources of balls and shadows over cloth alone: it omits the lookups in the table's textures.
+/// Added to one of these where a hole may be: what lies in a hole is not drawn.
+inline constexpr const char* kHoles = "#define HOLES\n";
+/// Added to one of these, it writes screen values instead of radiance.
+inline constexpr const char* kScreen = "#define SCREEN\n";
+/// Put before the sources of balls and shadows over cloth alone: it omits the lookups in the textures of the table.
 inline constexpr const char* kPlain = "#define PLAIN\n";
+/// Put before the sources of whatever the table can hide: the table was drawn with several samples, or with one.
+inline constexpr const char* kManySamples = "";
+inline constexpr const char* kOneSample = "#define ONE_SAMPLE\n";
 
 /// Compiles and links a program. Each source is preceded by the version of the language, the shared numbers, `defines`
 /// (whole lines) and shaders/common.glsl. The first of `samplers` reads the texture of unit 0, and so on.

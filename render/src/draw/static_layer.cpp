@@ -1,7 +1,9 @@
 #include "draw/static_layer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "draw/shaders.h"
@@ -11,6 +13,8 @@ namespace carom::render {
 
 namespace {
 
+constexpr float kRoom = 0.004F;  // radiance of the dark room around the table
+
 // Sample position of pass i in the pixel, in (-1/2, 1/2)^2: the R2 sequence, evenly spread for every count.
 double r2(int i, double step) {
     const double x = 0.5 + step * i;
@@ -19,8 +23,8 @@ double r2(int i, double step) {
 
 }  // namespace
 
-// Memory that only drawing the table needs: two images of 16-bit floats, and the depths of the first four passes.
-// It is kept between drawings only for a camera that moves.
+// Memory that only drawing the table with many samples needs: two images of 16-bit floats, and the depths of the first
+// four passes.
 struct StaticLayer::Scratch {
     static constexpr std::size_t kDepths = 4;  // [-] one for each channel of the occluder texture
     const gl::Api& api;
@@ -53,14 +57,6 @@ struct StaticLayer::Scratch {
 };
 
 StaticLayer::StaticLayer(const gl::Api& api) : api_(api) {
-    const auto table_program = [&](const char* kind) {
-        return shaders::make_program(api, shaders::kTableVertex, shaders::kTableFragment, {}, kind);
-    };
-    groups_[kCloth].program = table_program(shaders::kClothOnly);
-    groups_[kWood].program = table_program(shaders::kWoodOnly);
-    groups_[kSmall].program = groups_[kBlended].program = table_program(shaders::kTheRest);
-    groups_[kFloor].program = table_program(shaders::kFloorOnly);
-    for (Group& group : groups_) group.jitter = api.GetUniformLocation(group.program, "u_jitter");
     add_program_ = shaders::make_program(api, shaders::kFullscreenVertex, shaders::kAddFragment, {"u_pass"});
     add_weight_ = api.GetUniformLocation(add_program_, "u_weight");
     depth_program_ = shaders::make_program(api, shaders::kFullscreenVertex, shaders::kDepthFragment,
@@ -74,50 +70,57 @@ StaticLayer::StaticLayer(const gl::Api& api) : api_(api) {
 
 StaticLayer::~StaticLayer() = default;
 
-void StaticLayer::upload(const TableMesh& table) {
-    const auto part_of = [](const MeshVertex& vertex) {
-        const auto material = static_cast<Material>(static_cast<int>(vertex.material));
-        if (material == Material::kCloth || material == Material::kCushion) return kCloth;
-        if (material == Material::kFloor) return kFloor;
-        return material == Material::kWood ? kWood : kSmall;
+StaticLayer::Programs StaticLayer::make_programs(const char* output) const {
+    using namespace shaders;
+    Programs programs;
+    const auto make = [&](Part part, const std::string& kind) {
+        Program& program = programs[static_cast<std::size_t>(part)];
+        program.id = make_program(api_, kTableVertex, kTableFragment, {}, kind + output);
+        program.jitter = api_.GetUniformLocation(program.id, "u_jitter");
     };
-    std::vector<MeshVertex> all;
-    for (int part = kCloth; part < kParts; ++part) {
-        const auto first = static_cast<GLint>(all.size());
-        for (const MeshVertex& vertex : part == kBlended ? table.blended : table.solid) {
-            if (part == kBlended || part_of(vertex) == part) all.push_back(vertex);
-        }
-        groups_[part].first = first;
-        groups_[part].count = static_cast<GLsizei>(all.size()) - first;
-    }
+    make(Part::kCloth, kClothOnly);
+    make(Part::kWood, kWoodOnly);
+    make(Part::kSmall, kTheRest);
+    make(Part::kFloor, kFloorOnly);
+    make(Part::kCutCloth, std::string(kClothOnly) + kHoles);
+    make(Part::kCutWood, std::string(kWoodOnly) + kHoles);
+    make(Part::kChalk, kChalkOnly);
+    make(Part::kShade, kShadeOnly);
+    make(Part::kCutShade, std::string(kShadeOnly) + kHoles);
+    return programs;
+}
+
+void StaticLayer::upload(const TableMesh& table, const TableEdges* edges, const Programs& programs) {
+    parts_ = sort_parts(table, edges == nullptr ? std::vector<std::uint8_t>{} : edges->faces);
     api_.BindVertexArray(vertex_array_);
     api_.BindBuffer(GL_ARRAY_BUFFER, buffer_);
-    api_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(all.size() * sizeof(MeshVertex)), all.data(),
-                    GL_STATIC_DRAW);
-    const auto attribute = [&](GLuint index, std::size_t offset) {
+    api_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(parts_.vertices.size() * sizeof(PartVertex)),
+                    parts_.vertices.data(), GL_STATIC_DRAW);
+    parts_.vertices = {};
+    const auto attribute = [&](GLuint index, GLint count, std::size_t offset) {
         api_.EnableVertexAttribArray(index);
-        api_.VertexAttribPointer(index, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), gl::buffer_offset(offset));
+        api_.VertexAttribPointer(index, count, GL_FLOAT, GL_FALSE, sizeof(PartVertex),
+                                 gl::buffer_offset(offset));
     };
-    attribute(0, offsetof(MeshVertex, x));
-    attribute(1, offsetof(MeshVertex, nx));
-    attribute(2, offsetof(MeshVertex, u));
-    for (const Group& group : groups_) set_table_uniforms(table, group.program);
+    attribute(0, 3, offsetof(MeshVertex, x));
+    attribute(1, 3, offsetof(MeshVertex, nx));
+    attribute(2, 4, offsetof(MeshVertex, u));  // u, v, material, and the face behind the vertex
+    static_assert(offsetof(PartVertex, face) == offsetof(MeshVertex, material) + sizeof(float));
+    for (const Program& program : programs) set_table_uniforms(table, program.id);
     uploaded_ = &table;
 }
 
 void StaticLayer::resize(int width, int height) {
     if (width == width_ && height == height_) return;
-    scratch_.reset();
     if (color_ != 0) {
-        const GLuint textures[] = {color_, occluders_},
-                     framebuffers[] = {color_framebuffer_, occluders_framebuffer_};
-        api_.DeleteFramebuffers(2, framebuffers);
-        api_.DeleteTextures(2, textures);
+        const GLuint textures[] = {color_, occluders_, depth_},
+                     framebuffers[] = {color_framebuffer_, occluders_framebuffer_, once_framebuffer_};
+        api_.DeleteFramebuffers(3, framebuffers);
+        api_.DeleteTextures(3, textures);
     }
+    occluders_ = depth_ = occluders_framebuffer_ = once_framebuffer_ = 0;
     color_ = gl::make_texture(api_, width, height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-    occluders_ = gl::make_texture(api_, width, height, GL_RGBA32F, GL_RGBA, GL_FLOAT, nullptr);
     color_framebuffer_ = gl::make_framebuffer(api_, color_, 0);
-    occluders_framebuffer_ = gl::make_framebuffer(api_, occluders_, 0);
     width_ = width;
     height_ = height;
 }
@@ -132,16 +135,6 @@ void StaticLayer::set_table_uniforms(const TableMesh& table, GLuint program) con
         holes.insert(holes.end(), {static_cast<float>(center.x()), static_cast<float>(center.y()),
                                    static_cast<float>(hole.radius), 0.0F});
     }
-    double clear_low = table.inner_low.x(), clear_high = table.inner_high.x();
-    for (const Hole& hole : table.holes) {
-        const bool left = hole.center.x() < 0.5 * (table.inner_low.x() + table.inner_high.x());
-        if (left)
-            clear_low = std::max(clear_low, hole.center.x() + hole.radius);
-        else
-            clear_high = std::min(clear_high, hole.center.x() - hole.radius);
-    }
-    api_.Uniform2f(at("u_clear"), static_cast<float>(clear_low - table.origin.x()),
-                   static_cast<float>(clear_high - table.origin.x()));
     const auto count = static_cast<GLsizei>(holes.size() / 4);
     if (count > 0) api_.Uniform4fv(at("u_holes"), count, holes.data());
     api_.Uniform1i(at("u_hole_count"), count);
@@ -150,30 +143,55 @@ void StaticLayer::set_table_uniforms(const TableMesh& table, GLuint program) con
                    static_cast<float>(high.x()), static_cast<float>(high.y()));
 }
 
-void StaticLayer::draw_pass(const Scratch& scratch, int pass, int samples) {
-    // The steps of the R2 sequence are 1 / p and 1 / p^2, with the plastic number p.
-    const double jx = samples == 1 ? 0.0 : r2(pass, 0.75487766624669276),
-                 jy = samples == 1 ? 0.0 : r2(pass, 0.56984029099805327);
-    api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.pass_framebuffer[scratch.slot(pass)]);
+void StaticLayer::draw_parts(const Programs& programs, double jitter_x, double jitter_y) {
     api_.DepthMask(GL_TRUE);
-    api_.ClearColor(0.004F, 0.004F, 0.004F, 0.0F);
     api_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     api_.Enable(GL_DEPTH_TEST);
     api_.DepthFunc(GL_LEQUAL);
     api_.Disable(GL_BLEND);
     api_.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
     api_.BindVertexArray(vertex_array_);
-    for (const Group& group : groups_) {
-        // These are blended over the cloth and keep its alpha, which marks cloth.
-        if (&group == &groups_[kBlended]) {
-            api_.Enable(GL_BLEND);
-            api_.DepthMask(GL_FALSE);
-        }
-        api_.UseProgram(group.program);
-        api_.Uniform2f(group.jitter, static_cast<float>(2.0 * jx / width_),
-                       static_cast<float>(2.0 * jy / height_));
-        api_.DrawArrays(GL_TRIANGLES, group.first, group.count);
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < kPartCount; ++i) {
+        const auto part = static_cast<Part>(i);
+        if (part == Part::kChalk) api_.DepthMask(GL_FALSE);
+        // The shading is blended over the cloth and keeps its alpha.
+        if (part == Part::kShade) api_.Enable(GL_BLEND);
+        api_.UseProgram(programs[i].id);
+        api_.Uniform2f(programs[i].jitter, static_cast<float>(2.0 * jitter_x / width_),
+                       static_cast<float>(2.0 * jitter_y / height_));
+        api_.DrawArrays(GL_TRIANGLES, static_cast<GLint>(first),
+                        static_cast<GLsizei>(parts_.ends[i] - first));
+        first = parts_.ends[i];
     }
+}
+
+void StaticLayer::draw_pass(const Scratch& scratch, int pass, int samples) {
+    // The steps of the R2 sequence are 1 / p and 1 / p^2, with the plastic number p.
+    const double jx = samples == 1 ? 0.0 : r2(pass, 0.75487766624669276),
+                 jy = samples == 1 ? 0.0 : r2(pass, 0.56984029099805327);
+    api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.pass_framebuffer[scratch.slot(pass)]);
+    api_.ClearColor(kRoom, kRoom, kRoom, 0.0F);
+    draw_parts(sum_programs_, jx, jy);
+}
+
+void StaticLayer::draw_once(const TableMesh& table, FrameSize size) {
+    if (screen_programs_[0].id == 0) screen_programs_ = make_programs(shaders::kScreen);
+    if (uploaded_ != &table || !edges_) {
+        edges_ = std::make_shared<const TableEdges>(find_edges(table));
+        upload(table, edges_.get(), screen_programs_);
+    }
+    resize(size.width, size.height);
+    if (depth_ == 0) {
+        depth_ = gl::make_texture(api_, width_, height_, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT,
+                                  nullptr);
+        once_framebuffer_ = gl::make_framebuffer(api_, color_, depth_);
+    }
+    api_.Viewport(0, 0, width_, height_);
+    api_.BindFramebuffer(GL_FRAMEBUFFER, once_framebuffer_);
+    const float room = std::sqrt(kRoom);  // to_screen() of the background
+    api_.ClearColor(room, room, room, 0.0F);
+    draw_parts(screen_programs_, 0.0, 0.0);
 }
 
 void StaticLayer::add_pass(const Scratch& scratch, int pass) {
@@ -198,13 +216,18 @@ void StaticLayer::keep_depths(const Scratch& scratch, int samples) {
     api_.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void StaticLayer::draw(const TableMesh& table, FrameSize size, int samples, bool again_soon,
+void StaticLayer::draw(const TableMesh& table, FrameSize size, int samples,
                        const std::function<void(int, int)>& on_pass) {
     samples = std::max(samples, 1);
-    if (uploaded_ != &table) upload(table);
+    if (sum_programs_[0].id == 0) sum_programs_ = make_programs("");
+    if (uploaded_ != &table || edges_) upload(table, nullptr, sum_programs_);
+    edges_ = nullptr;
     resize(size.width, size.height);
-    if (!scratch_) scratch_ = std::make_unique<Scratch>(api_, width_, height_);
-    const Scratch& scratch = *scratch_;
+    if (occluders_ == 0) {
+        occluders_ = gl::make_texture(api_, width_, height_, GL_RGBA32F, GL_RGBA, GL_FLOAT, nullptr);
+        occluders_framebuffer_ = gl::make_framebuffer(api_, occluders_, 0);
+    }
+    const Scratch scratch(api_, width_, height_);
     api_.Viewport(0, 0, width_, height_);
     api_.UseProgram(add_program_);
     api_.Uniform1f(add_weight_, 1.0F / static_cast<float>(samples));
@@ -220,7 +243,6 @@ void StaticLayer::draw(const TableMesh& table, FrameSize size, int samples, bool
     api_.UseProgram(resolve_program_);
     gl::bind_texture(api_, 0, scratch.sum);
     api_.DrawArrays(GL_TRIANGLES, 0, 3);
-    if (!again_soon) scratch_.reset();
 }
 
 }  // namespace carom::render

@@ -49,8 +49,9 @@ bool is_covered(const Record& record, std::size_t ball, double t) {
 Stage::Stage(const Record& record, const StageOptions& options)
     : record_(record),
       options_(options),
-      table_(std::make_shared<const TableMesh>(
-          make_table_mesh(record.table, record.balls.R, visited_places(record)))),
+      table_(std::make_shared<const TableMesh>(make_table_mesh(
+          record.table, record.balls.R, visited_places(record),
+          CameraPath::moves(options.camera, options.view) ? Edges::kSharp : Edges::kRounded))),
       camera_(record, *table_, options.camera, options.view, options.size) {
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         styles_.push_back(ball_style(record.tracks[i].id, record.table.preset, static_cast<int>(i)));
@@ -61,8 +62,8 @@ DrawList Stage::at(double t, std::optional<FrameBudget> cost) const {
     DrawList list;
     list.table = table_;
     list.camera = camera_.at(t);
-    list.table_samples =
-        camera_.moves() ? std::min(options_.table_samples, kMovingSamples) : options_.table_samples;
+    list.table_samples = options_.table_samples;
+    list.camera_moves = camera_.moves();
     for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
         const BallState state = record_.state_at(static_cast<int>(i), t);
         if (!state.position.allFinite()) continue;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace carom::render {
@@ -84,24 +85,30 @@ void MeshBuilder::sweep(const Chain& outline, const std::vector<ProfileRow>& row
         const std::size_t before = row == 0 ? 0 : row - 1, after = row + 1 == rows.size() ? row - 1 : row;
         return 0.5 * (slope(before) + slope(after));
     };
-    double along = 0.0;
+    // The grain of wood starts anew at each corner that is sharper than 20 degrees, which makes a mitre there.
+    constexpr double kMitre = 0.94, kOtherBoard = 0.617;  // cosine; m of grain between two boards
+    double along = 0.0, board = 0.0;
+    Vec2 before = Vec2::Zero();
     for (std::size_t i = 0; i < pieces; ++i) {
         const std::size_t j = (i + 1) % n;
         const Vec2 edge = outline.points[j] - outline.points[i];
         const double length = edge.norm();
         if (length == 0.0) continue;
         const Vec2 right = Vec2(edge.y(), -edge.x()) / length;
+        if (edge.dot(before) < kMitre * length * before.norm()) board += kOtherBoard;
+        before = edge;
         for (std::size_t strip = 0; strip + 1 < rows.size(); ++strip) {
-            const auto corner = [&](std::size_t row, std::size_t point, double where) {
+            const auto corner = [&](std::size_t row, std::size_t point) {
                 const double t = tilt(strip, row);
                 const Vec3 normal = lift(right * std::sin(t), std::cos(t));
                 const Vec3 p = lift(lines[row][point], outline.heights[point] + rows[row].z);
-                const bool blend = is_blended(material);
-                return vertex(p, normal, blend ? rows[row].opacity : where, blend ? 0.0 : rows[row].offset,
-                              material);
+                if (is_blended(material))
+                    return vertex(p, normal, rows[row].opacity, rows[row].across, material);
+                const double where = along + (lines[row][point] - outline.points[i]).dot(edge) / length;
+                return vertex(p, normal, where + board, rows[row].offset - rows[row].z + board, material);
             };
-            const MeshVertex a = corner(strip, i, along), b = corner(strip, j, along + length);
-            const MeshVertex c = corner(strip + 1, j, along + length), d = corner(strip + 1, i, along);
+            const MeshVertex a = corner(strip, i), b = corner(strip, j);
+            const MeshVertex c = corner(strip + 1, j), d = corner(strip + 1, i);
             triangle(a, b, c);
             triangle(a, c, d);
         }
@@ -109,24 +116,58 @@ void MeshBuilder::sweep(const Chain& outline, const std::vector<ProfileRow>& row
     }
 }
 
-void MeshBuilder::disc(const Vec2& center, double inner, double outer, double z, Material material,
-                       double u) {
+void MeshBuilder::disc(const Vec2& center, double radius, double z, Material material, double u,
+                       double edge) {
+    const MeshVertex middle = vertex(lift(center, z), Vec3::UnitZ(), u, 0.0, material);
     for (int i = 0; i < kCirclePieces; ++i) {
-        quad(lift(on_circle(center, inner, i), z), lift(on_circle(center, outer, i), z),
-             lift(on_circle(center, outer, i + 1), z), lift(on_circle(center, inner, i + 1), z), material, u);
+        const auto rim = [&](int piece) {
+            return vertex(lift(on_circle(center, radius, piece), z), Vec3::UnitZ(), u, edge, material);
+        };
+        triangle(middle, rim(i), rim(i + 1));
     }
 }
 
-void MeshBuilder::well(const Vec2& center, double radius, double top, double bottom, Material material) {
+void MeshBuilder::fan(const Corners& corners) {
+    for (std::size_t i = 2; i < corners.size(); ++i) triangle(corners[0], corners[i - 1], corners[i]);
+}
+
+void MeshBuilder::add_outside(Corners corners, const Bounds* outside) {
+    if (outside == nullptr) {
+        fan(corners);
+        return;
+    }
+    const auto f = [](double value) { return static_cast<float>(value); };
+    const Vec2 low = outside->low - mesh_.origin, high = outside->high - mesh_.origin;
+    for (const Axis axis : {Axis::kX, Axis::kY}) {
+        const int i = axis == Axis::kX ? 0 : 1;
+        auto [below, rest] = cut(corners, axis, f(low[i]));
+        auto [inside, above] = cut(rest, axis, f(high[i]));
+        fan(below);
+        fan(above);
+        corners = std::move(inside);
+    }
+}
+
+void MeshBuilder::ring(const Vec2& center, double inner, double outer, double z, Material material, double u,
+                       const Bounds* outside) {
     for (int i = 0; i < kCirclePieces; ++i) {
-        const Vec2 a = on_circle(center, radius, i), b = on_circle(center, radius, i + 1);
-        const Vec3 na = lift((center - a) / radius, 0.0), nb = lift((center - b) / radius, 0.0);
-        const MeshVertex low_a = vertex(lift(a, bottom), na, 0.0, 1.0, material);
-        const MeshVertex low_b = vertex(lift(b, bottom), nb, 0.0, 1.0, material);
-        const MeshVertex top_a = vertex(lift(a, top), na, 0.0, 0.0, material);
-        const MeshVertex top_b = vertex(lift(b, top), nb, 0.0, 0.0, material);
-        triangle(low_a, low_b, top_b);
-        triangle(low_a, top_b, top_a);
+        const auto corner = [&](double radius, int piece, double opacity) {
+            return vertex(lift(on_circle(center, radius, piece), z), Vec3::UnitZ(), opacity, 0.0, material);
+        };
+        add_outside(
+            {corner(inner, i, u), corner(outer, i, 0.0), corner(outer, i + 1, 0.0), corner(inner, i + 1, u)},
+            outside);
+    }
+}
+
+void MeshBuilder::well(const Vec2& center, double radius, double top, double bottom, Material material,
+                       const Bounds* outside) {
+    for (int i = 0; i < kCirclePieces; ++i) {
+        const auto corner = [&](double z, int piece) {
+            const Vec2 p = on_circle(center, radius, piece);
+            return vertex(lift(p, z), lift((center - p) / radius, 0.0), 0.0, z == top ? 0.0 : 1.0, material);
+        };
+        add_outside({corner(bottom, i), corner(bottom, i + 1), corner(top, i + 1), corner(top, i)}, outside);
     }
 }
 

@@ -4,15 +4,17 @@
 #include <vector>
 
 #include "carom/render/table_mesh.h"
+#include "stage/cut.h"
 #include "stage/outline.h"
 
 namespace carom::render {
 
 /// One line of a profile that is swept along an outline.
 struct ProfileRow {
-    double offset;   ///< distance to the left of the outline [m]
-    double z;        ///< added to the height of the outline's point [m]
-    double opacity;  ///< for blended materials
+    double offset;        ///< distance to the left of the outline [m]
+    double z;             ///< added to the height of the outline's point [m]
+    double opacity;       ///< for blended materials
+    double across = 0.0;  ///< for chalk: distance from the middle of the line, in half widths of the line
 };
 
 class MeshBuilder {
@@ -27,15 +29,25 @@ class MeshBuilder {
     /// Sweeps a profile along an outline. If `smooth`, the normals are averaged between neighbouring strips.
     void sweep(const Chain& outline, const std::vector<ProfileRow>& rows, Material material, bool smooth);
 
-    /// A horizontal ring, or a full disc if inner = 0.
-    void disc(const Vec2& center, double inner, double outer, double z, Material material, double u = 0.0);
+    /// A horizontal disc. For a blended material `u` is its opacity; `edge`, for chalk: radius of the disc divided by the
+    /// radius of the spot that is drawn.
+    void disc(const Vec2& center, double radius, double z, Material material, double u = 0.0,
+              double edge = 0.0);
 
-    /// The vertical wall of a cylinder, visible from inside.
-    void well(const Vec2& center, double radius, double top, double bottom, Material material);
+    /// A horizontal ring; a blended material has the opacity u at its inner circle and 0 at the outer one. With `outside`,
+    /// only the part outside that box.
+    void ring(const Vec2& center, double inner, double outer, double z, Material material, double u = 0.0,
+              const Bounds* outside = nullptr);
+
+    /// The vertical wall of a cylinder, visible from inside. With `outside`, only the part outside that box.
+    void well(const Vec2& center, double radius, double top, double bottom, Material material,
+              const Bounds* outside = nullptr);
 
   private:
     MeshVertex vertex(const Vec3& p, const Vec3& n, double u, double v, Material material) const;
     void triangle(const MeshVertex& a, const MeshVertex& b, const MeshVertex& c);
+    void fan(const Corners& corners);
+    void add_outside(Corners corners, const Bounds* outside);
 
     TableMesh& mesh_;
 };

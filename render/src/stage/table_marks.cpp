@@ -1,6 +1,7 @@
 #include "stage/table_marks.h"
 
 #include <cmath>
+#include <vector>
 
 namespace carom::render {
 
@@ -8,14 +9,20 @@ namespace {
 
 constexpr double kAboveCloth = 0.0005;  // [m] height of painted marks above the cloth
 
-void line(MeshBuilder& builder, const Vec2& a, const Vec2& b, double width, double opacity) {
-    const Vec2 along = (b - a).normalized(), side = 0.5 * width * Vec2(-along.y(), along.x());
-    const auto at = [](const Vec2& p) { return Vec3(p.x(), p.y(), kAboveCloth); };
-    builder.quad(at(a - side), at(b - side), at(b + side), at(a + side), Material::kChalk, opacity);
+// [m] The shader draws the edge of a mark as wide as a pixel; the triangles reach this far beyond the mark.
+constexpr double kEdge = 0.008;
+
+void line(MeshBuilder& builder, const std::vector<Vec2>& points, double width, double opacity) {
+    Chain chain;
+    chain.points = points;
+    chain.heights.assign(points.size(), kAboveCloth);
+    const double reach = 0.5 * width + kEdge, across = reach / (0.5 * width);
+    builder.sweep(chain, {{-reach, 0.0, opacity, -across}, {reach, 0.0, opacity, across}}, Material::kChalk,
+                  false);
 }
 
 void spot(MeshBuilder& builder, const Vec2& center, double radius) {
-    builder.disc(center, 0.0, radius, kAboveCloth, Material::kChalk, 0.75);
+    builder.disc(center, radius + kEdge, kAboveCloth, Material::kChalk, 0.75, (radius + kEdge) / radius);
 }
 
 void diamond(MeshBuilder& builder, const Vec2& center, double z, bool along_y) {
@@ -44,15 +51,14 @@ void add_diamonds(const Table& table, const TableMesh& mesh, MeshBuilder& builde
 // the face of the bottom cushion, the D has a radius of 11 1/2 in, the black spot is 12 3/4 in from the top cushion).
 void add_snooker_marks(const Table& table, MeshBuilder& builder) {
     const double w = table.width, l = table.length, baulk = 0.737, d = 0.292;
-    line(builder, {0.0, baulk}, {w, baulk}, 0.003, 0.6);
+    line(builder, {{0.0, baulk}, {w, baulk}}, 0.003, 0.6);
     constexpr int kPieces = 48;  // [-] straight pieces of the D
-    Vec2 before(0.5 * w - d, baulk);
-    for (int i = 1; i <= kPieces; ++i) {
+    std::vector<Vec2> arc;
+    for (int i = 0; i <= kPieces; ++i) {
         const double angle = 3.14159265358979323846 * i / kPieces;
-        const Vec2 next(0.5 * w - d * std::cos(angle), baulk - d * std::sin(angle));
-        line(builder, before, next, 0.003, 0.6);
-        before = next;
+        arc.emplace_back(0.5 * w - d * std::cos(angle), baulk - d * std::sin(angle));
     }
+    line(builder, arc, 0.003, 0.6);
     for (double x : {0.5 * w - d, 0.5 * w, 0.5 * w + d}) spot(builder, {x, baulk}, 0.005);
     for (double y : {0.5 * l, 0.75 * l, l - 0.324}) spot(builder, {0.5 * w, y}, 0.005);
 }
@@ -71,7 +77,7 @@ void add_table_marks(const Table& table, TableMesh& mesh, MeshBuilder& builder, 
         for (double y : {0.25 * l, 0.5 * l, 0.75 * l}) spot(builder, {0.5 * w, y}, 0.006);
         return;
     }
-    line(builder, {0.0, 0.25 * l}, {w, 0.25 * l}, 0.003, 0.30);
+    line(builder, {{0.0, 0.25 * l}, {w, 0.25 * l}}, 0.003, 0.30);
     spot(builder, foot_spot(table), 0.007);
 }
 

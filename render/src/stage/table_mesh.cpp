@@ -15,6 +15,7 @@ constexpr double kCushionWidth = 0.05;    // of a cushion without facings, which
 constexpr double kRailWidth = 0.095;      // of the wooden rail outside the cushion
 constexpr double kWallHalfWidth = 0.005;  // of a cushion with balls on both sides
 constexpr double kShadeWidth = 0.045;     // of the dark shading along a cushion
+constexpr double kWoodRise = 0.008;       // of the wooden rail above the highest nose
 constexpr double kApron = 0.22;           // depth of the frame below the cloth
 
 struct Box {
@@ -41,8 +42,8 @@ Chain rectangle(const Vec2& low, const Vec2& high, double height) {
 
 class TableMaker {
   public:
-    TableMaker(const Table& table, double R, const std::vector<Vec2>& visited)
-        : table_(table), R_(R), visited_(visited), builder_(mesh_) {}
+    TableMaker(const Table& table, double R, const std::vector<Vec2>& visited, Edges edges)
+        : table_(table), R_(R), visited_(visited), sharp_(edges == Edges::kSharp), builder_(mesh_) {}
 
     TableMesh make() {
         std::vector<Chain> chains = join_outline(table_);
@@ -72,7 +73,7 @@ class TableMaker {
         if (played_.empty()) played_.add(Vec2::Zero());
         const Box& whole = outline_.empty() ? played_ : outline_;
         mesh_.origin = 0.5 * (whole.low + whole.high);
-        mesh_.wood_top = nose_ + 0.008;
+        mesh_.wood_top = nose_ + kWoodRise;
     }
 
     // Whether the table has rails with jaws around pockets; these get a rectangular frame.
@@ -128,6 +129,14 @@ class TableMaker {
         }
     }
 
+    // [m] What is further behind the nose than half the radius of a jaw would fold over itself there.
+    double largest_inset() const {
+        double largest = 1.0;
+        for (const Jaw& jaw : table_.jaws)
+            largest = std::min(largest, jaw.radius > 0.0 ? 0.5 * jaw.radius : 1.0);
+        return largest;
+    }
+
     void shade_cloth(const Chain& chain) {
         Chain ground = chain;
         std::fill(ground.heights.begin(), ground.heights.end(), 0.0004);
@@ -142,6 +151,11 @@ class TableMaker {
         Chain ground = chain;
         std::fill(ground.heights.begin(), ground.heights.end(), 0.0);
         const double height = chain.heights.front();
+        if (sharp_) {
+            builder_.sweep(ground, {{inset, 0.0, 0.0}, {0.0, height, 0.0}}, Material::kCushion, true);
+            shade_cloth(chain);
+            return;
+        }
         builder_.sweep(ground, {{inset, 0.0, 0.0}, {0.0, height - 0.003, 0.0}}, Material::kCushion, true);
         builder_.sweep(ground,
                        {{0.0, height - 0.003, 0.0},
@@ -155,18 +169,24 @@ class TableMaker {
     // A cushion whose back is known: its outline, closed by a straight line if it is open. The caller chooses a wooden
     // top for a body that is free-standing on the cloth, where a top of cloth would hardly be visible.
     void add_body(const Chain& chain, Material top = Material::kCushion) {
-        const double inset = 0.006;
+        const double inset = std::min(0.006, largest_inset());
         add_nose(chain, inset);
-        builder_.polygon(offset_left(chain.points, chain.closed, inset), chain.heights.front() + 0.003, top);
+        if (sharp_)
+            builder_.polygon(chain.points, chain.heights.front(), top);
+        else
+            builder_.polygon(offset_left(chain.points, chain.closed, inset), chain.heights.front() + 0.003,
+                             top);
     }
 
     void add_strip(const Chain& chain, double width, bool wall) {
-        const double inset = std::min(0.006, 0.3 * width), rise = wall ? 0.003 : 0.006;
+        const double inset = std::min({0.006, 0.3 * width, largest_inset()});
+        // With sharp edges the cushion meets the edge of the wood, which leaves no narrow strip of it.
+        const double rise = wall ? 0.003 : (sharp_ ? kWoodRise : 0.006);
         add_nose(chain, inset);
-        Chain top = chain;
-        for (double& height : top.heights) height += 0.003;
-        builder_.sweep(top, {{inset, 0.0, 0.0}, {width, rise - 0.003, 0.0}},
-                       wall ? Material::kWood : Material::kCushion, false);
+        const Material material = wall ? Material::kWood : Material::kCushion;
+        const ProfileRow back{width, rise, 0.0};
+        builder_.sweep(chain, {sharp_ ? ProfileRow{0.0, 0.0, 0.0} : ProfileRow{inset, 0.003, 0.0}, back},
+                       material, false);
     }
 
     // A closed outline with the balls inside: cloth, cushion and wooden rail follow it.
@@ -184,16 +204,18 @@ class TableMaker {
 
     void add_wood(const Chain& inner) {
         const double top = mesh_.wood_top;
-        builder_.sweep(inner, {{0.0, top - 0.012, 0.0}, {0.0, top - 0.002, 0.0}}, Material::kWood, false);
-        builder_.sweep(inner,
-                       {{0.0, top - 0.002, 0.0},
-                        {0.002, top, 0.0},
-                        {kRailWidth - 0.010, top, 0.0},
-                        {kRailWidth - 0.003, top - 0.003, 0.0},
-                        {kRailWidth, top - 0.010, 0.0}},
-                       Material::kWood, false);
-        builder_.sweep(inner, {{kRailWidth, top - 0.010, 0.0}, {kRailWidth, -kApron, 0.0}}, Material::kWood,
-                       false);
+        std::vector<ProfileRow> rows{{0.0, top - 0.012, 0.0}};
+        if (sharp_) {
+            rows.insert(rows.end(), {{0.0, top, 0.0}, {kRailWidth, top, 0.0}});
+        } else {
+            rows.insert(rows.end(), {{0.0, top - 0.002, 0.0},
+                                     {0.002, top, 0.0},
+                                     {kRailWidth - 0.010, top, 0.0},
+                                     {kRailWidth - 0.003, top - 0.003, 0.0},
+                                     {kRailWidth, top - 0.010, 0.0}});
+        }
+        rows.push_back({kRailWidth, -kApron, 0.0});
+        builder_.sweep(inner, rows, Material::kWood, false);
         Box box, outer;
         for (const Vec2& p : inner.points) box.add(p);
         for (const Vec2& p : offset_left(inner.points, true, kRailWidth)) outer.add(p);
@@ -263,16 +285,20 @@ class TableMaker {
     void add_pocket(const Pocket& pocket) {
         const double bottom = -(pocket.depth + R_ + 0.03);
         mesh_.holes.push_back({pocket.center, pocket.radius});
-        builder_.well(pocket.center, pocket.radius, mesh_.wood_top, bottom, Material::kPocket);
-        builder_.disc(pocket.center, 0.0, pocket.radius, bottom, Material::kPocket, 1.0);
-        builder_.disc(pocket.center, pocket.radius, pocket.radius + 0.011, mesh_.wood_top + 0.0015,
-                      Material::kTrim);
-        builder_.disc(pocket.center, pocket.radius, pocket.radius + 0.006, 0.0006, Material::kShade, 0.55);
+        // Above the cloth, the wall of the hole and its rim stand only where the wooden frame is.
+        const Bounds inner{mesh_.inner_low, mesh_.inner_high, 0.0};
+        const double rim = mesh_.wood_top + 0.0015;
+        builder_.well(pocket.center, pocket.radius, rim, 0.0, Material::kPocket, &inner);
+        builder_.well(pocket.center, pocket.radius, 0.0, bottom, Material::kPocket);
+        builder_.disc(pocket.center, pocket.radius, bottom, Material::kPocket, 1.0);
+        builder_.ring(pocket.center, pocket.radius, pocket.radius + 0.011, rim, Material::kTrim, 0.0, &inner);
+        builder_.ring(pocket.center, pocket.radius, pocket.radius + 0.008, 0.0006, Material::kShade, 0.55);
     }
 
     const Table& table_;
     double R_;
     const std::vector<Vec2>& visited_;
+    bool sharp_;
     TableMesh mesh_;
     MeshBuilder builder_;
     Box outline_, played_;
@@ -282,8 +308,8 @@ class TableMaker {
 
 }  // namespace
 
-TableMesh make_table_mesh(const Table& table, double R, const std::vector<Vec2>& visited) {
-    return TableMaker(table, R, visited).make();
+TableMesh make_table_mesh(const Table& table, double R, const std::vector<Vec2>& visited, Edges edges) {
+    return TableMaker(table, R, visited, edges).make();
 }
 
 }  // namespace carom::render

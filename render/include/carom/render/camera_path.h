@@ -29,6 +29,11 @@ class CameraPath {
     Camera at(double t) const;
     bool moves() const { return follow_ball_ >= 0; }
 
+    /// Whether a path with this name and these numbers will move.
+    static bool moves(const std::string& name, const FreeCamera& free) {
+        return name == "follow" && !free.eye;
+    }
+
   private:
     const Record& record_;
     Camera fixed_;

@@ -61,9 +61,6 @@ struct DrawBox {
     int glyph = -1;
 };
 
-/// [samples per pixel] Limit for the table if the camera moves: the table is then redrawn in every frame.
-inline constexpr int kMovingSamples = 4;
-
 struct DrawList {
     std::shared_ptr<const TableMesh> table;
     Camera camera;
@@ -72,6 +69,9 @@ struct DrawList {
     std::vector<DrawBox> boxes;
     /// Samples per pixel of the table, which is redrawn only when the camera or the table changes
     int table_samples = 16;
+    /// For a camera that is different in each frame: the table is drawn with one sample per pixel, and then its edges
+    /// are smoothed by the share of each pixel that they cut off. The mesh should be made with Edges::kSharp.
+    bool camera_moves = false;
 };
 
 /// Appends a line of text with its upper left corner at `at`. `height`: height of a capital letter [pixels].

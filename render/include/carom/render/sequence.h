@@ -36,7 +36,7 @@ struct SequenceOptions {
     std::function<double(long k)> simulate_ms;
     /// If set, the bar shows this time for frame k instead [ms].
     std::function<double(long k)> frame_cost_ms;
-    /// Samples per pixel of the table, which is drawn once per camera; at most 4 are used if the camera moves
+    /// Samples per pixel of the table, which is drawn once per camera; not used if the camera moves
     int table_samples = 16;
     int png_level = 1;  ///< zlib level 0..9
     Backend backend = Backend::kOsmesa;

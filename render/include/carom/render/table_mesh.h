@@ -12,13 +12,13 @@ namespace carom::render {
 enum class Material : std::uint8_t {
     kCloth,    ///< the playing surface; only here do balls cast shadows
     kCushion,  ///< cloth over rubber
-    kWood,     ///< texture coordinates [m]: u along the grain, v across it
+    kWood,     ///< texture coordinates [m]: u along the grain, v across it, other numbers on each board
     kPocket,   ///< the wall of a hole
     kTrim,     ///< the rim of a pocket
     kInlay,    ///< diamonds
     kFloor,
     kShade,  ///< black, blended over the cloth; u is the opacity
-    kChalk,  ///< white, blended over the cloth; u is the opacity
+    kChalk,  ///< white, blended over the cloth; u is the opacity, v the distance from the middle in half widths
 };
 
 struct MeshVertex {
@@ -50,8 +50,13 @@ struct TableMesh {
     Lamp lamp;
 };
 
+/// kRounded: noses and rails have small bevels. kSharp: they have none, because strips that are thinner than a pixel
+/// would flicker under a camera that moves.
+enum class Edges : std::uint8_t { kRounded, kSharp };
+
 /// Makes the mesh. `visited`: positions that balls reach; they decide on which side of an open cushion its body
 /// lies, and which part of an unbounded cloth is shown. R: ball radius [m].
-TableMesh make_table_mesh(const Table& table, double R, const std::vector<Vec2>& visited);
+TableMesh make_table_mesh(const Table& table, double R, const std::vector<Vec2>& visited,
+                          Edges edges = Edges::kRounded);
 
 }  // namespace carom::render

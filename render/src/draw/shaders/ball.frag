@@ -2,7 +2,6 @@ flat in vec4 v_ball;
 flat in vec4 v_orientation;
 flat in vec4 v_color;
 flat in vec3 v_pattern;
-uniform sampler2D u_occluders;   // four distances of the table along the view direction
 uniform sampler2D u_glyphs;
 out vec4 color;
 
@@ -80,11 +79,7 @@ void main() {
     vec3 n = normalize(perpendicular - dir * rise);
     vec3 p = v_ball.xyz + n * R;
 
-#ifndef PLAIN
-    vec4 table = texelFetch(u_occluders, ivec2(gl_FragCoord.xy), 0);
-    float depth = (along - rise) * per_depth;
-    cover *= dot(step(vec4(depth - 0.001), table), vec4(0.25));
-#endif
+    cover *= seen(ivec2(gl_FragCoord.xy), (along - rise) * per_depth - 0.001);
 
     float facing = max(-dot(n, dir), 0.08);
     vec3 base = albedo(to_body(n), pixel / (R * mix(1.0, facing, 0.6)));

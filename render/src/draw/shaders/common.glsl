@@ -52,3 +52,19 @@ vec3 pixel_ray(vec2 pixel) {
     vec2 s = 2.0 * pixel / u_size - 1.0;
     return u_forward + s.x * u_right_scaled - s.y * u_up_scaled;
 }
+
+// Share of the pixel at which nothing of the table is nearer than this distance along the view direction.
+#if defined(PLAIN)
+float seen(ivec2 pixel, float depth) { return 1.0; }
+#elif defined(ONE_SAMPLE)
+uniform sampler2D u_occluders;   // the depth buffer of the table
+float seen(ivec2 pixel, float depth) {
+    float z = texelFetch(u_occluders, pixel, 0).r;
+    return step(depth * (u_planes.y - z * (u_planes.y - u_planes.x)), u_planes.x * u_planes.y);
+}
+#else
+uniform sampler2D u_occluders;   // four distances of the table along the view direction
+float seen(ivec2 pixel, float depth) {
+    return dot(step(vec4(depth), texelFetch(u_occluders, pixel, 0)), vec4(0.25));
+}
+#endif

@@ -5,6 +5,8 @@ out vec4 color;
 void main() {
 #ifdef PLAIN
     float cloth = 1.0;
+#elif defined(ONE_SAMPLE)
+    float cloth = step(0.99, texelFetch(u_background, ivec2(gl_FragCoord.xy), 0).a);
 #else
     float cloth = texelFetch(u_background, ivec2(gl_FragCoord.xy), 0).a;
 #endif

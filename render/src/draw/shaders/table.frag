@@ -2,9 +2,9 @@ in vec3 v_position;
 in vec3 v_normal;
 in vec2 v_uv;
 flat in int v_material;
+flat in float v_face;
 uniform vec4 u_holes[MAX_HOLES];   // x, y, radius
 uniform int u_hole_count;
-uniform vec2 u_clear;         // no hole overlaps the range of x between these
 uniform vec4 u_inner;         // low x, low y, high x, high y of the box inside the wooden frame
 out vec4 color;
 
@@ -24,20 +24,17 @@ float noise(vec2 p) {
 }
 
 bool in_hole(vec2 p) {
-    // Most of the cloth is far from all holes; the loop is skipped there.
-    int count = p.x > u_clear.x && p.x < u_clear.y ? 0 : u_hole_count;
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < u_hole_count; ++i) {
         vec2 d = p - u_holes[i].xy;
         if (dot(d, d) < u_holes[i].z * u_holes[i].z) return true;
     }
     return false;
 }
-bool in_inner(vec2 p) { return all(greaterThan(p, u_inner.xy)) && all(lessThan(p, u_inner.zw)); }
 
 vec3 cloth_albedo(vec2 p) {
     vec3 base = from_screen(vec3(0.055, 0.50, 0.345));
     // A coarse weave that is visible only from near: it fades out before its threads are one to two pixels wide.
-    float pixel = length(fwidth(p));
+    float pixel = length(fwidth(v_position));
     float fine = 1.0 - smoothstep(0.0006, 0.0016, pixel);
     vec2 thread = sin(p * (6.2831853 / 0.0026));
     float weave = thread.x * thread.y * fine * 0.13;
@@ -46,7 +43,10 @@ vec3 cloth_albedo(vec2 p) {
 }
 
 vec3 wood_albedo(vec2 uv) {
-    float rings = noise(vec2(uv.x * 2.2, uv.y * 38.0)) * 0.65 + noise(vec2(uv.x * 9.0, uv.y * 160.0)) * 0.35;
+    // The fine grain fades out before its rings are one to two pixels wide; it would flicker under a camera that moves.
+    float pixel = length(fwidth(uv)) * 160.0;
+    float fine = mix(noise(vec2(uv.x * 9.0, uv.y * 160.0)), 0.5, smoothstep(0.5, 1.2, pixel));
+    float rings = noise(vec2(uv.x * 2.2, uv.y * 38.0)) * 0.65 + fine * 0.35;
     vec3 dark = from_screen(vec3(0.23, 0.105, 0.055)), light = from_screen(vec3(0.44, 0.225, 0.115));
     return mix(dark, light, smoothstep(0.15, 0.85, rings));
 }
@@ -78,31 +78,47 @@ vec3 floor_color(vec3 p) {
     return mix(vec3(0.004), near, 1.0 / (1.0 + 0.25 * away * away));
 }
 
+// What is written: screen values in a picture with one sample, or radiance to be averaged.
+vec4 written(vec3 radiance) {
+#ifdef SCREEN
+    return vec4(to_screen(radiance), v_face);
+#else
+    return vec4(radiance, v_face);
+#endif
+}
+
 void main() {
     vec2 p = v_position.xy;
     vec3 n = normalize(v_normal);
-#if defined(CLOTH)
-    // Cushions extend over the rims of the holes; the playing surface ends there.
-    bool playing = v_material == 0;
-    if (playing && in_hole(p)) discard;
-    color = vec4(lit(cloth_albedo(p) * (playing ? 1.0 : 1.12), n), playing ? 1.0 : 0.0);
-#elif defined(WOOD)
+#ifdef HOLES
     if (in_hole(p)) discard;
-    color = vec4(glossy(lit(wood_albedo(v_uv), n), n, 5.0, 0.25), 0.0);
-#elif defined(FLOOR)
-    color = vec4(floor_color(v_position), 0.0);
+#endif
+#if defined(CLOTH)
+    color = written(lit(cloth_albedo(p) * (v_material == 0 ? 1.0 : 1.12), n));
+#elif defined(CHALK)
+    // The share of the width of this pixel that lies within the mark.
+    float across = max(fwidth(v_uv.y), 1e-4);
+    float cover = min(v_uv.y + 0.5 * across, 1.0) - max(v_uv.y - 0.5 * across, -1.0);
+    cover = v_uv.x * clamp(cover / across, 0.0, 1.0);
+    color = written(mix(lit(cloth_albedo(p), n), lit(vec3(0.75), n), cover));
+#elif defined(SHADE)
+    // Only the opacity counts: black is blended over the cloth. In screen values, of which the square is the radiance,
+    // the same darkening needs another opacity.
+#ifdef SCREEN
+    color = vec4(0.0, 0.0, 0.0, 1.0 - sqrt(1.0 - v_uv.x));
 #else
-    if (v_material == 3) {
-        if (v_position.z > 0.0 && in_inner(p)) discard;
-        color = vec4(pocket_wall(v_position, n, v_uv.x), 0.0);
-    } else if (v_material == 4) {
-        if (in_inner(p)) discard;
-        color = vec4(glossy(lit(from_screen(vec3(0.19, 0.175, 0.165)), n), n, 6.0, 0.5), 0.0);
-    } else if (v_material == 5) {
-        color = vec4(glossy(lit(from_screen(vec3(0.88, 0.85, 0.76)), n), n, 3.0, 0.2), 0.0);
-    } else {
-        if (in_hole(p) || !in_inner(p)) discard;
-        color = v_material == 7 ? vec4(0.0, 0.0, 0.0, v_uv.x) : vec4(lit(vec3(0.75), n), v_uv.x);
-    }
+    color = vec4(0.0, 0.0, 0.0, v_uv.x);
+#endif
+#elif defined(WOOD)
+    color = written(glossy(lit(wood_albedo(v_uv), n), n, 5.0, 0.25));
+#elif defined(FLOOR)
+    color = written(floor_color(v_position));
+#else
+    if (v_material == 3)
+        color = written(pocket_wall(v_position, n, v_uv.x));
+    else if (v_material == 4)
+        color = written(glossy(lit(from_screen(vec3(0.19, 0.175, 0.165)), n), n, 6.0, 0.5));
+    else
+        color = written(glossy(lit(from_screen(vec3(0.88, 0.85, 0.76)), n), n, 3.0, 0.2));
 #endif
 }
