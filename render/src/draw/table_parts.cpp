@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "carom/render/mesh_cut.h"
 #include "draw/shaders.h"
-#include "stage/cut.h"
 
 namespace carom::render {
 

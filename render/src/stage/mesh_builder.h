@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "carom/render/mesh_cut.h"
 #include "carom/render/table_mesh.h"
-#include "stage/cut.h"
 #include "stage/outline.h"
 
 namespace carom::render {

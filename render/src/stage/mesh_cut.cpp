@@ -1,4 +1,4 @@
-#include "stage/cut.h"
+#include "carom/render/mesh_cut.h"
 
 #include <tuple>
 
