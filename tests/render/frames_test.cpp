@@ -217,7 +217,7 @@ TEST(Sequence, AFrameThatCannotBeWrittenIsNamedAndLeavesNothing) {
 
 TEST(Sequence, RefusesBadOptions) {
     SequenceOptions options = small_options("");
-    options.png_level = 10;
+    options.libpng_level = 10;
     EXPECT_THROW(render_sequence(one_ball(), options), RenderError);
     options = small_options("");
     options.camera = "periscope";

@@ -1,10 +1,12 @@
 // Threads, resuming, raw frames, contact sheets, measuring.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -112,6 +114,116 @@ TEST(Pipeline, RawFramesComeInOrderWithTheSamePixels) {
         EXPECT_EQ(differ, 0U) << k;
     }
     EXPECT_EQ(folder.entries(), 31U);
+}
+
+TEST(Pipeline, BothWritersGiveTheSamePixels) {
+    const ScratchFolder folder("writers");
+    SequenceOptions options = options_for(folder.file("a%02d.png"));
+    const std::vector<FrameTiming> changes = render_sequence(rolling_ball(), options);
+    options.pattern = folder.file("b%02d.png");
+    options.libpng_level = 6;
+    const std::vector<FrameTiming> whole = render_sequence(rolling_ball(), options);
+    for (long k = 0; k < static_cast<long>(whole.size()); ++k) {
+        EXPECT_TRUE(same_pixels(render_test::read_png(frame_path(folder.file("a%02d.png"), k)),
+                                render_test::read_png(frame_path(options.pattern, k))))
+            << k;
+        EXPECT_EQ(whole[static_cast<std::size_t>(k)].encoded_share, 1.0);
+    }
+    EXPECT_GT(changes.back().encoded_share, 0.0);
+    EXPECT_LT(changes.back().encoded_share, 0.5);
+}
+
+// Threads, their number and what an encoder had before change no byte.
+TEST(Pipeline, BytesDependOnThePixelsAlone) {
+    const ScratchFolder folder("bytes");
+    SequenceOptions options = options_for(folder.file("a%02d.png"));
+    options.jobs = 1;
+    const std::size_t count = render_sequence(rolling_ball(), options).size();
+    options.pattern = folder.file("b%02d.png");
+    options.jobs = 3;
+    render_sequence(rolling_ball(), options);
+    options.pattern = folder.file("c%02d.png");
+    for (long k = 0; k < static_cast<long>(count); k += 10) {
+        options.frame = k;
+        render_sequence(rolling_ball(), options);
+    }
+    const auto bytes = [&folder](char run, long k) {
+        std::ifstream file(frame_path(folder.file(std::string(1, run) + "%02d.png"), k), std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    for (long k = 0; k < static_cast<long>(count); ++k) {
+        EXPECT_FALSE(bytes('a', k).empty());
+        EXPECT_EQ(bytes('a', k), bytes('b', k)) << k;
+        if (k % 10 == 0) {
+            EXPECT_EQ(bytes('a', k), bytes('c', k)) << k;
+        }
+    }
+}
+
+// The frames of a stream against the formulas of ITU-R BT.709 in floating point, at an odd size too.
+TEST(Pipeline, Y4mFramesHaveTheColorsOfTheirPixels) {
+    const ScratchFolder folder("y4m");
+    for (const FrameSize size : {FrameSize{160, 90}, FrameSize{81, 45}}) {
+        SequenceOptions options = options_for(folder.file("%02d.png"));
+        options.size = size;
+        render_sequence(rolling_ball(), options);
+        options.raw_format = RawFormat::kY4m;
+        std::vector<std::vector<std::uint8_t>> frames;
+        options.raw = [&](const std::uint8_t* bytes, std::size_t count) {
+            frames.emplace_back(bytes, bytes + count);
+        };
+        render_sequence(rolling_ball(), options);
+        ASSERT_EQ(frames.size(), 31U);
+        const int w = size.width, h = size.height, columns = (w + 1) / 2, rows = (h + 1) / 2;
+        for (const long k : {0L, 1L, 30L}) {
+            const std::vector<std::uint8_t>& frame = frames[static_cast<std::size_t>(k)];
+            const Image image = render_test::read_png(frame_path(options.pattern, k));
+            ASSERT_EQ(frame.size(), static_cast<std::size_t>(6 + w * h + 2 * columns * rows));
+            EXPECT_EQ(std::string(frame.begin(), frame.begin() + 6), "FRAME\n");
+            const auto brightness = [](const double* c) {
+                return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+            };
+            double worst = 0.0;
+            const auto look = [&](std::size_t at, double expected) {
+                worst = std::max(worst, std::abs(frame[at] - expected));
+            };
+            for (int y = 0; y < h; ++y) {
+                for (int x = 0; x < w; ++x) {
+                    const std::uint8_t* p = image.pixel(x, y);
+                    const double c[] = {p[0] / 255.0, p[1] / 255.0, p[2] / 255.0};
+                    look(static_cast<std::size_t>(6 + y * w + x), 16.0 + 219.0 * brightness(c));
+                }
+            }
+            for (int y = 0; y < rows; ++y) {
+                for (int x = 0; x < columns; ++x) {
+                    double c[3] = {};
+                    for (int i = 0; i < 12; ++i)
+                        c[i % 3] += image.pixel(std::min(2 * x + i / 3 % 2, w - 1),
+                                                std::min(2 * y + i / 6, h - 1))[i % 3] /
+                                    1020.0;
+                    const auto at = static_cast<std::size_t>(6 + w * h + y * columns + x);
+                    look(at, 128.0 + 224.0 * (c[2] - brightness(c)) / 1.8556);
+                    look(at + static_cast<std::size_t>(columns * rows),
+                         128.0 + 224.0 * (c[0] - brightness(c)) / 1.5748);
+                }
+            }
+            EXPECT_LT(worst, 0.51) << w << " " << k;
+        }
+    }
+}
+
+TEST(Pipeline, TheHeaderOfAStreamHasTheRateAsARatio) {
+    const auto rate = [](double fps) {
+        const std::string line = y4m_header({64, 36}, fps);
+        return line.substr(0, line.find(" Ip "));
+    };
+    EXPECT_EQ(rate(60.0), "YUV4MPEG2 W64 H36 F60:1");
+    EXPECT_EQ(rate(0.8), "YUV4MPEG2 W64 H36 F4:5");
+    EXPECT_EQ(rate(29.97), "YUV4MPEG2 W64 H36 F2997:100");
+    EXPECT_EQ(rate(30000.0 / 1001.0), "YUV4MPEG2 W64 H36 F30000:1001");
+    EXPECT_EQ(rate(1.0 / 3.0), "YUV4MPEG2 W64 H36 F1:3");
+    EXPECT_THROW(y4m_header({64, 36}, 1e-12), RenderError);
+    EXPECT_EQ(y4m_header({64, 36}, 60.0).back(), '\n');
 }
 
 TEST(Pipeline, AFailingThreadStopsTheRunWithItsMessage) {

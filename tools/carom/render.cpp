@@ -29,7 +29,8 @@ struct RenderArgs {
     std::optional<double> at;
     std::string camera;  ///< empty: the scene's
     std::string gl = "osmesa";
-    int png_level = 1;
+    std::string png_writer = "changes";
+    std::optional<int> png_level;
     std::string eye, target;  ///< "x,y,z"; empty: a named camera
     std::string ball;         ///< followed by the camera "follow"; empty: the ball that moves first
     std::string overlay;      ///< list of names
@@ -38,6 +39,7 @@ struct RenderArgs {
     int jobs = 0;
     bool resume = false;
     bool raw = false;
+    bool y4m = false;
 };
 
 /// Reads a record. Notes about missing parts are written to standard error.
@@ -117,12 +119,13 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     options.frame = args.frame;
     options.size = args.size.empty() ? settings.size() : parse_size(args.size);
     set_view(args, settings, options);
-    options.png_level = args.png_level;
+    if (args.png_writer == "libpng") options.libpng_level = args.png_level.value_or(1);
     options.jobs = args.jobs;
     options.resume = args.resume;
-    if (args.raw) {
-        options.raw = [](const std::uint8_t* rgb, std::size_t bytes) {
-            print(std::string_view(reinterpret_cast<const char*>(rgb), bytes));
+    if (args.raw || args.y4m) {
+        if (args.y4m) options.raw_format = render::RawFormat::kY4m;
+        options.raw = [](const std::uint8_t* bytes, std::size_t count) {
+            print(std::string_view(reinterpret_cast<const char*>(bytes), count));
         };
     }
     options.backend = render::backend_from_name(args.gl);
@@ -164,8 +167,11 @@ int write_sheet(const RenderArgs& args, const Record& record, const render::Sequ
 
 int run(const RenderArgs& args) {
     check_args(args);
-    if (args.raw && (args.resume || !args.sheet.empty()))
-        throw UsageError("--raw goes with neither --resume nor --sheet");
+    const char* const stream = args.raw ? "--raw" : "--y4m";
+    if ((args.raw || args.y4m) && (args.resume || !args.sheet.empty()))
+        throw UsageError(fmt::format("{} goes with neither --resume nor --sheet", stream));
+    if (args.png_writer != "libpng" && args.png_level)
+        throw UsageError("--png-level is of --png-writer libpng");
     if (!args.size.empty()) parse_size(args.size);
     SimulateOptions simulation;
     simulation.profile = overlay_of(args).margin;
@@ -183,15 +189,18 @@ int run(const RenderArgs& args) {
         if (line.due()) line.show_text(fmt::format("the table, {} of {}", done, total));
     };
     if (!args.sheet.empty()) return write_sheet(args, record, options);
+    if (args.y4m) print(render::y4m_header(options.size, options.fps));
     const std::vector<render::FrameTiming> timings = render::render_sequence(record, options);
     throw_if_interrupted();
-    if (args.raw) {
+    if (args.raw || args.y4m) {
         flush_output();
-        message(fmt::format(
-            "{} of RGB; to make a film of them, pipe them into: ffmpeg -f rawvideo "
-            "-pix_fmt rgb24 -s {}x{} -framerate {} "
-            "-i - -pix_fmt yuv420p shot.mp4",
-            counted(timings.size(), "frame"), options.size.width, options.size.height, options.fps));
+        const std::string input =
+            args.y4m ? std::string(
+                           "-f yuv4mpegpipe -i - -colorspace bt709 -color_primaries bt709 -color_trc bt709")
+                     : fmt::format("-f rawvideo -pix_fmt rgb24 -s {}x{} -framerate {} -i - -pix_fmt yuv420p",
+                                   options.size.width, options.size.height, options.fps);
+        message(fmt::format("{} of {}; to make a film of them, pipe them into: ffmpeg {} shot.mp4",
+                            counted(timings.size(), "frame"), args.y4m ? "Y4M" : "RGB", input));
         return kOk;
     }
     if (timings.size() == 1) {
@@ -238,9 +247,18 @@ void add_render(Options& program) {
     command.flag("--resume", args.resume, "Leave out frames whose finished file is there (default: off)");
     command.flag("--raw", args.raw,
                  "RGB bytes on standard output instead of PNG files, for ffmpeg (default: off)");
+    command.flag("--y4m", args.y4m,
+                 "A Y4M stream (4:2:0) on standard output instead: half the bytes of --raw (default: off)");
+    command.rows.back().excludes = "--raw";
     add_gl(command, args.gl);
-    command.option("--png-level", &args.png_level, "L", "Compression, 0 (large, fast) to 9 (small, slow)")
-        .in(0, 9);
+    command
+        .option("--png-writer", &args.png_writer, "NAME",
+                "changes encodes what changed since the frame before, libpng every frame as a whole")
+        .one_of({"changes", "libpng"});
+    Option& level = command.option("--png-level", &args.png_level, "L",
+                                   "Compression by libpng, 0 (large, fast) to 9 (small, slow) (default: 1)");
+    level.in(0, 9);
+    level.needs = "--png-writer";
 }
 
 }  // namespace carom::tools

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <utility>
 
+#include "carom/render/kept_image.h"
 #include "draw/shaders.h"
 
 namespace carom::render {
@@ -123,6 +125,20 @@ std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPic
     add_missing(before, after);
     add_missing(after, before);
     return boxes;
+}
+
+std::vector<PixelBox> ChangedBoxes::next(const KeptImage& image) {
+    if (!(size_ == image.image_.size)) shows_ = nullptr;
+    size_ = image.image_.size;
+    const std::shared_ptr<const DrawnPicture> before = std::exchange(shows_, image.shows_);
+    if (!before || !shows_) return {whole(size_)};
+    return differing_boxes(*before, *shows_, size_);
+}
+
+std::vector<PixelBox> ChangedBoxes::next(const Image& image) {
+    size_ = image.size;
+    shows_ = nullptr;
+    return {whole(size_)};
 }
 
 std::vector<bool> balls_inside(const std::vector<DrawnBall>& balls, std::vector<PixelBox>& boxes) {

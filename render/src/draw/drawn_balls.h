@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "carom/render/draw_list.h"
+#include "carom/render/image.h"
 #include "draw/table_edges.h"
 #include "draw/view.h"
 
@@ -21,16 +22,6 @@ struct BallInstance {
     float pattern[3];  ///< pattern, in pocket, distance from the eye
 
     bool operator==(const BallInstance&) const = default;
-};
-
-/// Columns x0..x1-1 and rows y0..y1-1.
-struct PixelBox {
-    int x0, y0, x1, y1;
-
-    bool operator==(const PixelBox&) const = default;
-    bool meets(const PixelBox& other) const {
-        return x0 < other.x1 && other.x0 < x1 && y0 < other.y1 && other.y0 < y1;
-    }
 };
 
 struct DrawnBall {

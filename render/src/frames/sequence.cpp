@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "carom/render/draw_list.h"
+#include "carom/render/kept_png.h"
 #include "carom/render/png.h"
 #include "carom/render/renderer.h"
 #include "frames/writer.h"
@@ -81,7 +82,8 @@ StageOptions stage_options(const SequenceOptions& options) {
 }
 
 void check_options(const SequenceOptions& options) {
-    if (options.png_level < 0 || options.png_level > 9) throw RenderError("the PNG level must be 0 to 9");
+    if (options.libpng_level && (*options.libpng_level < 0 || *options.libpng_level > 9))
+        throw RenderError("the PNG level must be 0 to 9");
     if (options.size.width < 1 || options.size.height < 1)
         throw RenderError("an image needs at least one pixel");
     if (options.resume && (options.pattern.empty() || options.raw)) {
@@ -146,15 +148,16 @@ class FrameLoop {
     // The first frames have no earlier ones: the first frame is drawn once more to measure its times.
     void measure_first() {
         KeptImage image;
-        std::vector<std::uint8_t> bytes;
+        Encoder encoder(options_);
         renderer_.read(image);
+        encoder.encode(image);
         Clock::time_point mark = Clock::now();
         renderer_.draw(list_of(0));
         renderer_.finish();
         first_.draw_ms = ms_since(mark);
         renderer_.read(image);
         first_.readback_ms = ms_since(mark);
-        options_.raw ? pack_rgb(image.image(), bytes) : encode_png(image.image(), options_.png_level, bytes);
+        encoder.encode(image);
         first_.encode_ms = ms_since(mark);
     }
 
@@ -231,7 +234,7 @@ void render_sheet(const Record& record, const SequenceOptions& options, int colu
         if (options.progress) options.progress(i + 1, last + 1);
     }
     std::vector<std::uint8_t> bytes;
-    encode_png(sheet, options.png_level, bytes);
+    options.libpng_level ? encode_png(sheet, *options.libpng_level, bytes) : KeptPng().encode(sheet, bytes);
     write_file(path, bytes);
 }
 

@@ -16,14 +16,25 @@ double ms_since(std::chrono::steady_clock::time_point& mark) {
     return ms;
 }
 
-void pack_rgb(const Image& image, std::vector<std::uint8_t>& bytes) {
-    const std::size_t pixels = image.rgbx.size() / 4;
-    bytes.resize(3 * pixels);
-    for (std::size_t i = 0; i < pixels; ++i) {
-        bytes[3 * i] = image.rgbx[4 * i];
-        bytes[3 * i + 1] = image.rgbx[4 * i + 1];
-        bytes[3 * i + 2] = image.rgbx[4 * i + 2];
+const std::vector<std::uint8_t>& Encoder::encode(const KeptImage& image) {
+    if (options_.raw && options_.raw_format == RawFormat::kY4m) {
+        const std::vector<std::uint8_t>& bytes = yuv_.pack(image);
+        share_ = yuv_.share();
+        return bytes;
     }
+    if (options_.raw) {
+        const std::vector<std::uint8_t>& bytes = rgb_.pack(image);
+        share_ = rgb_.share();
+        return bytes;
+    }
+    if (options_.libpng_level) {
+        encode_png(image.image(), *options_.libpng_level, bytes_);
+        share_ = 1.0;
+    } else {
+        png_.encode(image, bytes_);
+        share_ = png_.share();
+    }
+    return bytes_;
 }
 
 namespace {
@@ -40,7 +51,7 @@ std::size_t image_limit(FrameSize size, int threads) {
 }  // namespace
 
 FrameWriter::FrameWriter(const SequenceOptions& options, int threads)
-    : options_(options), limit_(image_limit(options.size, threads)) {
+    : options_(options), limit_(image_limit(options.size, threads)), encoder_(options) {
     // More threads than images would only wait.
     threads = std::min(threads, static_cast<int>(limit_));
     try {
@@ -67,22 +78,20 @@ void FrameWriter::stop() {
     for (std::thread& thread : threads_) thread.join();
 }
 
-void FrameWriter::write(const Image& image, FrameTiming& timing, std::vector<std::uint8_t>& bytes) const {
+void FrameWriter::write(const KeptImage& image, FrameTiming& timing, Encoder& encoder) const {
     auto mark = std::chrono::steady_clock::now();
-    if (options_.raw) {
-        pack_rgb(image, bytes);
-        timing.encode_ms = ms_since(mark);
+    const std::vector<std::uint8_t>& bytes = encoder.encode(image);
+    timing.encode_ms = ms_since(mark);
+    timing.encoded_share = encoder.share();
+    if (options_.raw)
         options_.raw(bytes.data(), bytes.size());
-    } else {
-        encode_png(image, options_.png_level, bytes);
-        timing.encode_ms = ms_since(mark);
-        if (!options_.pattern.empty()) write_file(frame_path(options_.pattern, timing.frame), bytes);
-    }
+    else if (!options_.pattern.empty())
+        write_file(frame_path(options_.pattern, timing.frame), bytes);
     timing.write_ms = ms_since(mark);
 }
 
 void FrameWriter::work() {
-    std::vector<std::uint8_t> bytes;
+    Encoder encoder(options_);
     std::unique_lock lock(mutex_);
     while (true) {
         task_ready_.wait(lock, [this] { return stopping_ || !tasks_.empty(); });
@@ -92,7 +101,7 @@ void FrameWriter::work() {
         lock.unlock();
         std::exception_ptr failure;
         try {
-            write(task.image->image(), *task.timing, bytes);
+            write(*task.image, *task.timing, encoder);
         } catch (...) {
             failure = std::current_exception();
         }
@@ -120,7 +129,7 @@ std::unique_ptr<KeptImage> FrameWriter::acquire() {
 
 void FrameWriter::submit(std::unique_ptr<KeptImage> image, FrameTiming& timing) {
     if (threads_.empty()) {
-        write(image->image(), timing, bytes_);
+        write(*image, timing, encoder_);
         last_encode_ms_ = timing.encode_ms;
         idle_.push_back(std::move(image));
         return;

@@ -12,9 +12,31 @@
 #include <vector>
 
 #include "carom/render/kept_image.h"
+#include "carom/render/kept_png.h"
 #include "carom/render/sequence.h"
+#include "frames/packed.h"
 
 namespace carom::render {
+
+/// What makes the bytes of a frame. It keeps what it made of the last one: every thread has its own.
+class Encoder {
+  public:
+    explicit Encoder(const SequenceOptions& options) : options_(options) {}
+
+    /// @returns the bytes, which stay until the next call
+    const std::vector<std::uint8_t>& encode(const KeptImage& image);
+
+    /// The share of the last picture that was encoded anew, 0..1.
+    double share() const { return share_; }
+
+  private:
+    const SequenceOptions& options_;
+    KeptPng png_;
+    PackedRgb rgb_;
+    PackedYuv yuv_;
+    std::vector<std::uint8_t> bytes_;
+    double share_ = 0.0;
+};
 
 class FrameWriter {
   public:
@@ -46,11 +68,11 @@ class FrameWriter {
     };
     void work();
     void stop();  // drops the frames that have not been started, and ends the threads
-    void write(const Image& image, FrameTiming& timing, std::vector<std::uint8_t>& bytes) const;
+    void write(const KeptImage& image, FrameTiming& timing, Encoder& encoder) const;
 
     const SequenceOptions& options_;
-    const std::size_t limit_;          // largest number of images
-    std::vector<std::uint8_t> bytes_;  // buffer of a writer without threads
+    const std::size_t limit_;  // largest number of images
+    Encoder encoder_;          // of a writer without threads
     std::mutex mutex_;
     std::condition_variable task_ready_, image_ready_;
     std::deque<Task> tasks_;
@@ -64,8 +86,5 @@ class FrameWriter {
 
 /// Milliseconds since the mark, which is then set to the current time.
 double ms_since(std::chrono::steady_clock::time_point& mark);
-
-/// Packed RGB rows of an image.
-void pack_rgb(const Image& image, std::vector<std::uint8_t>& bytes);
 
 }  // namespace carom::render

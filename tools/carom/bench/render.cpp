@@ -11,6 +11,7 @@
 
 #include "base/temporary_folder.h"
 #include "bench/clock.h"
+#include "carom/render/kept_png.h"
 #include "carom/render/png.h"
 #include "carom/render/renderer.h"
 #include "carom/render/sequence.h"
@@ -60,6 +61,7 @@ void measure_stages(const Record& record, FrameSize size, int frames, Backend ba
     Renderer renderer(backend);
     renderer.on_table([&steps](int, int) { steps.look(); });
     KeptImage image;
+    KeptPng png;
     std::vector<std::uint8_t> bytes;
     std::vector<double> draw, read, both, encode, write;
     for (int i = 0; i <= frames; ++i) {
@@ -71,7 +73,7 @@ void measure_stages(const Record& record, FrameSize size, int frames, Backend ba
         renderer.read(image);
         const double t2 = cpu_ms();
         if (i == 0) row.setup_ms = wall_ms_since(start);
-        encode_png(image.image(), 1, bytes);
+        png.encode(image, bytes);
         const double t3 = cpu_ms();
         const Clock::time_point before = Clock::now();
         write_file(file, bytes);

@@ -9,6 +9,16 @@
 
 namespace carom::render {
 
+/// Columns x0..x1-1 and rows y0..y1-1 of an image.
+struct PixelBox {
+    int x0, y0, x1, y1;
+
+    bool operator==(const PixelBox&) const = default;
+    bool meets(const PixelBox& other) const {
+        return x0 < other.x1 && other.x0 < x1 && y0 < other.y1 && other.y0 < y1;
+    }
+};
+
 /// Four channels of eight bits (the fourth is unused), sRGB, row 0 at the top.
 struct Image {
     FrameSize size{0, 0};

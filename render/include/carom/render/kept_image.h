@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "carom/render/image.h"
 
@@ -17,7 +18,22 @@ class KeptImage {
 
   private:
     friend class Renderer;
+    friend class ChangedBoxes;
     Image image_;
+    std::shared_ptr<const DrawnPicture> shows_;
+};
+
+/// For those who make something of one image after the other: where it may differ from the one before.
+class ChangedBoxes {
+  public:
+    /// Boxes outside of which the image is equal to the one of the last call; the whole image if nothing is known.
+    std::vector<PixelBox> next(const KeptImage& image);
+
+    /// The same for an image that may show anything, and the next call knows nothing of it.
+    std::vector<PixelBox> next(const Image& image);
+
+  private:
+    FrameSize size_{0, 0};
     std::shared_ptr<const DrawnPicture> shows_;
 };
 

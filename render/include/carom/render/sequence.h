@@ -16,8 +16,17 @@
 
 namespace carom::render {
 
-/// Receives one frame as packed RGB rows, top row first. Frames come in order, from one thread (not the caller's).
-using RawSink = std::function<void(const std::uint8_t* rgb, std::size_t bytes)>;
+/// Receives one frame without compression. Frames come in order, from one thread (not the caller's).
+using RawSink = std::function<void(const std::uint8_t* bytes, std::size_t count)>;
+
+/// How a frame without compression is laid out.
+enum class RawFormat : std::uint8_t {
+    kRgb,  ///< packed rows, top row first
+    kY4m,  ///< a frame of a Y4M stream, which begins with y4m_header(): 4:2:0, colours as in ITU-R BT.709
+};
+
+/// The first line of a Y4M stream. @throws RenderError for frames per second that it cannot say to 9 digits
+std::string y4m_header(FrameSize size, double fps);
 
 struct SequenceOptions {
     /// Contains exactly one %d or %0Nd. Empty: frames are encoded, but not written
@@ -38,13 +47,15 @@ struct SequenceOptions {
     std::function<double(long k)> frame_cost_ms;
     /// Samples per pixel of the table, which is drawn once per camera; not used if the camera moves
     int table_samples = 16;
-    int png_level = 1;  ///< zlib level 0..9
+    /// zlib level 0..9: libpng encodes every frame as a whole. Default: only what changed is encoded (kept_png.h)
+    std::optional<int> libpng_level;
     Backend backend = Backend::kOsmesa;
     /// Number of threads that encode and write. 1: everything runs on the calling thread, so that the timings do not
     /// disturb each other. 0: one per core, or 1 with an empty pattern, which is used for measurements.
     int jobs = 0;
     bool resume = false;  ///< skip frames whose finished file exists; the file must be a PNG of this size
     RawSink raw;          ///< instead of PNG files; the pattern is not used
+    RawFormat raw_format = RawFormat::kRgb;
     std::function<void(long done, long total)> progress;  ///< called on the calling thread; may throw to stop
     /// The same for the passes over the table, which is drawn before the first frame.
     std::function<void(int done, int total)> table_progress;
@@ -55,6 +66,7 @@ struct FrameTiming {
     long frame = 0;
     double time = 0.0;  ///< s of the shot
     double draw_ms = 0.0, readback_ms = 0.0, encode_ms = 0.0, write_ms = 0.0;
+    double encoded_share = 0.0;  ///< share of the picture that was encoded anew, 0..1
 };
 
 /// Time of frame k.

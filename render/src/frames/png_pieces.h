@@ -1,0 +1,55 @@
+// A PNG file in pieces that are kept from one picture to the next.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "carom/render/image.h"
+#include "frames/bits.h"
+#include "frames/png_segment.h"
+
+namespace carom::render {
+
+/// Every row is filtered in the same way and cut into segments; the whole file is one deflate block with codes that are built in. So the
+/// bits of a segment depend on its pixels and their neighbours alone. They are kept, and joined by shifting.
+class PngPieces {
+  public:
+    /// Writes the file of an image. Outside of the boxes it must show what the image of the last call did, which must have had the same
+    /// size; the first call needs a box around everything. @throws RenderError for an image without pixels
+    void encode(const Image& image, const std::vector<PixelBox>& changed, std::vector<std::uint8_t>& bytes);
+
+    /// The share of the segments that the last call encoded, 0..1.
+    double share() const;
+
+  private:
+    struct Piece {
+        std::uint32_t bits = 0;
+        SegmentSums sums;
+    };
+    /// The code of the filter and the bits of the segments, joined.
+    struct Row {
+        std::vector<std::uint8_t> bytes;
+        std::size_t bits = 0;
+        std::uint64_t plain = 0, weighted = 0;  // as those of a segment, over the whole row
+    };
+
+    void resize(FrameSize wanted);
+    void mark(const PixelBox& box);
+    void update_row(const Image& image, std::size_t y);
+    void assemble(std::vector<std::uint8_t>& bytes) const;
+    std::uint8_t* write_data(std::uint8_t* at) const;
+    std::uint32_t adler() const;
+    std::uint64_t row_bytes() const { return 1 + std::uint64_t{3} * static_cast<std::uint64_t>(size_.width); }
+
+    FrameSize size_{0, 0};
+    std::size_t segments_ = 0;  // in a row
+    std::vector<Piece> pieces_;
+    std::vector<std::uint8_t> marks_;      // by piece: 1 if it has to be encoded
+    std::vector<std::uint8_t> row_marks_;  // by row: 1 if it has a marked piece
+    std::vector<Row> rows_;
+    std::vector<std::uint8_t> joined_;  // a row while it is made
+    std::size_t encoded_ = 0;           // pieces of the last picture
+};
+
+}  // namespace carom::render
