@@ -191,7 +191,9 @@ TEST(Pipeline, Y4mFramesHaveTheColorsOfTheirPixels) {
                 for (int x = 0; x < w; ++x) {
                     const std::uint8_t* p = image.pixel(x, y);
                     const double c[] = {p[0] / 255.0, p[1] / 255.0, p[2] / 255.0};
-                    look(static_cast<std::size_t>(6 + y * w + x), 16.0 + 219.0 * brightness(c));
+                    look(6 + static_cast<std::size_t>(y) * static_cast<std::size_t>(w) +
+                             static_cast<std::size_t>(x),
+                         16.0 + 219.0 * brightness(c));
                 }
             }
             for (int y = 0; y < rows; ++y) {
@@ -201,7 +203,8 @@ TEST(Pipeline, Y4mFramesHaveTheColorsOfTheirPixels) {
                         c[i % 3] += image.pixel(std::min(2 * x + i / 3 % 2, w - 1),
                                                 std::min(2 * y + i / 6, h - 1))[i % 3] /
                                     1020.0;
-                    const auto at = static_cast<std::size_t>(6 + w * h + y * columns + x);
+                    const std::size_t at =
+                        frame.size() - static_cast<std::size_t>(2 * columns * rows - y * columns - x);
                     look(at, 128.0 + 224.0 * (c[2] - brightness(c)) / 1.8556);
                     look(at + static_cast<std::size_t>(columns * rows),
                          128.0 + 224.0 * (c[0] - brightness(c)) / 1.5748);

@@ -167,6 +167,7 @@ int write_sheet(const RenderArgs& args, const Record& record, const render::Sequ
 
 int run(const RenderArgs& args) {
     check_args(args);
+    if (args.raw && args.y4m) throw UsageError("--raw and --y4m exclude each other");
     const char* const stream = args.raw ? "--raw" : "--y4m";
     if ((args.raw || args.y4m) && (args.resume || !args.sheet.empty()))
         throw UsageError(fmt::format("{} goes with neither --resume nor --sheet", stream));
@@ -249,7 +250,6 @@ void add_render(Options& program) {
                  "RGB bytes on standard output instead of PNG files, for ffmpeg (default: off)");
     command.flag("--y4m", args.y4m,
                  "A Y4M stream (4:2:0) on standard output instead: half the bytes of --raw (default: off)");
-    command.rows.back().excludes = "--raw";
     add_gl(command, args.gl);
     command
         .option("--png-writer", &args.png_writer, "NAME",
