@@ -190,7 +190,7 @@ Stage stage_of(const View& view) {
     options.camera = view.camera;
     options.overlay = parse_overlay(view.overlay);
     options.size = view.size;
-    options.table_samples = kMovingSamples + 1;  // still pictures are drawn in parts
+    options.table_samples = 4;
     return Stage(broken_rack(), options);
 }
 
