@@ -2,16 +2,15 @@
 """Times whole shots beside pooltool 0.6.0, in one process, shot by shot in turns.
 
 Makes a throw-away virtual environment, installs pooltool-billiards 0.6.0 (PyPI, --no-deps: the panda3d that it asks for is not on
-PyPI) with what it imports, and plays breaks, random positions of two, 8, 12 and 16 balls with pooltool.simulate and, through
-libcarom.so, with carom_simulate (validation, plan and record each time) and carom_simulate_many (one thread). Both play the same
+PyPI) with what it imports, and plays breaks, random positions of two, 8, 12 and 16 balls with pooltool.simulate and, from the
+Python package in the build folder, with carom.simulate (plan and record each time) and carom.simulate_many (one thread). Both play the same
 positions, aims and speeds on the seven-foot table with the same coefficients and models: inelastic with Alciatore's friction, Stronge's
 cushion, pair by pair. CPU time of the thread. The first shots of pooltool, which compile it, are not counted. FastFiz is not
 on PyPI (sources: github.com/ekiefl/FastFiz); it is not compared. Needs PyPI; neither the build nor a test needs this script.
 
-    tools/measure/side_by_side_shots.py [--library build/release/capi/libcarom.so] [--shots 10]
+    tools/measure/side_by_side_shots.py [--package build/release/python] [--shots 10]
 """
 import argparse
-import ctypes
 import json
 import os
 import pathlib
@@ -55,61 +54,43 @@ def positions(count, rng, width, length):
     return {"cue" if i == 0 else str(i): p for i, p in enumerate(places)}
 
 
-class Carom:
-    def __init__(self, library):
-        self.c = ctypes.CDLL(library)
-        self.c.carom_last_error.restype = ctypes.c_char_p
-        self.c.carom_record_event_count.restype = ctypes.c_size_t
-        self.c.carom_simulate.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.POINTER(ctypes.c_void_p)]
-        self.c.carom_batch_status.restype = ctypes.POINTER(ctypes.c_uint8)
-        self.c.carom_batch_status.argtypes = [ctypes.c_void_p]
-        for name in ("carom_scene_free", "carom_record_free", "carom_batch_free", "carom_record_event_count"):
-            getattr(self.c, name).argtypes = [ctypes.c_void_p]
+def scene_of(shot):
+    import carom
 
-    def check(self, status):
-        if status != 0:
-            raise RuntimeError(self.c.carom_last_error().decode())
-
-    def scene(self, shot):
-        balls = "".join(f"[[ball]]\nid = \"{name}\"\nposition = [{x!r}, {y!r}]\n" for name, (x, y) in shot["balls"].items())
-        scene = ctypes.c_void_p()
-        self.check(self.c.carom_scene_parse((SCENE.format(**shot) + balls).encode(), b"shot", ctypes.byref(scene)))
-        return scene
-
-    def one(self, shot):
-        """Least seconds of five runs, and events."""
-        scene, best, events = self.scene(shot), 1e9, 0
-        for _ in range(5):
-            record = ctypes.c_void_p()
-            start = time.thread_time()
-            self.check(self.c.carom_simulate(scene, -1.0, ctypes.byref(record)))
-            best = min(best, time.thread_time() - start)
-            events = self.c.carom_record_event_count(record)
-            self.c.carom_record_free(record)
-        self.c.carom_scene_free(scene)
-        return best, events
-
-    def many(self, shots):
-        """Least seconds a shot of five runs of a batch with all of them, forty times over."""
-        keys = ["cue.speed", "cue.aim_deg"] + [f"ball.{b}.position.{k}" for b in shots[0]["balls"] for k in "xy"]
-        rows = [[s["speed"], s["aim"]] + [v for p in s["balls"].values() for v in p] for s in shots] * 40
-        values = (ctypes.c_double * (len(rows) * len(keys)))(*[row[k] for k in range(len(keys)) for row in rows])
-        names = (ctypes.c_char_p * len(keys))(*[k.encode() for k in keys])
-        scene, best = self.scene(shots[0]), 1e9
-        for _ in range(5):
-            batch = ctypes.c_void_p()
-            start = time.thread_time()
-            self.check(self.c.carom_simulate_many(scene, ctypes.c_size_t(len(rows)), ctypes.c_size_t(len(keys)), names, values,
-                                                  ctypes.c_double(-1.0), 1, 0, ctypes.byref(batch)))
-            best = min(best, (time.thread_time() - start) / len(rows))
-            if max(self.c.carom_batch_status(batch)[:len(rows)]) > 3:
-                raise RuntimeError("a shot of the batch has no result")
-            self.c.carom_batch_free(batch)
-        self.c.carom_scene_free(scene)
-        return best
+    balls = "".join(f"[[ball]]\nid = \"{name}\"\nposition = [{x!r}, {y!r}]\n" for name, (x, y) in shot["balls"].items())
+    return carom.Scene.loads(SCENE.format(**shot) + balls, "shot")
 
 
-def compare(library, count):
+def one(shot):
+    """Least seconds of five runs, and events."""
+    import carom
+
+    scene, best = scene_of(shot), 1e9
+    for _ in range(5):
+        start = time.thread_time()
+        record = carom.simulate(scene)
+        best = min(best, time.thread_time() - start)
+    return best, len(record.events)
+
+
+def many(shots):
+    """Least seconds a shot of five runs of a batch with all of them, forty times over."""
+    import carom
+    import numpy as np
+
+    scene, best = scene_of(shots[0]), 1e9
+    xy = np.tile([[place for place in s["balls"].values()] for s in shots], (40, 1, 1))
+    params = {key: np.tile([s[name] for s in shots], 40) for key, name in (("cue.speed", "speed"), ("cue.aim_deg", "aim"))}
+    for _ in range(5):
+        start = time.thread_time()
+        batch = carom.simulate_many(scene, xy=xy, params=params)
+        best = min(best, (time.thread_time() - start) / len(xy))
+        if batch.status.max() > carom.ShotStatus.ENDLESS:
+            raise RuntimeError("a shot of the batch has no result")
+    return best
+
+
+def compare(count):
     """Runs inside the environment."""
     import pooltool as pt
 
@@ -133,15 +114,14 @@ def compare(library, count):
         pt.simulate(system, inplace=True)
         return time.thread_time() - start, len(system.events)
 
-    carom = Carom(library)
     for shots in kinds.values():
         theirs(shots[0])  # compiles
     out = []
     for kind, shots in kinds.items():
-        rows = [(theirs(shot), carom.one(shot)) for shot in shots]
+        rows = [(theirs(shot), one(shot)) for shot in shots]
         out.append({"kind": kind, "theirs_ms": 1e3 * statistics.median(t[0] for t, _ in rows),
                     "ours_ms": 1e3 * statistics.median(o[0] for _, o in rows),
-                    "ratio": statistics.median(t[0] / o[0] for t, o in rows), "many_ms": 1e3 * carom.many(shots),
+                    "ratio": statistics.median(t[0] / o[0] for t, o in rows), "many_ms": 1e3 * many(shots),
                     "theirs_events": statistics.median(t[1] for t, _ in rows),
                     "ours_events": statistics.median(o[1] for _, o in rows)})
     print(json.dumps(out))
@@ -149,21 +129,21 @@ def compare(library, count):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--library", default=str(ROOT / "build" / "release" / "capi" / "libcarom.so"))
+    parser.add_argument("--package", default=str(ROOT / "build" / "release" / "python"), help="folder of the built package")
     parser.add_argument("--shots", type=int, default=10, help="of each kind (default: 10)")
     parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
     args = parser.parse_args()
     if args.inside:
-        compare(args.library, args.shots)
+        compare(args.shots)
         return
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([sys.executable, "-m", "venv", folder], check=True)
+        subprocess.run(["/usr/bin/python3", "-m", "venv", folder], check=True)
         python = os.path.join(folder, "bin", "python")
         pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
         subprocess.run(pip + NEEDED, check=True)
         subprocess.run(pip + ["--no-deps"] + ALONE, check=True)
-        out = subprocess.run([python, __file__, "--inside", "--library", args.library, "--shots", str(args.shots)], check=True,
-                             capture_output=True, text=True, env={**os.environ, "CAROM_ISA": os.environ.get("CAROM_ISA", "v3")}).stdout
+        out = subprocess.run([python, __file__, "--inside", "--shots", str(args.shots)], check=True,
+                             capture_output=True, text=True, env={**os.environ, "PYTHONPATH": args.package, "CAROM_ISA": os.environ.get("CAROM_ISA", "v3")}).stdout
     print(f"{'':<18}{'pooltool':>12}{'carom':>12}{'ratio':>8}{'in a batch':>12}   events, theirs and ours (medians)")
     for row in json.loads(out.strip().splitlines()[-1]):
         print(f"{row['kind']:<18}{row['theirs_ms']:>9.2f} ms{row['ours_ms']:>9.4f} ms{row['ratio']:>8.0f}{row['many_ms']:>9.4f} ms"
