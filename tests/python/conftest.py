@@ -15,10 +15,10 @@ SCENES = sorted((SOURCE / "scenes").glob("*.toml"))
 BAD_SCENES = sorted((SOURCE / "tests/data/bad_scenes").glob("*.toml"))
 
 
-def carom_program(*arguments: object, text: str | None = None) -> str:
+def carom_program(*arguments: object, text: str | None = None, binary: bool = False):
     """What the program prints. Its own tests are elsewhere; here it is what Python has to agree with."""
     program = os.environ.get("CAROM_PROGRAM", SOURCE / "build/release/carom")
-    return subprocess.run([program, *map(str, arguments)], check=True, capture_output=True, text=True, input=text).stdout
+    return subprocess.run([program, *map(str, arguments)], check=True, capture_output=True, text=not binary, input=text).stdout
 
 
 def rows_of(path):
