@@ -153,7 +153,8 @@ def simulate_many(
     hashes: fill `Shots.hash`
     out: arrays of an earlier call, or of `Shots.empty`, that are filled and returned; no others are made
 
-    Raises ValueError for a key that names no number, or arrays that do not fit. Ctrl-C ends the batch between two shots.
+    Raises ValueError for a key that names no number, or arrays that do not fit. Ctrl-C ends the batch between two shots; what `out` then
+    holds is not specified.
     """
     _limits(until, max_events)
     if threads < 0:

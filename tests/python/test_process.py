@@ -162,3 +162,21 @@ def test_the_version_is_that_of_the_program():
 
     assert carom.__version__ in carom_program("--version")
     assert SOURCE.joinpath("CMakeLists.txt").read_text().count(f"VERSION {carom.__version__}") == 1
+
+
+def test_everything_public_is_documented():
+    undocumented = []
+    for name in carom.__all__:
+        thing = getattr(carom, name)
+        if name.startswith("__"):
+            continue
+        members = [m for n, m in vars(thing).items() if not n.startswith("_")] if isinstance(thing, type) else []
+        if not thing.__doc__:
+            undocumented.append(name)
+        for member in members:
+            member = getattr(member, "__func__", member)
+            if (callable(member) or isinstance(member, property)) and not member.__doc__:
+                undocumented.append(f"{name}: {member}")
+    for module in (carom.kernel, carom.sweep):
+        undocumented += [f"{module.__name__}.{name}" for name in module.__all__ if not getattr(module, name).__doc__]
+    assert not undocumented

@@ -26,6 +26,16 @@ def timed(work):
     return time.thread_time() - start
 
 
+def each(work, rounds, calls=20):
+    """Least seconds of a call, of rounds with many of them."""
+
+    def some():
+        for _ in range(calls):
+            work()
+
+    return min(timed(some) for _ in range(rounds)) / calls
+
+
 def import_cost(module, rounds, package):
     """Least CPU seconds of a Python that imports a module and ends."""
     best = 1e9
@@ -88,13 +98,13 @@ def one_shot(rounds):
 
     for name in ("draw", "eight_ball_break"):
         scene = carom.Scene.load(ROOT / "scenes" / f"{name}.toml")
-        print(f"carom.simulate({name}): {1e6 * min(timed(lambda: carom.simulate(scene)) for _ in range(20 * rounds)):.0f} us")
+        print(f"carom.simulate({name}): {1e6 * each(lambda: carom.simulate(scene), rounds):.0f} us")
     record = carom.simulate(scene)
     times = np.linspace(0, record.duration, 453)
     balls = len(record.ids)
     for work, words in ((lambda: record.states(times), "states"), (lambda: record.orientations(times), "orientations")):
-        print(f"{words} of {balls} balls at 453 times: {1e3 * min(timed(work) for _ in range(20 * rounds)):.3f} ms")
-    print(f"Scene.load: {1e6 * min(timed(lambda: carom.Scene.load(ROOT / 'scenes/draw.toml')) for _ in range(20 * rounds)):.0f} us")
+        print(f"{words} of {balls} balls at 453 times: {1e3 * each(work, rounds):.3f} ms")
+    print(f"Scene.load: {1e6 * each(lambda: carom.Scene.load(ROOT / 'scenes/draw.toml'), rounds):.0f} us")
 
 
 def main():
