@@ -63,6 +63,9 @@ TEST_F(CliMargin, JsonIsTheDesigns) {
     const Json json = Json::parse(result.out);
     expect_margin_json(json, true);
     EXPECT_EQ(json.at("runs").at("count"), 2);
+    EXPECT_GT(json.at("encoded_share").at("p50").get<double>(), 0.0);
+    EXPECT_LT(json.at("encoded_share").at("p50").get<double>(), 0.5);
+    EXPECT_EQ(json.at("encoded_share").at("max"), 1.0);  // the first frame
     EXPECT_LE(json.at("runs").at("p99")[0].get<double>(), json.at("runs").at("p99")[1].get<double>());
     const std::vector<std::string> lines = lines_of(read_file(folder_.file("m.csv")));
     EXPECT_EQ(lines.at(0),

@@ -11,6 +11,7 @@
 
 #include "carom/render/sequence.h"
 #include "console.h"
+#include "film.h"
 #include "margin/frame_costs.h"
 #include "options.h"
 #include "setup.h"
@@ -40,6 +41,7 @@ struct RenderArgs {
     bool resume = false;
     bool raw = false;
     bool y4m = false;
+    const FilmKind* film() const { return raw || y4m || !sheet.empty() ? nullptr : film_kind(pattern); }
 };
 
 /// Reads a record. Notes about missing parts are written to standard error.
@@ -66,6 +68,14 @@ void check_args(const RenderArgs& args) {
     if (args.frame && *args.frame < 0) throw UsageError("--frame: frames are numbered from 0");
     if (!args.sheet.empty()) {
         parse_sheet(args.sheet);
+        return;
+    }
+    if (const FilmKind* const film = args.film()) {
+        const std::string what = fmt::format("-o {}", args.pattern);
+        if (args.resume) throw UsageError(what + ": a film cannot be resumed");
+        if (args.frame || args.at) throw UsageError(what + ": one frame is no film; use --from and --to");
+        if (args.png_writer != "changes") throw UsageError(what + ": --png-writer is of PNG files");
+        require_ffmpeg(args.pattern);
         return;
     }
     try {
@@ -109,11 +119,23 @@ void set_view(const RenderArgs& args, const RenderSettings& settings, render::Se
     options.overlay = overlay_of(args);
 }
 
+/// A scene's rate is lowered to what the film can have; a rate that was asked for is not.
+double film_fps(const RenderArgs& args, const RenderSettings& settings) {
+    const double fps = chosen_fps(args.fps, settings), fastest = args.film()->fastest;
+    if (fastest == 0.0 || fps <= fastest) return fps;
+    if (args.fps)
+        throw UsageError(
+            fmt::format("--fps {}: {} has at most {} frames per second", fps, args.film()->ending, fastest));
+    message(fmt::format("note: {} has at most {} frames per second, the scene {}", args.film()->ending,
+                        fastest, fps));
+    return fastest;
+}
+
 render::SequenceOptions sequence_options(const RenderArgs& args, const Record& record) {
     const RenderSettings& settings = record.render;
     render::SequenceOptions options;
     options.pattern = args.pattern;
-    options.fps = chosen_fps(args.fps, settings);
+    options.fps = args.film() ? film_fps(args, settings) : chosen_fps(args.fps, settings);
     options.from = args.at.value_or(args.from);
     options.to = args.at ? args.at : args.to;
     options.frame = args.frame;
@@ -165,6 +187,22 @@ int write_sheet(const RenderArgs& args, const Record& record, const render::Sequ
     return kOk;
 }
 
+int write_film(const RenderArgs& args, const Record& record, render::SequenceOptions& options) {
+    const FilmKind& kind = *args.film();
+    if (kind.even && (options.size.width % 2 != 0 || options.size.height % 2 != 0)) {
+        throw UsageError(fmt::format("--size {}x{}: {} needs an even width and height", options.size.width,
+                                     options.size.height, kind.ending));
+    }
+    Film film(args.pattern, kind, options.size, options.fps);
+    options.raw_format = kind.input;
+    options.raw = [&film](const std::uint8_t* bytes, std::size_t count) { film.write(bytes, count); };
+    const std::size_t frames = render::render_sequence(record, options).size();
+    film.commit();
+    print(fmt::format("{}, {}x{} at {} fps: {}\n", counted(frames, "frame"), options.size.width,
+                      options.size.height, options.fps, args.pattern));
+    return kOk;
+}
+
 int run(const RenderArgs& args) {
     check_args(args);
     if (args.raw && args.y4m) throw UsageError("--raw and --y4m exclude each other");
@@ -190,6 +228,7 @@ int run(const RenderArgs& args) {
         if (line.due()) line.show_text(fmt::format("the table, {} of {}", done, total));
     };
     if (!args.sheet.empty()) return write_sheet(args, record, options);
+    if (args.film() != nullptr) return write_film(args, record, options);
     if (args.y4m) print(render::y4m_header(options.size, options.fps));
     const std::vector<render::FrameTiming> timings = render::render_sequence(record, options);
     throw_if_interrupted();
@@ -222,8 +261,10 @@ void add_render(Options& program) {
         "render", "Numbered PNG frames of a scene or a record; frame k shows from + k/fps", run);
     command.argument("SCENE", args.input, "Scene file (TOML), or a record (.json) of carom simulate -o")
         .required = true;
-    command.option("-o,--output", &args.pattern, "PATTERN",
-                   "Files to write, with one %d or %05d for the number of the frame");
+    command.option(
+        "-o,--output", &args.pattern, "PATTERN",
+        "Files to write, with one %d or %05d for the number of the frame; or a film, which ffmpeg makes: "
+        "a name that ends in .mp4, .webm, .gif or .webp");
     add_picture(command, args.fps, args.size);
     command.option("--from", &args.from, "S", "First instant in s");
     command.option("--to", &args.to, "S", "Last instant in s (default: the end of the shot)");

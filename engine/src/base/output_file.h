@@ -20,6 +20,9 @@ class OutputFile {
 
     void write(std::string_view text);
 
+    /// The name that is written to until commit(), for another program that writes the file instead.
+    const std::string& written() const { return temporary_.empty() ? target_ : temporary_; }
+
     /// Closes and renames; before this call no file has the requested name.
     void commit();
 

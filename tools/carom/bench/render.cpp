@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <ctime>
@@ -51,19 +52,30 @@ struct Steps {
     }
 };
 
+/// What a row is about.
+struct Picture {
+    const char *name, *camera;
+    FrameSize size;
+};
+constexpr std::array<Picture, 4> kPictures = {{{"720p", "top", {1280, 720}},
+                                               {"1080p", "top", {1920, 1080}},
+                                               {"1080p follow", "follow", {1920, 1080}},
+                                               {"2160p", "top", {3840, 2160}}}};
+
 // Measures one frame after the other, while nothing else runs in the process.
-void measure_stages(const Record& record, FrameSize size, int frames, Backend backend,
+void measure_stages(const Record& record, const Picture& picture, int frames, Backend backend,
                     const std::string& file, Steps& steps, RenderBenchRow& row) {
     const Clock::time_point start = Clock::now();
     StageOptions options;
-    options.size = size;
+    options.size = picture.size;
+    options.camera = picture.camera;
     const Stage stage(record, options);
     Renderer renderer(backend);
     renderer.on_table([&steps](int, int) { steps.look(); });
     KeptImage image;
     KeptPng png;
     std::vector<std::uint8_t> bytes;
-    std::vector<double> draw, read, both, encode, write;
+    std::vector<double> draw, read, both, encode, share, write;
     for (int i = 0; i <= frames; ++i) {
         steps.next();
         const double t0 = cpu_ms();
@@ -82,21 +94,24 @@ void measure_stages(const Record& record, FrameSize size, int frames, Backend ba
         read.push_back(t2 - t1);
         both.push_back(t2 - t0);
         encode.push_back(t3 - t2);
+        share.push_back(png.share());
         write.push_back(wall_ms_since(before));
     }
     row.draw_ms = median(draw);
     row.readback_ms = median(read);
     row.encode_ms = median(encode);
+    row.encoded_share = median(share);
     row.write_ms = median(write);
     std::sort(both.begin(), both.end());
     row.slow_ms = both[both.size() * 19 / 20];
 }
 
-double frames_per_second(const Record& record, FrameSize size, int frames, Backend backend,
+double frames_per_second(const Record& record, const Picture& picture, int frames, Backend backend,
                          const std::string& pattern, Steps& steps) {
     SequenceOptions options;
     options.pattern = pattern;
-    options.size = size;
+    options.size = picture.size;
+    options.camera = picture.camera;
     options.backend = backend;
     options.fps = frames / std::max(record.duration, 1e-3);
     Clock::time_point first;
@@ -116,14 +131,14 @@ double frames_per_second(const Record& record, FrameSize size, int frames, Backe
 std::vector<RenderBenchRow> bench_render(const Record& record, int frames, Backend backend) {
     if (frames < 3) throw RenderError("measuring takes at least 3 frames");
     const TemporaryFolder folder;
-    Steps steps{2L * (2L * frames + 2L)};  // at two sizes: in one thread, and with one thread per core
+    // Every row is measured in one thread, and with one thread per core.
+    Steps steps{static_cast<long>(kPictures.size()) * (2L * frames + 2L)};
     std::vector<RenderBenchRow> rows;
-    for (const auto& [name, size] :
-         {std::pair{"720p", FrameSize{1280, 720}}, std::pair{"1080p", FrameSize{1920, 1080}}}) {
+    for (const Picture& picture : kPictures) {
         RenderBenchRow row;
-        row.name = name;
-        measure_stages(record, size, frames, backend, folder.file("one.png"), steps, row);
-        row.fps = frames_per_second(record, size, frames, backend, folder.file("%05d.png"), steps);
+        row.name = picture.name;
+        measure_stages(record, picture, frames, backend, folder.file("one.png"), steps, row);
+        row.fps = frames_per_second(record, picture, frames, backend, folder.file("%05d.png"), steps);
         rows.push_back(row);
     }
     return rows;
@@ -140,22 +155,25 @@ struct BenchRenderArgs {
 
 int run(const BenchRenderArgs& args) {
     const Record record = simulate_plan(plan_scene(args.scene), {});
-    Table table(Column("name", "size", "<8"), Column("draw_ms", "draw", ">9.2f"),
+    Table table(Column("name", "picture", "<12"), Column("draw_ms", "draw", ">9.2f"),
                 Column("readback_ms", "readback", ">10.2f"),
                 Column("draw_readback_p95_ms", "both p95", ">10.2f"), Column("encode_ms", "encode", ">9.2f"),
-                Column("write_ms", "write", ">9.2f"), Column("setup_ms", "set-up", ">10.0f"),
-                Column("fps", "frames/s", ">12.1f"));
+                Column("encoded_share", "share", ">8.3f"), Column("write_ms", "write", ">9.2f"),
+                Column("setup_ms", "set-up", ">10.0f"), Column("fps", "frames/s", ">12.1f"));
     for (const RenderBenchRow& r : bench_render(record, args.frames, backend_from_name(args.gl)))
-        table.add({r.name, r.draw_ms, r.readback_ms, r.slow_ms, r.encode_ms, r.write_ms, r.setup_ms, r.fps});
+        table.add({r.name, r.draw_ms, r.readback_ms, r.slow_ms, r.encode_ms, r.encoded_share, r.write_ms,
+                   r.setup_ms, r.fps});
     if (args.json) {
         const nlohmann::ordered_json all = {
             {"gl", args.gl}, {"frames", args.frames}, {"rows", table_json(table)}};
         print(all.dump(2) + "\n");
         return kOk;
     }
-    print(fmt::format(
-        "{}: {} frames at each size; CPU ms a frame, medians after the first; write is wall time\n\n{}",
-        args.scene, args.frames, table_text(table)));
+    print(
+        fmt::format("{}: {} frames of each picture, spread over the shot; CPU ms a frame, medians after the "
+                    "first; share of the picture that is "
+                    "encoded anew; write is wall time\n\n{}",
+                    args.scene, args.frames, table_text(table)));
     return kOk;
 }
 
@@ -165,7 +183,8 @@ void add_bench_render(Options& bench) {
     auto [command, args] = bench.command<BenchRenderArgs>(
         "render", "What drawing, reading back and encoding a frame costs", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)");
-    command.option("--frames", &args.frames, "N", "Frames at each size, spread over the shot").in(3, 100000);
+    command.option("--frames", &args.frames, "N", "Frames of each picture, spread over the shot")
+        .in(3, 100000);
     add_gl(command, args.gl);
     command.flag("--json", args.json, "Print JSON (default: off)");
 }

@@ -59,6 +59,7 @@ void draw(MarginRun& run, const MarginArgs& args, double fps, const std::string&
         run.stage[kReadback].push_back(t.readback_ms);
         run.stage[kEncode].push_back(t.encode_ms);
         run.stage[kWrite].push_back(t.write_ms);
+        run.encoded_share.push_back(t.encoded_share);
     }
 }
 
@@ -142,6 +143,9 @@ Margin combine(const std::vector<MarginRun>& runs, double fps, bool rendered) {
                 if (k < run.stage[s].size()) samples.push_back(run.stage[s][k]);
             margin.stage[s].push_back(samples.empty() ? 0.0 : median(samples));
         }
+        // What is encoded is the same in every run.
+        if (rendered && k < runs.front().encoded_share.size())
+            margin.encoded_share.push_back(runs.front().encoded_share[k]);
         double ms = margin.stage[kSimulate][k];
         for (std::size_t s = kDraw; s < kMarginStages; ++s) ms += margin.stage[s][k];
         margin.total.push_back(ms);

@@ -49,6 +49,8 @@ struct MarginRun {
     std::vector<double> stage[kMarginStages];
     // Wall time of the same work, which is done one frame after the other [ms].
     double simulate_wall_ms = 0.0;
+    std::vector<double>
+        encoded_share;  ///< by frame: share of its picture that was encoded anew; empty if nothing was drawn
     std::vector<double> frame_walls;  ///< of drawing to writing, for every frame but the first
     double total(std::size_t frame) const;
 };
@@ -86,6 +88,7 @@ struct Margin {
     bool rendered = true;
     std::vector<double> stage[kMarginStages];
     std::vector<double> total;
+    std::vector<double> encoded_share;  ///< as of a run
     long missed = 0;
     long missed_shown = 0;  ///< if only simulate, draw and readback counted, and no file were written
     std::size_t worst = 0;

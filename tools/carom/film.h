@@ -1,0 +1,62 @@
+// A film that ffmpeg makes of frames as they come.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+#include "base/output_file.h"
+#include "carom/engine/frame_size.h"
+#include "carom/render/sequence.h"
+
+namespace carom::tools {
+
+/// One kind of film, by the ending of its name.
+struct FilmKind {
+    const char* ending;
+    const char* muxer;        ///< ffmpeg's name of the format
+    render::RawFormat input;  ///< what ffmpeg is given
+    const char* options;      ///< for ffmpeg, with blanks between them
+    bool even = false;        ///< width and height have to be even
+    double fastest = 0.0;     ///< the most frames per second; 0: any number
+};
+
+/// The kind that the name asks for, or null: the name is no film's.
+const FilmKind* film_kind(const std::string& path);
+
+/// @throws std::runtime_error that names the package if there is no ffmpeg
+void require_ffmpeg(const std::string& path);
+
+/// Runs ffmpeg, which writes to a temporary name; the film gets its own name when it is complete.
+class Film {
+  public:
+    /// Starts ffmpeg. @throws std::runtime_error naming the film
+    Film(const std::string& path, const FilmKind& kind, FrameSize size, double fps);
+    /// Ends ffmpeg if it still runs. Without commit() nothing is left of the film.
+    ~Film();
+    Film(const Film&) = delete;
+    Film& operator=(const Film&) = delete;
+
+    /// Gives ffmpeg the next bytes. May be called from another thread. @throws Interrupted, std::runtime_error if ffmpeg failed
+    void write(const std::uint8_t* bytes, std::size_t count);
+
+    /// Waits until ffmpeg is done and names the film. @throws Interrupted, std::runtime_error if ffmpeg failed
+    void commit();
+
+  private:
+    void end();
+    void start(const FilmKind& kind, FrameSize size, double fps);
+    int wait_for_end();                  ///< its status as of waitpid()
+    [[noreturn]] void fail(int status);  ///< with the last line that ffmpeg wrote
+
+    std::string path_;
+    OutputFile file_;
+    std::FILE* messages_;  ///< what ffmpeg writes to standard error
+    int pipe_ = -1;        ///< to ffmpeg
+    pid_t child_ = -1;     ///< ffmpeg, while it runs
+};
+
+}  // namespace carom::tools
