@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <set>
@@ -244,6 +245,44 @@ TEST(Picture, BallsThrowSoftShadowsOnTheClothAlone) {
     EXPECT_LT(green(shaded, 1.25), green(shaded, 2.2));
     EXPECT_LT(green(shaded, 2.2), green(plain, 2.2));
     EXPECT_EQ(green(shaded, 5.0), green(plain, 5.0));
+}
+
+// The mirror image of the lamp lies on one half of an 8; its strokes are as dark there as in the other half.
+TEST(Picture, NumbersAreLegibleUnderTheLamp) {
+    Record record = render_test::rectangle_record();
+    add_ball(record, "8", 0.5, 1.7);
+    const FrameSize size{2560, 1440};
+    const Image image = draw(record, size);
+    const Camera camera = list_of(record, size).camera;
+    const Vec2 center = *camera.project({0.5, 1.7, 2.0 * kR});
+    const double radius = kR * camera.scale({0.5, 1.7, kR});
+    std::array<int, 2> ink{};
+    for (int y = static_cast<int>(-0.4 * radius); y <= 0.4 * radius; ++y) {
+        for (int x = static_cast<int>(-0.4 * radius); x <= 0.4 * radius; ++x) {
+            if (std::hypot(x, y) < 0.4 * radius)
+                ink[x < 0 ? 0 : 1] += at(image, center.x() + x, center.y() + y).r < 90;
+        }
+    }
+    EXPECT_GT(ink[0], 40);
+    EXPECT_GT(ink[0], 0.7 * ink[1]);
+    EXPECT_LT(ink[0], 1.4 * ink[1]);
+}
+
+TEST(Picture, ABallDarkensTheCushionAndTheBallBesideIt) {
+    const FrameSize size{1280, 720};
+    Record with = render_test::rectangle_record(), without = with;
+    add_ball(with, "red", kR + 0.001, 1.0);
+    add_ball(without, "red", kR + 0.001, 0.5);
+    add_ball(with, "white", 0.5, 1.0);
+    add_ball(without, "white", 0.5, 1.0);
+    add_ball(with, "yellow", 0.5, 1.0 + 2.0 * kR);
+    add_ball(without, "yellow", 0.5, 1.5);
+    const Image shaded = draw(with, size), plain = draw(without, size);
+    const Camera camera = list_of(with, size).camera;
+    const Vec2 nose = *camera.project({-0.01, 1.0, 0.04});
+    EXPECT_LT(at(shaded, nose.x(), nose.y()).g, 0.9 * at(plain, nose.x(), nose.y()).g);
+    const Vec2 touching = *camera.project({0.5, 1.0 + 0.9 * kR, 1.4 * kR});
+    EXPECT_LT(at(shaded, touching.x(), touching.y()).r, 0.85 * at(plain, touching.x(), touching.y()).r);
 }
 
 TEST(Picture, TheSameListGivesTheSamePixels) {

@@ -172,7 +172,15 @@ TEST(RedrawWork, OnlyWhatMovedIsDrawn) {
 
 TEST(RedrawWork, BallsOnBareClothAreTold) {
     const Stage stage = stage_of("top");
-    const DrawList list = stage.at(0.0);
+    DrawList list = stage.at(0.0);
+    EXPECT_LT(visible_balls(
+                  list, ClothMap(std::vector<std::uint8_t>(std::size_t{4} * 480 * 270, 255), {480, 270}))[7]
+                  .plain,
+              true)
+        << "the neighbours darken it";
+    // The rack a little apart, so that no ball darkens another one.
+    const Vec3 middle = list.balls[0].center;
+    for (DrawBall& ball : list.balls) ball.center = middle + 1.3 * (ball.center - middle);
     // Alpha of the picture is cloth: all of it here, then all but one pixel in the corner of a ball's box.
     std::vector<std::uint8_t> alpha(std::size_t{4} * 480 * 270, 255);
     std::vector<DrawnBall> balls = visible_balls(list, ClothMap(alpha, {480, 270}));

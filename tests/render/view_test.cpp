@@ -147,7 +147,9 @@ TEST(Overlays, NamesAreReadAndUnknownOnesRefused) {
     EXPECT_FALSE(some.events || some.spin || some.ghost || some.margin);
     const Overlay all = parse_overlay("all");
     EXPECT_TRUE(all.trails && all.events && all.spin && all.ghost && all.clock && all.margin);
-    for (const char* bad : {"trail", "trails,", "trails, clock", "trails;clock"}) {
+    EXPECT_TRUE(parse_overlay("trails=ball").trails && parse_overlay("trails=ball").ball_trails);
+    EXPECT_FALSE(all.ball_trails);
+    for (const char* bad : {"trail", "clock=ball", "trails,", "trails, clock", "trails;clock"}) {
         EXPECT_THROW(parse_overlay(bad), RenderError) << bad;
     }
 }
@@ -166,6 +168,51 @@ TEST(Overlays, TrailsReachTheBallAndNoFurther) {
     EXPECT_NEAR(list.lines[0].a.y(), 0.5, 1e-12);
     EXPECT_NEAR(list.lines[0].b.y(), 0.82, 1e-12);
     EXPECT_EQ(list.lines[0].layer, LineLayer::kUnderBalls);
+}
+
+// A path that bends is drawn within a quarter of a pixel of itself at any size.
+TEST(Overlays, CurvedTrailsHaveNoCorners) {
+    Record record = shot();
+    Segment& segment = record.tracks[0].segments[0];
+    segment.v = Vec3(0.3, 1.2, 0.0);
+    segment.a = Vec2(-1.8, -0.4);
+    record.tracks[0].segments.resize(1);
+    StageOptions options = view("top", {1920, 1080});
+    options.overlay = parse_overlay("trails=ball");
+    const DrawList list = Stage(record, options).at(0.8);
+    ASSERT_GT(list.lines.size(), 8U);
+    double end = 0.0;
+    for (std::size_t i = 0; i < list.lines.size(); ++i) {
+        const double middle = 0.8 * (static_cast<double>(i) + 0.5) / static_cast<double>(list.lines.size());
+        const Vec3 path = position_at(segment, middle), line = 0.5 * (list.lines[i].a + list.lines[i].b);
+        EXPECT_LT((path - line).head<2>().norm() * list.camera.scale(path), 0.26);
+        end = list.lines[i].b.y();
+        EXPECT_EQ(list.lines[i].color[0], ball_style("cue", "nine_foot", 0).color[0]);
+    }
+    EXPECT_NEAR(end, position_at(segment, 0.8).y(), 1e-9);
+}
+
+// A ball that was pocketed goes down from where it was, and lies still after 0.15 s.
+TEST(Stages, APocketedBallSinks) {
+    Record record = shot();
+    const Pocket& pocket = record.table.pockets[0];
+    Segment gone = render_test::still({pocket.center.x(), pocket.center.y(), -pocket.depth});
+    gone.state = MotionState::kPocketed;
+    gone.start = 0.5;
+    record.tracks[0].segments.resize(1);
+    record.tracks[0].segments.push_back(gone);
+    record.tracks[0].pocket = 0;
+    const Stage stage(record, view("top"));
+    Vec3 before = record.state_at(0, 0.4999999).position;
+    for (int k = 0; k <= 160; ++k) {
+        const DrawBall ball = stage.at(0.5 + 0.001 * k).balls[0];
+        EXPECT_TRUE(ball.in_pocket);
+        EXPECT_LE(ball.center.z(), before.z() + 1e-9) << k;
+        EXPECT_LT((ball.center - before).norm(), k == 0 ? 1e-5 : 0.02)
+            << "no faster than a ball falls and rolls";
+        before = ball.center;
+    }
+    EXPECT_TRUE(before == gone.r);
 }
 
 TEST(Overlays, EventsAppearWhenTheyHappen) {
@@ -244,6 +291,28 @@ TEST(TableMesh, ThePresetsHaveEverything) {
         EXPECT_GT(used[static_cast<std::size_t>(Material::kWood)], 0);
         EXPECT_EQ(used[static_cast<std::size_t>(Material::kPocket)] > 0, !table.pockets.empty());
         EXPECT_FALSE(mesh.blended.empty());
+    }
+}
+
+// Two boards meet in each corner of the frame: the grain of one does not go on in the other.
+TEST(TableMesh, WoodHasAMitreAtEveryCorner) {
+    const Table table = make_table("nine_foot");
+    const TableMesh mesh = make_table_mesh(table, kR, {Vec2(0.5, 0.5)});
+    for (const double x : {mesh.inner_low.x(), mesh.inner_high.x()}) {
+        for (const double y : {mesh.inner_low.y(), mesh.inner_high.y()}) {
+            float least = 1e9F, most = -1e9F;
+            int found = 0;
+            for (const MeshVertex& vertex : mesh.solid) {
+                const bool wood = static_cast<Material>(static_cast<int>(vertex.material)) == Material::kWood;
+                const Vec2 place = Vec2(vertex.x, vertex.y) + mesh.origin - Vec2(x, y);
+                if (!wood || place.norm() > 1e-5 || vertex.z < mesh.wood_top - 0.01) continue;
+                ++found;
+                least = std::min(least, vertex.u);
+                most = std::max(most, vertex.u);
+            }
+            EXPECT_GT(found, 1);
+            EXPECT_GT(most - least, 0.1F) << x << " " << y;
+        }
     }
 }
 

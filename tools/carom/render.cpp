@@ -284,7 +284,7 @@ void add_render(Options& program) {
         "Drawn over the picture: trails, events, spin, ghost, clock, margin, or all (default: none)");
     command.flag("--trails", args.trails, "The same as --overlay trails (default: off)");
     command.option("--sheet", &args.sheet, "CxR",
-                   "One contact sheet of columns x rows pictures instead of frames (default: off)");
+                   "One contact sheet of columns x rows pictures instead of frames; it is as wide as --size, and its pictures have that shape (default: off)");
     command.option("--jobs", &args.jobs, "N", "Threads that encode and write; 0: one per core").in(0, 256);
     command.flag("--resume", args.resume, "Leave out frames whose finished file is there (default: off)");
     command.flag("--raw", args.raw,

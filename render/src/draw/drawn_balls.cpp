@@ -16,7 +16,16 @@ float linear(float srgb) {
     return srgb * srgb;  // the same conversion as from_screen() in shaders/common.glsl
 }
 
-BallInstance make_instance(const DrawBall& ball, const Vec3& origin, double distance) {
+BallPlace place_of(const DrawBall& ball, const TableMesh& table) {
+    if (ball.in_pocket) return BallPlace::kPocket;
+    const bool near = std::any_of(table.noses.begin(), table.noses.end(), [&](const auto& nose) {
+        return distance_to_segment(ball.center.head<2>(), nose[0], nose[1]) <
+               shaders::kShadowReach * ball.radius;
+    });
+    return near ? BallPlace::kCushion : BallPlace::kCloth;
+}
+
+BallInstance make_instance(const DrawBall& ball, BallPlace place, const Vec3& origin, double distance) {
     const auto f = [](double value) { return static_cast<float>(value); };
     const Vec3 center = ball.center - origin;
     const Eigen::Quaterniond& q = ball.orientation;
@@ -25,7 +34,26 @@ BallInstance make_instance(const DrawBall& ball, const Vec3& origin, double dist
             {f(q.x()), f(q.y()), f(q.z()), f(q.w())},
             {linear(style.color[0]), linear(style.color[1]), linear(style.color[2]),
              static_cast<float>(style.number)},
-            {static_cast<float>(style.pattern), ball.in_pocket ? 1.0F : 0.0F, f(distance)}};
+            {static_cast<float>(style.pattern), static_cast<float>(place), f(distance)},
+            {}};
+}
+
+// The nearest balls, which keep light from this one. The weight falls to 0 before a ball is left out.
+void add_neighbours(BallInstance& instance, const DrawBall& ball, const std::vector<DrawBall>& all) {
+    constexpr double kNear = 2.1, kFar = 2.5;  // [radii]
+    std::vector<std::pair<double, Vec3>> near;
+    for (const DrawBall& other : all) {
+        const Vec3 offset = other.center - ball.center;
+        const double distance = offset.norm();
+        if (&other != &ball && distance < kFar * ball.radius) near.emplace_back(distance, offset);
+    }
+    const std::size_t count = std::min<std::size_t>(near.size(), shaders::kMaxNear);
+    std::sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t i = 0; i < count; ++i) {
+        const double weight = std::min(1.0, (kFar - near[i].first / ball.radius) / (kFar - kNear));
+        for (int k = 0; k < 3; ++k) instance.near[i][k] = static_cast<float>(near[i].second[k]);
+        instance.near[i][3] = static_cast<float>(weight);
+    }
 }
 
 PixelBox whole(FrameSize size) {
@@ -100,8 +128,10 @@ std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth
         if (distance <= 1.05 * ball.radius || list.camera.depth(ball.center) <= -ball.radius) continue;
         const PixelBox box = box_of(ball, list.camera);
         if (box.x1 <= box.x0 || box.y1 <= box.y0) continue;
-        balls.push_back(
-            {make_instance(ball, origin, distance), box, !ball.in_pocket && cloth.all_cloth(box)});
+        BallInstance instance = make_instance(ball, place_of(ball, *list.table), origin, distance);
+        add_neighbours(instance, ball, list.balls);
+        const bool alone = instance.near[0][3] == 0.0F;
+        balls.push_back({instance, box, !ball.in_pocket && alone && cloth.all_cloth(box)});
     }
     // Balls are drawn from far to near, so that the soft edges of near balls blend over the far ones.
     std::stable_sort(balls.begin(), balls.end(), [](const DrawnBall& a, const DrawnBall& b) {

@@ -9,25 +9,34 @@
 
 #include "carom/render/draw_list.h"
 #include "carom/render/image.h"
+#include "draw/shaders.h"
 #include "draw/table_edges.h"
 #include "draw/view.h"
 
 namespace carom::render {
+
+enum class BallPlace : std::uint8_t {
+    kCloth,
+    kPocket,   ///< it casts no shadow
+    kCushion,  ///< near a cushion, which gets a shadow, too
+};
 
 /// The vertex attributes of the ball shaders, one set per ball.
 struct BallInstance {
     float center_radius[4];
     float orientation[4];
     float color_number[4];
-    float pattern[3];  ///< pattern, in pocket, distance from the eye
+    float pattern[3];                  ///< pattern, place (BallPlace), distance from the eye
+    float near[shaders::kMaxNear][4];  ///< the nearest other balls: offset of the centre [m], weight 0..1
 
     bool operator==(const BallInstance&) const = default;
 };
 
 struct DrawnBall {
     BallInstance instance;
-    PixelBox box;        ///< pixels that the ball and its shadow may cover
-    bool plain = false;  ///< its box, and every box that overlaps it, show only cloth under the balls
+    PixelBox box;  ///< pixels that the ball and its shadow may cover
+    /// Its box, and every box that overlaps it, show only cloth, and no neighbour darkens it
+    bool plain = false;
 
     bool operator==(const DrawnBall&) const = default;
 };

@@ -29,7 +29,12 @@ struct Renderer::Impl {
         GLuint shadow_program = 0, ball_program = 0, array = 0, buffer = 0;
         std::vector<BallInstance> instances;
     };
-    BallBatch plain, other, moving;  // moving: in place of other, under a camera that moves
+    BallBatch plain;
+    // Balls that the table may hide, and those of them that stand near a cushion, which gets a shadow.
+    struct OtherBalls {
+        BallBatch balls, beside;
+    };
+    OtherBalls still, moving;  // for a table with many samples, and with one
     GLuint glyphs = 0, view_buffer = 0;
     // Two images are used alternately: one can be read while the next one is drawn.
     struct Target {
@@ -57,15 +62,15 @@ struct Renderer::Impl {
                                   GL_UNSIGNED_BYTE, atlas.data(), true);
         overlay_layer = std::make_unique<OverlayLayer>(api, glyphs);
         api.GenBuffers(1, &view_buffer);
-        make_batch(plain, shaders::kPlain);
+        make_batch(plain, shaders::kPlain, shaders::kPlain);
     }
 
-    void make_batch(BallBatch& batch, const char* defines) {
+    void make_batch(BallBatch& batch, const std::string& shadow_defines, const std::string& ball_defines) {
         if (batch.array != 0) return;
         batch.shadow_program = shaders::make_program(api, shaders::kShadowVertex, shaders::kShadowFragment,
-                                                     {"u_background"}, defines);
+                                                     {"u_occluders", "u_background"}, shadow_defines);
         batch.ball_program = shaders::make_program(api, shaders::kBallVertex, shaders::kBallFragment,
-                                                   {"u_occluders", "u_glyphs"}, defines);
+                                                   {"u_occluders", "u_glyphs"}, ball_defines);
         api.GenVertexArrays(1, &batch.array);
         api.GenBuffers(1, &batch.buffer);
         api.BindVertexArray(batch.array);
@@ -80,6 +85,11 @@ struct Renderer::Impl {
         attribute(1, 4, offsetof(BallInstance, orientation));
         attribute(2, 4, offsetof(BallInstance, color_number));
         attribute(3, 3, offsetof(BallInstance, pattern));
+        for (int i = 0; i < shaders::kMaxNear; ++i) {
+            attribute(
+                4 + static_cast<GLuint>(i), 4,
+                offsetof(BallInstance, near) + static_cast<std::size_t>(i) * sizeof(BallInstance::near[0]));
+        }
     }
 
     void resize(FrameSize wanted) {
@@ -99,13 +109,18 @@ struct Renderer::Impl {
     }
 
     // Fills both batches with the chosen balls.
-    void upload(const std::vector<DrawnBall>& balls, const std::vector<bool>& chosen, BallBatch& not_plain) {
+    void upload(const std::vector<DrawnBall>& balls, const std::vector<bool>& chosen, OtherBalls& others) {
         plain.instances.clear();
-        not_plain.instances.clear();
+        others.balls.instances.clear();
+        others.beside.instances.clear();
         for (std::size_t i = 0; i < balls.size(); ++i) {
-            if (chosen[i]) (balls[i].plain ? plain : not_plain).instances.push_back(balls[i].instance);
+            if (!chosen[i]) continue;
+            const BallInstance& instance = balls[i].instance;
+            (balls[i].plain ? plain : others.balls).instances.push_back(instance);
+            if (instance.pattern[1] == static_cast<float>(BallPlace::kCushion))
+                others.beside.instances.push_back(instance);
         }
-        for (BallBatch* batch : {&plain, &not_plain}) {
+        for (BallBatch* batch : {&plain, &others.balls, &others.beside}) {
             if (batch->instances.empty()) continue;
             api.BindBuffer(GL_ARRAY_BUFFER, batch->buffer);
             api.BufferData(GL_ARRAY_BUFFER,
@@ -124,7 +139,8 @@ struct Renderer::Impl {
     void draw_shadows(const BallBatch& batch) {
         if (batch.instances.empty()) return;
         api.UseProgram(batch.shadow_program);
-        gl::bind_texture(api, 0, table_layer->color());
+        gl::bind_texture(api, 0, table_layer->occluders());
+        gl::bind_texture(api, 1, table_layer->color());
         draw_round(batch);
     }
 
@@ -186,33 +202,36 @@ struct Renderer::Impl {
         next->overlay = !list.lines.empty() || !list.boxes.empty();
         next->balls = visible_balls(list, cloth);
         if (camera_moves) next->edges = edges_to_smooth(list, view);
-        BallBatch& not_plain = camera_moves ? moving : other;
-        make_batch(not_plain, camera_moves ? shaders::kOneSample : shaders::kManySamples);
+        OtherBalls& others = camera_moves ? moving : still;
+        const std::string samples = camera_moves ? shaders::kOneSample : shaders::kManySamples;
+        make_batch(others.balls, samples, samples);
+        make_batch(others.beside, samples + shaders::kBeside, samples);
         std::vector<PixelBox> boxes = differing_boxes(*target.shows, *next, size);
-        upload(next->balls, balls_inside(next->balls, boxes), not_plain);
+        upload(next->balls, balls_inside(next->balls, boxes), others);
         restore_table(boxes, target);
         target.shows = std::move(next);
 
         api.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
         api.Disable(GL_DEPTH_TEST);
         api.Enable(GL_BLEND);
-        draw_over_table(list, not_plain);
+        draw_over_table(list, others);
     }
 
-    void draw_over_table(const DrawList& list, const BallBatch& not_plain) {
+    void draw_over_table(const DrawList& list, const OtherBalls& others) {
         // Under a camera that moves, alpha is the mark of the face. It stays under a shadow, and falls to 0 under what
         // is painted over the table, because the edges of the table are not seen there.
         // Shadows only darken. The same blend factor for all channels is a fast path of the driver.
         api.BlendFuncSeparate(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO,
                               camera_moves ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
         draw_shadows(plain);
-        draw_shadows(not_plain);
+        draw_shadows(others.balls);
+        draw_shadows(others.beside);
         api.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, camera_moves ? GL_ZERO : GL_SRC_ALPHA,
                               GL_ONE_MINUS_SRC_ALPHA);
         const OverlayLayer::Occluders occluders{table_layer->occluders(), camera_moves};
         overlay_layer->draw_lines(list, occluders, LineLayer::kUnderBalls);
         draw_balls(plain);
-        draw_balls(not_plain);
+        draw_balls(others.balls);
         overlay_layer->draw_lines(list, occluders, LineLayer::kOverBalls);
         overlay_layer->draw_boxes(list);
     }

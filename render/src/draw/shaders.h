@@ -26,9 +26,10 @@ extern const char* const kBoxFragment;
 /// Number of corners of the triangle strip (an octagon) around a ball or a shadow.
 inline constexpr int kRoundCorners = 8;
 
-// Numbers that C++ and GLSL share: every program defines them as SHADOW_REACH and MAX_HOLES.
+// Numbers that C++ and GLSL share: every program defines them as SHADOW_REACH, MAX_HOLES, MAX_NEAR.
 inline constexpr double kShadowReach = 2.5;  ///< [radii] where the shading of shadow.frag reaches zero
 inline constexpr int kMaxHoles = 128;        ///< [-] largest number of holes that a program accepts
+inline constexpr int kMaxNear = 6;           ///< [-] neighbours that darken a ball: as many as fit around it
 
 // Each of these lines, put before kTableFragment, selects one kind of surface. A software renderer executes both
 // sides of every branch, so there is one program per kind. The floor has no discard, so hidden pixels cost nothing.
@@ -44,6 +45,8 @@ inline constexpr const char* kHoles = "#define HOLES\n";
 inline constexpr const char* kScreen = "#define SCREEN\n";
 /// Put before the sources of balls and shadows over cloth alone: it omits the lookups in the textures of the table.
 inline constexpr const char* kPlain = "#define PLAIN\n";
+/// Put before the sources of shadows, it draws those on cushions and wood instead of those on the cloth.
+inline constexpr const char* kBeside = "#define BESIDE\n";
 /// Put before the sources of whatever the table can hide: the table was drawn with several samples, or with one.
 inline constexpr const char* kManySamples = "";
 inline constexpr const char* kOneSample = "#define ONE_SAMPLE\n";

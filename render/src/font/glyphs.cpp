@@ -55,7 +55,11 @@ constexpr std::array<std::string_view, kGlyphs.size()> kStrokes{"103041453616050
                                                                 "0610233046",
                                                                 "0046 0640",
                                                                 "062346 2320",
-                                                                "06460040"};
+                                                                "06460040",
+                                                                "3414031222312000",
+                                                                "0004 03142320 23344340",
+                                                                "103041433414030110",
+                                                                "36261510 0434"};
 
 // [units] Distance of the 4 x 6 glyph from the edges of its cell; it is centred in the cell.
 constexpr float kMarginX = (kGlyphUnitsX - 4.0F) / 2.0F, kMarginY = (kGlyphUnitsY - 6.0F) / 2.0F;
@@ -86,7 +90,9 @@ float distance_to_strokes(std::string_view strokes, float x, float y) {
 }  // namespace
 
 int glyph_index(char c) {
-    const std::size_t found = kGlyphs.find(static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
+    std::size_t found = kGlyphs.find(c);
+    if (found == std::string_view::npos)
+        found = kGlyphs.find(static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
     return found == std::string_view::npos ? -1 : static_cast<int>(found);
 }
 

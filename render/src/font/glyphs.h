@@ -14,9 +14,9 @@ inline constexpr float kGlyphUnitsX = 6.0F,
                        kGlyphUnitsY = 9.0F;  ///< size of a cell [units]; letters are 4 x 6, margins 1 and 1.5
 
 /// Characters in the order of the cells.
-inline constexpr std::string_view kGlyphs = "0123456789.:-%/+=()ABCDEFGHIJKLMNOPQRSTUVWXYZ";
+inline constexpr std::string_view kGlyphs = "0123456789.:-%/+=()ABCDEFGHIJKLMNOPQRSTUVWXYZsmof";
 
-/// Cell of a character (lower case is mapped to upper case), or -1 for a blank.
+/// Cell of a character (a lower-case letter without a cell gets that of its capital), or -1 for a blank.
 int glyph_index(char c);
 
 /// One byte per texel, row 0 at the top: 255 on the centre line of a stroke, 0 at the distance kGlyphReach and beyond.

@@ -21,6 +21,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr int kLargestSheet = 16384;  // pixels, height
+
 void make_folder(const std::string& pattern) {
     const std::filesystem::path folder = std::filesystem::path(frame_path(pattern, 0)).parent_path();
     if (folder.empty()) return;
@@ -204,19 +206,27 @@ std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOpt
 void render_sheet(const Record& record, const SequenceOptions& options, int columns, int rows,
                   const std::string& path) {
     check_options(options);
-    if (columns < 1 || rows < 1 || columns > options.size.width / 16 || rows > options.size.height / 16) {
-        throw RenderError("a sheet needs at least one column and one row, and 16 pixels for each");
-    }
     constexpr int kGap = 2;  // pixels between the pictures
     StageOptions cell = stage_options(options);
-    cell.size = {(options.size.width - kGap * (columns - 1)) / columns,
-                 (options.size.height - kGap * (rows - 1)) / rows};
+    const bool possible = columns >= 1 && rows >= 1 && columns <= options.size.width / 16;
+    if (possible) {
+        cell.size.width = (options.size.width - kGap * (columns - 1)) / columns;
+        // A picture keeps the shape that was asked for; another one would be filled up with black.
+        cell.size.height =
+            static_cast<int>(static_cast<long>(cell.size.width) * options.size.height / options.size.width);
+    }
+    if (!possible || cell.size.width < 14 || cell.size.height < 14 ||
+        rows > kLargestSheet / (cell.size.height + kGap)) {
+        throw RenderError(
+            "a sheet needs at least one column and one row, 16 pixels for each, and a height of at most " +
+            std::to_string(kLargestSheet));
+    }
     cell.overlay.clock = true;
     const Stage stage(record, cell);
     Renderer renderer(options.backend);
     renderer.on_table(options.table_progress);
     Image sheet, picture;
-    sheet.resize(options.size);
+    sheet.resize({options.size.width, rows * cell.size.height + kGap * (rows - 1)});
     const double to = options.to.value_or(record.duration);
     const int last = columns * rows - 1;
     for (int i = 0; i <= last; ++i) {

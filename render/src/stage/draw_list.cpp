@@ -29,6 +29,22 @@ std::vector<Vec2> visited_places(const Record& record) {
     return places;
 }
 
+// [s] How long a ball that was pocketed is seen to sink.
+constexpr double kSinkTime = 0.15;
+
+// The place of a ball that was pocketed at `when`, sinking from where it was then to where it lies.
+Vec3 sinking_place(const Record& record, int ball, double when, double t, const Vec3& rest) {
+    constexpr double kGravity = 9.81;  // [m/s^2] for the look only
+    const double age = t - when;
+    if (age >= kSinkTime || when <= 0.0) return rest;
+    const BallState before = record.state_at(ball, std::nextafter(when, -1.0));
+    const double left = 1.0 - age / kSinkTime;
+    Vec3 place = rest + left * left * (before.position - rest);
+    place.z() = std::max(rest.z(), before.position.z() + std::min(before.velocity.z(), 0.0) * age -
+                                       0.5 * kGravity * age * age);
+    return place;
+}
+
 // Whether a later ball in the same pocket hides this one: only the last ball in each pocket is shown.
 bool is_covered(const Record& record, std::size_t ball, double t) {
     const auto arrival = [&](std::size_t i) {
@@ -39,7 +55,9 @@ bool is_covered(const Record& record, std::size_t ball, double t) {
     for (std::size_t other = 0; other < record.tracks.size(); ++other) {
         if (other == ball || record.tracks[other].pocket != pocket) continue;
         const double when = arrival(other), mine = arrival(ball);
-        if (when >= 0.0 && when <= t && (when > mine || (when == mine && other > ball))) return true;
+        if (when >= 0.0 && (when <= 0.0 || when + kSinkTime <= t) &&
+            (when > mine || (when == mine && other > ball)))
+            return true;
     }
     return false;
 }
@@ -70,7 +88,10 @@ DrawList Stage::at(double t, std::optional<FrameBudget> cost) const {
         DrawBall ball;
         ball.in_pocket = state.state == MotionState::kPocketed;
         if (ball.in_pocket && is_covered(record_, i, t)) continue;
-        ball.center = state.position;
+        ball.center = ball.in_pocket
+                          ? sinking_place(record_, static_cast<int>(i),
+                                          record_.tracks[i].segments.back().start, t, state.position)
+                          : state.position;
         ball.orientation = record_.orientation_at(static_cast<int>(i), t);
         // The radius is at least two pixels: on a cloth of kilometres the balls would otherwise be invisible.
         ball.radius = std::max(record_.size(static_cast<int>(i)).R,

@@ -23,7 +23,8 @@ Overlay parse_overlay(std::string_view list) {
         const std::string_view word = list.substr(0, comma);
         more = comma != std::string_view::npos;
         if (more) list.remove_prefix(comma + 1);
-        bool known = word == "all";
+        bool known = word == "all" || word == "trails=ball";
+        if (word == "trails=ball") overlay.trails = overlay.ball_trails = true;
         for (const auto& [name, member] : kNames) {
             if (word != name && word != "all") continue;
             overlay.*member = true;
@@ -31,7 +32,7 @@ Overlay parse_overlay(std::string_view list) {
         }
         if (!known) {
             throw RenderError("unknown overlay '" + std::string(word) +
-                              "'; use trails, events, spin, ghost, clock, margin, or all");
+                              "'; use trails (or trails=ball), events, spin, ghost, clock, margin, or all");
         }
     }
     return overlay;

@@ -20,6 +20,11 @@ double text_height(const DrawList& list) {
     return std::clamp(std::min(list.camera.size.height / 48.0, list.camera.size.width / 36.0), 5.0, 28.0);
 }
 
+// [pixels] From the sides of the image to the panels, so that they leave the corner pockets of a table free that fills it.
+double side_room(const DrawList& list) {
+    return 0.11 * list.camera.size.width;
+}
+
 // [-] Width of one character divided by the height of a capital letter.
 constexpr double kAdvance = 0.92;
 
@@ -45,16 +50,17 @@ void add_text(DrawList& list, const Vec2& at, double height, std::string_view te
 
 void add_clock(DrawList& list, double t) {
     const double height = text_height(list), room = 0.6 * height;
-    const std::string text = fmt::format("{:.3f} S", t);
+    const std::string text = fmt::format("{:.3f} s", t);
+    const double left = side_room(list);
     list.boxes.push_back(
-        {{room, room}, {3.0 * room + text_width(height, text), 3.0 * room + height}, kPanel, -1});
-    add_text(list, {2.0 * room, 2.0 * room}, height, text, kInk);
+        {{left, room}, {left + 2.0 * room + text_width(height, text), 3.0 * room + height}, kPanel, -1});
+    add_text(list, {left + room, 2.0 * room}, height, text, kInk);
 }
 
 void add_margin_bar(DrawList& list, const FrameBudget& cost) {
     const double height = text_height(list), room = 0.6 * height, width = 16.0 * height;
-    const double right = list.camera.size.width - room, left = right - width - 2.0 * room;
-    const std::string text = fmt::format("{:.1f} OF {:.1f} MS", cost.cost_ms, cost.budget_ms);
+    const double right = list.camera.size.width - side_room(list), left = right - width - 2.0 * room;
+    const std::string text = fmt::format("{:.1f} of {:.1f} ms", cost.cost_ms, cost.budget_ms);
     list.boxes.push_back({{left, room}, {right, 4.0 * room + 1.7 * height}, kPanel, -1});
     add_text(list, {left + room, 2.0 * room}, height, text, kInk);
     // The full bar is twice the budget; beyond its middle the frame exceeds its budget.

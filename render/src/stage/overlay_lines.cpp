@@ -33,24 +33,37 @@ float line_width(const DrawList& list, double pixels_at_720) {
     return static_cast<float>(std::max(1.0, pixels_at_720 * shorter / 720.0));
 }
 
-void add_trail(DrawList& list, const BallTrack& track, double t, float width) {
+// Straight pieces that stay within a quarter of a pixel of a curved path.
+int pieces_of(const Camera& camera, const Segment& segment, double lasts) {
+    const Vec2 v = segment.v.head<2>();
+    const double across =
+        std::abs(cross(v, segment.a)) / v.norm();  // acceleration across the first direction
+    if (!(across > 1e-9 * segment.a.norm())) return 1;
+    // A piece of duration h is a h^2 / 8 away from its chord at most.
+    double scale = 0.0;
+    for (const double at : {0.0, 0.5, 1.0}) {
+        const Vec3 place = position_at(segment, at * lasts);
+        if (camera.depth(place) > 0.05) scale = std::max(scale, camera.scale(place));
+    }
+    const double pieces = lasts * std::sqrt(segment.a.norm() * scale / (8.0 * 0.25));
+    return static_cast<int>(std::clamp(std::ceil(pieces), 1.0, 400.0));
+}
+
+void add_trail(DrawList& list, const BallTrack& track, double t, float width, const Rgba* color) {
     for (std::size_t i = 0; i < track.segments.size(); ++i) {
         const Segment& segment = track.segments[i];
         if (segment.start >= t || segment.state == MotionState::kPocketed) return;
         const double end = i + 1 < track.segments.size() ? std::min(track.segments[i + 1].start, t) : t;
         const double lasts = std::min(end - segment.start, segment.duration);
         if (!(lasts > 0.0) || segment.v.norm() == 0.0) continue;
-        // The path is curved only if the acceleration is not parallel to the velocity.
-        const Vec2 v = segment.v.head<2>();
-        const bool bends = std::abs(cross(v, segment.a)) > 1e-9 * v.norm() * segment.a.norm();
-        const int pieces = bends ? 8 : 1;
+        const int pieces = pieces_of(list.camera, segment, lasts);
         Vec3 before = segment.r;
         for (int piece = 1; piece <= pieces; ++piece) {
             const Vec3 next = position_at(segment, lasts * piece / pieces);
             list.lines.push_back({{before.x(), before.y(), kOnCloth},
                                   {next.x(), next.y(), kOnCloth},
                                   width,
-                                  state_color(segment.state),
+                                  color != nullptr ? *color : state_color(segment.state),
                                   LineLayer::kUnderBalls});
             before = next;
         }
@@ -172,7 +185,12 @@ void add_ghost(DrawList& list, const Record& record, double t) {
 void add_overlay(DrawList& list, const Record& record, const Overlay& overlay, double t,
                  std::optional<FrameBudget> cost) {
     if (overlay.trails) {
-        for (const BallTrack& track : record.tracks) add_trail(list, track, t, line_width(list, 2.0));
+        for (std::size_t i = 0; i < record.tracks.size(); ++i) {
+            const BallTrack& track = record.tracks[i];
+            const BallStyle style = ball_style(track.id, record.table.preset, static_cast<int>(i));
+            const Rgba color{style.color[0], style.color[1], style.color[2], 1.0F};
+            add_trail(list, track, t, line_width(list, 2.0), overlay.ball_trails ? &color : nullptr);
+        }
     }
     if (overlay.events) add_events(list, record, t);
     if (overlay.ghost) add_ghost(list, record, t);

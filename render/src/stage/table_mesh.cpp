@@ -148,6 +148,9 @@ class TableMaker {
 
     // The side towards the balls: from below the nose, over the nose, to the edge of the flat top.
     void add_nose(const Chain& chain, double inset) {
+        const std::size_t n = chain.points.size();
+        for (std::size_t i = 0; i + (chain.closed ? 0 : 1) < n; ++i)
+            mesh_.noses.push_back({chain.points[i], chain.points[(i + 1) % n]});
         Chain ground = chain;
         std::fill(ground.heights.begin(), ground.heights.end(), 0.0);
         const double height = chain.heights.front();

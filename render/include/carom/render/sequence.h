@@ -85,8 +85,8 @@ std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOpt
 std::string frame_path(const std::string& pattern, long k);
 
 /// Writes a contact sheet: columns x rows pictures of the shot, row by row, each with its clock. Their times are
-/// evenly spaced from `from` to `to`, both included. options.size is the size of the whole sheet; pattern, frame,
-/// jobs and raw are not used.
+/// evenly spaced from `from` to `to`, both included. The sheet is as wide as options.size, and each picture has its
+/// shape; the height of the sheet follows. pattern, frame, jobs and raw are not used.
 /// @throws RenderError
 void render_sheet(const Record& record, const SequenceOptions& options, int columns, int rows,
                   const std::string& path);

@@ -1,6 +1,7 @@
 // The table as triangles, made from the same cushions, jaws and pockets that the simulation uses.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -45,6 +46,7 @@ struct TableMesh {
     std::vector<MeshVertex> solid, blended;          ///< three vertices per triangle
     std::vector<Hole> holes;                         ///< of pockets; the first 128 are cut out of the cloth
     Vec2 inner_low{0.0, 0.0}, inner_high{0.0, 0.0};  ///< box inside the wooden frame
+    std::vector<std::array<Vec2, 2>> noses;          ///< straight pieces of the cushions' edges
     double wood_top = 0.0;
     Bounds bounds;  ///< what a camera should show
     Lamp lamp;

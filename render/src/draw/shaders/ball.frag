@@ -2,16 +2,34 @@ flat in vec4 v_ball;
 flat in vec4 v_orientation;
 flat in vec4 v_color;
 flat in vec3 v_pattern;
+#ifndef PLAIN
+flat in vec4 v_near[MAX_NEAR];
+#endif
 uniform sampler2D u_glyphs;
 out vec4 color;
 
-// Light of the lamp on a ball: its centre is accurate enough; the 0.15 stands for its size (light past the terminator).
+// Light of the lamp on a ball: its centre is accurate enough. The 0.6 stands for its size, light past the terminator; the
+// square lets the light end without an edge.
 float lamp_on_ball(vec3 p, vec3 n) {
     vec3 to = vec3(u_lamp.xy, u_lamp.z) - p;
     if (u_lamp_endless > 0.5) to = vec3(0.0, 0.0, u_lamp.z);
     float inverse = inversesqrt(dot(to, to));
-    float facing = max((dot(n, to) * inverse + 0.15) * (1.0 / 1.15), 0.0);
-    return facing * u_lamp.z * u_lamp.z * inverse * inverse;
+    float facing = max((dot(n, to) * inverse + 0.6) * (1.0 / 1.6), 0.0);
+    return facing * facing * u_lamp.z * u_lamp.z * inverse * inverse;
+}
+
+// Share of the light at normal n that reaches the ball past its neighbours: each hides (r / d)^2 cos of the sky.
+float past_neighbours(vec3 n) {
+    float open = 1.0;
+#ifndef PLAIN
+    for (int i = 0; i < MAX_NEAR; ++i) {
+        vec3 to = v_near[i].xyz - v_ball.w * n;
+        float inverse = inversesqrt(dot(to, to));
+        float hidden = v_ball.w * v_ball.w * inverse * inverse * max(dot(to, n) * inverse, 0.0);
+        open *= 1.0 - 0.75 * v_near[i].w * min(hidden, 1.0);
+    }
+#endif
+    return open;
 }
 
 vec3 to_body(vec3 n) {
@@ -40,17 +58,22 @@ float number_ink(int number, vec2 at, float w) {
     return number == 6 || number == 9 ? max(ink, bar) : ink;
 }
 
-vec3 albedo(vec3 b, float w) {
+// shine: how much of the mirror image of the lamp is seen; print must stay legible under it.
+vec3 albedo(vec3 b, float w, out float shine) {
+    shine = 1.0;
     vec3 ivory = from_screen(vec3(0.95, 0.93, 0.86));
     vec3 base = v_color.rgb;
     int pattern = int(v_pattern.x + 0.5);
     if (pattern == 1) base = mix(ivory, base, inside(abs(b.x) - 0.60, w));
     if (pattern == 2) {
         vec3 a = abs(b);
-        float from_axis = length(a.x > a.y && a.x > a.z ? a.yz : (a.y > a.z ? a.xz : a.xy));
+        bool z_axis = a.z >= a.x && a.z >= a.y;
+        float from_axis = length(z_axis ? a.xy : (a.x > a.y ? a.yz : a.xz));
+        // One of the six is larger, so that a fast turn does not look like a slow one backwards.
+        float radius = z_axis && b.z > 0.0 ? 0.34 : 0.17;
         float luminance = dot(base, vec3(0.3, 0.6, 0.1));
         vec3 dot_color = luminance > 0.3 ? from_screen(vec3(0.72, 0.05, 0.07)) : from_screen(vec3(0.93, 0.90, 0.82));
-        base = mix(base, dot_color, inside(from_axis - 0.20, w));
+        base = mix(base, dot_color, inside(from_axis - radius, w));
     }
     if (pattern == 3) base = mix(base, mix(base, vec3(1.0), 0.65), inside(b.x, w));
     int number = int(v_color.a + 0.5);
@@ -59,7 +82,9 @@ vec3 albedo(vec3 b, float w) {
         float spot = inside(length(b.xy) - 0.52, w);
         base = mix(base, ivory, spot);
         vec2 at = vec2(b.y, b.z > 0.0 ? -b.x : b.x);
-        base = mix(base, vec3(0.012), spot * number_ink(number, at, w));
+        float ink = spot * number_ink(number, at, w);
+        base = mix(base, vec3(0.012), ink);
+        shine = 1.0 - 0.85 * ink;
     }
     return base;
 }
@@ -82,18 +107,21 @@ void main() {
     cover *= seen(ivec2(gl_FragCoord.xy), (along - rise) * per_depth - 0.001);
 
     float facing = max(-dot(n, dir), 0.08);
-    vec3 base = albedo(to_body(n), pixel / (R * mix(1.0, facing, 0.6)));
+    float shine;
+    vec3 base = albedo(to_body(n), pixel / (R * mix(1.0, facing, 0.6)), shine);
     vec3 cloth = from_screen(vec3(0.055, 0.50, 0.345));
     // Light: the lamp, the dim room above, and the reflection of the cloth from below.
     float under = 0.5 - 0.5 * n.z;
     vec3 light = vec3(lamp_on_ball(p, n)) + 0.20 * (1.0 - under) + cloth * 0.75 * under * under;
-    light *= 1.0 - 0.45 * smoothstep(0.55, 1.0, under);
+    light *= (1.0 - 0.45 * smoothstep(0.55, 1.0, under)) * past_neighbours(n);
     vec3 shade = base * light;
     // Specular reflection: a mirror image of the lamp, and of the room at grazing angles.
     vec3 r = reflect(dir, n);
     float grazing = 1.0 - max(-dot(n, dir), 0.0);
     float fresnel = 0.045 + 0.955 * grazing * grazing * grazing * grazing;
-    shade += fresnel * (11.0 * lamp_mirror(p, r, 0.10 * u_lamp.z) + (r.z > 0.0 ? vec3(0.10) : cloth * 0.35));
-    if (v_pattern.y > 0.5) shade *= 0.22;
+    vec3 room = mix(cloth * 0.35, vec3(0.10), smoothstep(-0.25, 0.25, r.z));
+    shade += fresnel * (11.0 * shine * lamp_mirror(p, r, 0.10 * u_lamp.z) + room);
+    // Below the cloth light comes only through the mouth of the pocket, as on its wall.
+    shade *= mix(0.06, 1.0, exp(min(p.z, 0.0) / 0.035));
     color = vec4(to_screen(shade), cover);
 }

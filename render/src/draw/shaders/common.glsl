@@ -62,9 +62,14 @@ float seen(ivec2 pixel, float depth) {
     float z = texelFetch(u_occluders, pixel, 0).r;
     return step(depth * (u_planes.y - z * (u_planes.y - u_planes.x)), u_planes.x * u_planes.y);
 }
+float table_distance(ivec2 pixel) {
+    float z = texelFetch(u_occluders, pixel, 0).r;
+    return u_planes.x * u_planes.y / (u_planes.y - z * (u_planes.y - u_planes.x));
+}
 #else
 uniform sampler2D u_occluders;   // four distances of the table along the view direction
 float seen(ivec2 pixel, float depth) {
     return dot(step(vec4(depth), texelFetch(u_occluders, pixel, 0)), vec4(0.25));
 }
+float table_distance(ivec2 pixel) { return dot(texelFetch(u_occluders, pixel, 0), vec4(0.25)); }
 #endif

@@ -56,11 +56,13 @@ vec3 lit(vec3 albedo, vec3 n) {
     return albedo * (1.05 * lamp_light(v_position, n) + 0.16 * sky);
 }
 
-vec3 glossy(vec3 base, vec3 n, float strength, float blur) {
+// Adds the mirror image of the lamp. tint: what the surface lets through of it.
+vec3 glossy(vec3 base, vec3 n, vec3 tint, float blur) {
     vec3 view = normalize(v_position - u_eye);
     vec3 r = reflect(view, n);
-    float fresnel = 0.04 + 0.96 * pow(1.0 - max(-dot(view, n), 0.0), 5.0);
-    return base + strength * fresnel * lamp_mirror(v_position, r, blur);
+    // Varnish is not polished: the rise at grazing angles is cut off, or a rail would shine like glass.
+    float fresnel = min(0.04 + 0.96 * pow(1.0 - max(-dot(view, n), 0.0), 5.0), 0.12);
+    return base + tint * fresnel * lamp_mirror(v_position, r, blur);
 }
 
 vec3 pocket_wall(vec3 p, vec3 n, float bottom) {
@@ -110,15 +112,15 @@ void main() {
     color = vec4(0.0, 0.0, 0.0, v_uv.x);
 #endif
 #elif defined(WOOD)
-    color = written(glossy(lit(wood_albedo(v_uv), n), n, 5.0, 0.25));
+    color = written(glossy(lit(wood_albedo(v_uv), n), n, vec3(1.7, 1.0, 0.62), 0.5));
 #elif defined(FLOOR)
     color = written(floor_color(v_position));
 #else
     if (v_material == 3)
         color = written(pocket_wall(v_position, n, v_uv.x));
     else if (v_material == 4)
-        color = written(glossy(lit(from_screen(vec3(0.19, 0.175, 0.165)), n), n, 6.0, 0.5));
+        color = written(glossy(lit(from_screen(vec3(0.19, 0.175, 0.165)), n), n, vec3(6.0), 0.5));
     else
-        color = written(glossy(lit(from_screen(vec3(0.88, 0.85, 0.76)), n), n, 3.0, 0.2));
+        color = written(glossy(lit(from_screen(vec3(0.88, 0.85, 0.76)), n), n, vec3(3.0), 0.2));
 #endif
 }
