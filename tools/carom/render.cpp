@@ -279,12 +279,13 @@ void add_render(Options& program) {
     target.needs = "--eye";
     command.option("--ball", &args.ball, "ID",
                    "Ball that camera follow follows (default: the one that moves first)");
-    command.option(
-        "--overlay", &args.overlay, "LIST",
-        "Drawn over the picture: trails, events, spin, ghost, clock, margin, or all (default: none)");
+    command.option("--overlay", &args.overlay, "LIST",
+                   "Drawn over the picture: trails (or trails=ball, in the colours of the balls), events, "
+                   "spin, ghost, clock, margin, or all (default: none)");
     command.flag("--trails", args.trails, "The same as --overlay trails (default: off)");
     command.option("--sheet", &args.sheet, "CxR",
-                   "One contact sheet of columns x rows pictures instead of frames; it is as wide as --size, and its pictures have that shape (default: off)");
+                   "One contact sheet of columns x rows pictures instead of frames; it is as wide as --size, "
+                   "and its pictures have that shape (default: off)");
     command.option("--jobs", &args.jobs, "N", "Threads that encode and write; 0: one per core").in(0, 256);
     command.flag("--resume", args.resume, "Leave out frames whose finished file is there (default: off)");
     command.flag("--raw", args.raw,
