@@ -101,7 +101,7 @@ TEST_F(CliRenderOptions, ASheetIsOnePicture) {
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.out, "6 pictures: " + sheet + "\n");
     const std::string bytes = read_file(sheet);
-    EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\x01\x2C\0\0\0\xB4", 8));  // 300 x 180
+    EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\x01\x2C\0\0\0\x76", 8));  // 300 x 118
     EXPECT_EQ(folder_.names().size(), 3u);                                     // scene, record, sheet
     expect_refused(2, "--sheet", {"--sheet", "3"});
     expect_refused(2, "--sheet", {"--sheet", "0x2"});
