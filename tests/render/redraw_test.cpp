@@ -69,6 +69,24 @@ TEST_P(Redraw, PartsHaveThePixelsOfTheWhole) {
     }
 }
 
+// Frame after frame, as a film shows them, with lines that grow, fade, and lie over and under the balls.
+TEST_P(Redraw, OverlaysHaveThePixelsOfTheWhole) {
+    for (const char* overlay : {"events,spin,ghost,clock", "trails,margin"}) {
+        const Stage stage = stage_of(GetParam(), overlay);
+        Renderer renderer, reference;
+        std::array<KeptImage, 2> images;
+        for (int k = 0; k < 24; ++k) {
+            const double t = (k < 12 ? 0.2 : 2.0) + k / 60.0;
+            const DrawList list = stage.at(t, FrameBudget{3.0 + 0.5 * k, 16.0});
+            KeptImage& image = images[static_cast<std::size_t>(k % 2)];
+            renderer.draw(list);
+            renderer.read(image);
+            EXPECT_TRUE(render_test::same_pixels(image.image(), whole_picture(reference, list)))
+                << overlay << t;
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Cameras, Redraw, ::testing::Values("top", "rail", "player", "follow"),
                          [](const auto& camera) { return std::string(camera.param); });
 
@@ -147,27 +165,61 @@ TEST(RedrawWork, OnlyWhatMovedIsDrawn) {
     const ClothMap none;
     const FrameSize size{480, 270};
     const auto table = std::make_shared<TableDrawing>();
-    const auto picture = [&](double t) {
-        return DrawnPicture{table, false, visible_balls(stage.at(t), none)};
-    };
+    const auto picture = [&](double t) { return DrawnPicture{table, visible_balls(stage.at(t), none)}; };
     const double end = broken_rack().duration;
     EXPECT_TRUE(differing_boxes(picture(end), picture(end + 1.0), size).empty());
     const DrawnPicture rack = picture(0.0), cue_moved = picture(0.01);
     std::vector<PixelBox> boxes = differing_boxes(rack, cue_moved, size);
     ASSERT_EQ(boxes.size(), 2U);  // where the cue ball was, and where it is
-    const std::vector<bool> inside = balls_inside(cue_moved.balls, boxes);
-    EXPECT_EQ(std::count(inside.begin(), inside.end(), true), 1);
+    const std::vector<bool> moved = inside(cue_moved, boxes, size).balls;
+    EXPECT_EQ(std::count(moved.begin(), moved.end(), true), 1);
     // A rack is drawn as a whole as soon as a ball of it is touched.
     boxes = {rack.balls[5].box};
-    const std::vector<bool> all = balls_inside(rack.balls, boxes);
+    const std::vector<bool> all = inside(rack, boxes, size).balls;
     EXPECT_EQ(std::count(all.begin(), all.end(), true), 15);
-    // Another table, or lines that reach anywhere: everything.
+    // Another table: everything.
     DrawnPicture other = rack;
     other.table = std::make_shared<TableDrawing>();
     EXPECT_EQ(differing_boxes(rack, other, size), (std::vector<PixelBox>{{0, 0, 480, 270}}));
-    other = rack;
-    other.overlay = true;
-    EXPECT_EQ(differing_boxes(rack, other, size).size(), 1U);
+}
+
+double pixels_of(const std::vector<PixelBox>& boxes) {
+    double sum = 0.0;
+    for (const PixelBox& box : boxes) sum += double(box.x1 - box.x0) * (box.y1 - box.y0);
+    return sum;
+}
+
+DrawnPicture picture_of(const DrawList& list, const std::shared_ptr<const TableDrawing>& table) {
+    return {table, visible_balls(list, ClothMap()), drawn_shapes(list)};
+}
+
+// An overlay costs what changes in it: the digits of a clock, and all that they touch, which is its panel.
+TEST(RedrawWork, AnOverlayIsDrawnWhereItChanges) {
+    const Stage stage = stage_of("top", "clock");
+    const FrameSize size{480, 270};
+    const auto table = std::make_shared<TableDrawing>();
+    const double end = broken_rack().duration;
+    const DrawnPicture before = picture_of(stage.at(end), table),
+                       after = picture_of(stage.at(end + 0.1), table);
+    std::vector<PixelBox> boxes = differing_boxes(before, after, size);
+    EXPECT_GT(pixels_of(boxes), 0.0);
+    EXPECT_LT(pixels_of(boxes), 0.01 * 480 * 270);
+    const Inside drawn = inside(after, boxes, size);
+    EXPECT_EQ(std::count(drawn.shapes.begin(), drawn.shapes.end(), true),
+              static_cast<std::ptrdiff_t>(after.shapes.size()));
+    EXPECT_EQ(std::count(drawn.balls.begin(), drawn.balls.end(), true), 0);
+    EXPECT_TRUE(differing_boxes(after, after, size).empty());
+}
+
+// What is drawn over the same places in another order may look different.
+TEST(RedrawWork, TheOrderOfShapesCounts) {
+    DrawList list = stage_of("top").at(0.0);
+    list.boxes = {{{10.0, 10.0}, {30.0, 30.0}, {1.0F, 0.0F, 0.0F, 1.0F}, -1},
+                  {{20.0, 20.0}, {40.0, 40.0}, {0.0F, 1.0F, 0.0F, 1.0F}, -1}};
+    const auto table = std::make_shared<TableDrawing>();
+    const DrawnPicture before = picture_of(list, table);
+    std::swap(list.boxes[0], list.boxes[1]);
+    EXPECT_FALSE(differing_boxes(before, picture_of(list, table), {480, 270}).empty());
 }
 
 TEST(RedrawWork, BallsOnBareClothAreTold) {

@@ -143,8 +143,7 @@ std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth
 
 std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPicture& after, FrameSize size) {
     // Smoothing reaches one pixel beyond what moved, and takes place in a picture that was read as a whole.
-    if (!before.table || before.table != after.table || before.overlay || after.overlay || after.edges)
-        return {whole(size)};
+    if (!before.table || before.table != after.table || after.edges) return {whole(size)};
     std::vector<PixelBox> boxes;
     const auto add_missing = [&boxes](const DrawnPicture& from, const DrawnPicture& in) {
         for (const DrawnBall& ball : from.balls) {
@@ -154,6 +153,7 @@ std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPic
     };
     add_missing(before, after);
     add_missing(after, before);
+    add_differing(before.shapes, after.shapes, boxes);
     return boxes;
 }
 
@@ -171,17 +171,29 @@ std::vector<PixelBox> ChangedBoxes::next(const Image& image) {
     return {whole(size_)};
 }
 
-std::vector<bool> balls_inside(const std::vector<DrawnBall>& balls, std::vector<PixelBox>& boxes) {
-    std::vector<bool> inside(balls.size(), false);
+Inside inside(const DrawnPicture& picture, std::vector<PixelBox>& boxes, FrameSize size) {
+    Inside result{std::vector<bool>(picture.balls.size(), false),
+                  std::vector<bool>(picture.shapes.size(), false)};
+    const auto pixels = [](const PixelBox& box) { return double(box.x1 - box.x0) * (box.y1 - box.y0); };
+    const double most = 0.5 * pixels(whole(size));
+    double sum = 0.0;
     for (std::size_t checked = 0; checked < boxes.size(); ++checked) {
         const PixelBox box = boxes[checked];
-        for (std::size_t i = 0; i < balls.size(); ++i) {
-            if (inside[i] || !balls[i].box.meets(box)) continue;
-            inside[i] = true;
-            boxes.push_back(balls[i].box);
+        sum += pixels(box);
+        if (sum > most) {
+            boxes = {whole(size)};
+            return {std::vector<bool>(picture.balls.size(), true),
+                    std::vector<bool>(picture.shapes.size(), true)};
         }
+        const auto add = [&](std::vector<bool>::reference flag, const PixelBox& of) {
+            if (flag || !of.meets(box)) return;
+            flag = true;
+            boxes.push_back(of);
+        };
+        for (std::size_t i = 0; i < picture.balls.size(); ++i) add(result.balls[i], picture.balls[i].box);
+        for (std::size_t i = 0; i < picture.shapes.size(); ++i) add(result.shapes[i], picture.shapes[i].box);
     }
-    return inside;
+    return result;
 }
 
 }  // namespace carom::render

@@ -9,6 +9,7 @@
 
 #include "carom/render/draw_list.h"
 #include "carom/render/image.h"
+#include "draw/drawn_shapes.h"
 #include "draw/shaders.h"
 #include "draw/table_edges.h"
 #include "draw/view.h"
@@ -54,8 +55,8 @@ struct TableDrawing {};
 /// One picture: the drawing of the table, and what was drawn over it.
 struct DrawnPicture {
     std::shared_ptr<const TableDrawing> table;   ///< null: nothing has been drawn
-    bool overlay = false;                        ///< has lines or boxes, which may be anywhere in the image
     std::vector<DrawnBall> balls;                ///< in the order of drawing, the farthest first
+    std::vector<DrawnShape> shapes{};            ///< lines and boxes
     std::shared_ptr<const EdgesInView> edges{};  ///< null if the table was drawn with many samples
 };
 
@@ -84,8 +85,12 @@ std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth
 /// Boxes outside of which the two pictures are equal; the whole image if nothing better is known.
 std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPicture& after, FrameSize size);
 
-/// Finds the balls that must be redrawn to refill the boxes. The box of each ball that overlaps one of the boxes is
-/// added to them, and so on until no ball is partly inside. Returns a flag for each ball.
-std::vector<bool> balls_inside(const std::vector<DrawnBall>& balls, std::vector<PixelBox>& boxes);
+/// What must be redrawn to refill some boxes: a flag for each ball, and for each line or box.
+struct Inside {
+    std::vector<bool> balls, shapes;
+};
+/// The box of each ball and shape that overlaps one of the boxes is added to them, and so on until none is partly inside. If that comes to
+/// half of the image, it is everything.
+Inside inside(const DrawnPicture& picture, std::vector<PixelBox>& boxes, FrameSize size);
 
 }  // namespace carom::render

@@ -199,22 +199,38 @@ struct Renderer::Impl {
         Target& target = targets[current];
         auto next = std::make_shared<DrawnPicture>();
         next->table = drawn_table;
-        next->overlay = !list.lines.empty() || !list.boxes.empty();
         next->balls = visible_balls(list, cloth);
+        next->shapes = drawn_shapes(list);
         if (camera_moves) next->edges = edges_to_smooth(list, view);
         OtherBalls& others = camera_moves ? moving : still;
         const std::string samples = camera_moves ? shaders::kOneSample : shaders::kManySamples;
         make_batch(others.balls, samples, samples);
         make_batch(others.beside, samples + shaders::kBeside, samples);
         std::vector<PixelBox> boxes = differing_boxes(*target.shows, *next, size);
-        upload(next->balls, balls_inside(next->balls, boxes), others);
+        const Inside redrawn = inside(*next, boxes, size);
+        upload(next->balls, redrawn.balls, others);
         restore_table(boxes, target);
+        const DrawList overlay = part_of(list, redrawn.shapes);
         target.shows = std::move(next);
 
         api.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
         api.Disable(GL_DEPTH_TEST);
         api.Enable(GL_BLEND);
-        draw_over_table(list, others);
+        draw_over_table(overlay, others);
+    }
+
+    // The chosen ones of the lines and, behind these, the boxes of a list.
+    static DrawList part_of(const DrawList& list, const std::vector<bool>& chosen) {
+        DrawList part;
+        part.table = list.table;
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            if (!chosen[i]) continue;
+            if (i < list.lines.size())
+                part.lines.push_back(list.lines[i]);
+            else
+                part.boxes.push_back(list.boxes[i - list.lines.size()]);
+        }
+        return part;
     }
 
     void draw_over_table(const DrawList& list, const OtherBalls& others) {

@@ -52,6 +52,8 @@ struct DrawLine {
     float width = 2.0F;
     Rgba color{1.0F, 1.0F, 1.0F, 1.0F};
     LineLayer layer = LineLayer::kUnderBalls;
+
+    bool operator==(const DrawLine&) const = default;
 };
 
 /// A rectangle of the image [pixels]: filled, or the cell of one character (`glyph`).
@@ -59,6 +61,8 @@ struct DrawBox {
     Vec2 low{0.0, 0.0}, high{0.0, 0.0};
     Rgba color{1.0F, 1.0F, 1.0F, 1.0F};
     int glyph = -1;
+
+    bool operator==(const DrawBox&) const = default;
 };
 
 struct DrawList {
