@@ -47,7 +47,7 @@ def _drawn(rule: str, texts: list[str]) -> Any:
             kind = "integer"
         elif not all(type(value) in (int, float) for value in listed):
             return texts
-    return np.array([int(text) for text in texts], np.int64) if kind == "integer" else np.array([float(text) for text in texts], np.float64)
+    return np.array([int(text, 0) for text in texts], np.int64) if kind == "integer" else np.array([float(text) for text in texts], np.float64)
 
 
 def columns(

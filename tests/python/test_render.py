@@ -66,6 +66,25 @@ def test_another_thread_does_not_draw(draw_scene):
     assert raised == ["frames are drawn by the thread that asked for the first one"]
 
 
+def test_drawings_side_by_side_and_dropped_elsewhere(draw_scene):
+    dropped = []
+
+    def begin():
+        frames = carom.render(draw_scene, size=(64, 64), fps=4)
+        next(frames)
+        dropped.append(frames)
+
+    thread = threading.Thread(target=begin)
+    thread.start()
+    thread.join()
+    dropped.clear()
+    one, two = (carom.render(draw_scene, size=(64, 64), fps=4) for _ in range(2))
+    assert (next(one) == next(two)).all()
+    third = next(one)
+    del one
+    assert (third == next(two)).all()
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
