@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -41,6 +42,7 @@ class EdgeFinder {
         TableEdges found;
         mark_faces(found);
         for (const auto& [ends, users] : edges_) add_edge(found, ends, users);
+        drop_doubled(found.edges);
         return found;
     }
 
@@ -143,6 +145,28 @@ class EdgeFinder {
             edge.smooth = true;
         }
         found.edges.push_back(edge);
+    }
+
+    // Where a cushion ends at the wood, both have an edge, and a pixel would be smoothed twice: the part of the line that
+    // lies within a longer edge is left out.
+    static void drop_doubled(std::vector<TableEdge>& edges) {
+        const auto point = [](const std::array<float, 3>& p) { return Vec3(p[0], p[1], p[2]); };
+        const auto length = [&](const TableEdge& edge) { return (point(edge.b) - point(edge.a)).norm(); };
+        constexpr double kLong = 0.2, kSame = 1e-5;  // [m]
+        std::vector<TableEdge> longest;
+        std::copy_if(edges.begin(), edges.end(), std::back_inserter(longest),
+                     [&](const TableEdge& edge) { return !edge.smooth && length(edge) > kLong; });
+        const auto within = [&](const Vec3& p, const TableEdge& edge) {
+            const Vec3 from = point(edge.a), along = point(edge.b) - from;
+            const double t = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+            return (p - from - t * along).norm() < kSame;
+        };
+        std::erase_if(edges, [&](const TableEdge& edge) {
+            return std::any_of(longest.begin(), longest.end(), [&](const TableEdge& other) {
+                return length(other) > length(edge) + kSame && within(point(edge.a), other) &&
+                       within(point(edge.b), other);
+            });
+        });
     }
 
     const std::vector<MeshVertex>& vertices_;

@@ -73,7 +73,8 @@ class TableMaker {
         if (played_.empty()) played_.add(Vec2::Zero());
         const Box& whole = outline_.empty() ? played_ : outline_;
         mesh_.origin = 0.5 * (whole.low + whole.high);
-        mesh_.wood_top = nose_ + kWoodRise;
+        // With sharp edges the wood is level with the cushions: its inner side would be a strip of a pixel at most.
+        mesh_.wood_top = nose_ + (sharp_ ? 0.0 : kWoodRise);
     }
 
     // Whether the table has rails with jaws around pockets; these get a rectangular frame.
@@ -183,8 +184,7 @@ class TableMaker {
 
     void add_strip(const Chain& chain, double width, bool wall) {
         const double inset = std::min({0.006, 0.3 * width, largest_inset()});
-        // With sharp edges the cushion meets the edge of the wood, which leaves no narrow strip of it.
-        const double rise = wall ? 0.003 : (sharp_ ? kWoodRise : 0.006);
+        const double rise = sharp_ ? 0.0 : (wall ? 0.003 : 0.006);
         add_nose(chain, inset);
         const Material material = wall ? Material::kWood : Material::kCushion;
         const ProfileRow back{width, rise, 0.0};
