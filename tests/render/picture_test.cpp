@@ -257,13 +257,12 @@ TEST(Picture, NumbersAreLegibleUnderTheLamp) {
     const Vec2 center = *camera.project({0.5, 1.7, 2.0 * kR});
     const double radius = kR * camera.scale({0.5, 1.7, kR});
     std::array<int, 2> ink{};
-    for (int y = static_cast<int>(-0.4 * radius); y <= 0.4 * radius; ++y) {
-        for (int x = static_cast<int>(-0.4 * radius); x <= 0.4 * radius; ++x) {
-            if (std::hypot(x, y) < 0.4 * radius)
-                ink[x < 0 ? 0 : 1] += at(image, center.x() + x, center.y() + y).r < 90;
-        }
+    // The lamp is long and narrow: its image lies at half the height of the number.
+    for (int y = static_cast<int>(-0.15 * radius); y <= 0.15 * radius; ++y) {
+        for (int x = static_cast<int>(-0.4 * radius); x <= 0.4 * radius; ++x)
+            ink[x < 0 ? 0 : 1] += at(image, center.x() + x, center.y() + y).r < 90;
     }
-    EXPECT_GT(ink[0], 40);
+    EXPECT_GT(ink[0], 20);
     EXPECT_GT(ink[0], 0.7 * ink[1]);
     EXPECT_LT(ink[0], 1.4 * ink[1]);
 }
