@@ -37,6 +37,8 @@ static_assert(CAROM_SLIDING == static_cast<int>(carom::MotionState::kSliding));
 static_assert(CAROM_ROLLING == static_cast<int>(carom::MotionState::kRolling));
 static_assert(CAROM_POCKETED == static_cast<int>(carom::MotionState::kPocketed));
 static_assert(CAROM_FALLING == static_cast<int>(carom::MotionState::kFalling));
+static_assert(CAROM_AIRBORNE == static_cast<int>(carom::MotionState::kAirborne));
+static_assert(CAROM_OUT == static_cast<int>(carom::MotionState::kOut));
 
 /// The array of a batch, or NULL.
 template <class T>
@@ -58,6 +60,7 @@ carom_segment segment_of(const carom::Segment& s, double gravity) {
         out.r[2] -= s.v.z() * s.v.z() / (2.0 * gravity);
         out.a[2] = -gravity;
     }
+    if (carom::flies(s.state)) out.a[2] = -gravity;
     out.spin_decay = s.spin_decay;
     out.state = static_cast<int32_t>(s.state);
     out.held = s.held ? 1 : 0;

@@ -60,7 +60,7 @@ class Shots(NamedTuple):
     events: NDArray[np.int64]  # (n,)
     first_hit: NDArray[np.int32]  # (n,) the ball that the struck ball met first, or -1
     xy: NDArray[np.float64]  # (n, b, 2) [m] at the end; of a pocketed ball the pocket, NaN for one that was left out
-    pocket: NDArray[np.int32]  # (n, b) the pocket that holds the ball, or -1
+    pocket: NDArray[np.int32]  # (n, b) the pocket that holds the ball, -2 for one that has left the table, or -1
     fell: NDArray[np.int32]  # (n, b) 0 for the ball that fell first, 1, ..., or -1
     cushions: NDArray[np.int32]  # (n, b) how often the ball met a cushion or a jaw
     hash: NDArray[np.uint64] | None  # (n,) int(record.hash(), 16), where it was asked for

@@ -111,7 +111,7 @@ def _outcomes(shots: Shots, ids: tuple[str, ...], pockets: list[str], messages: 
     for ball, name in enumerate(ids):
         result[f"{name}.x"] = shots.xy[:, ball, 0]
         result[f"{name}.y"] = shots.xy[:, ball, 1]
-        result[f"{name}.pocket"] = texts([pockets[p] if p >= 0 else "" for p in shots.pocket[:, ball].tolist()])
+        result[f"{name}.pocket"] = texts([pockets[p] if p >= 0 else "out" if p == -2 else "" for p in shots.pocket[:, ball].tolist()])
     result["message"] = [messages.get(i, "") for i in range(len(failed))]
     return result
 

@@ -243,8 +243,8 @@ TEST(Unequal, ModelsWithoutAFormulaAreErrorsAtTheBall) {
     EXPECT_EQ(
         error_of(big),
         "s.toml:4:1: balls \"a\" and \"b\" differ in size: friction between balls of different radius acts "
-        "on a tilted line of centres, for which there is no formula here; set balls.mu_b = 0 or "
-        "physics.ball_ball = \"elastic\"");
+        "on a tilted line of centres, for which this model has no formula; use physics.ball_ball = "
+        "\"two_step\" or set balls.mu_b = 0");
     EXPECT_EQ(
         error_of(heavy),
         "s.toml:4:1: balls \"a\" and \"b\" differ in size: the model mathavan takes balls of one mass; use "

@@ -135,6 +135,12 @@ const Case kCases[] = {
          cue.height = 0.0;
          s.cue = cue;
      }},
+    {"airborne", "carom::airborne_segment carom::hit_cloth carom::flight_to_line",
+     "a ball is thrown up at 1 m/s",
+     [](Scene& s) {
+         s.ball[0].velocity.z() = 1.0;
+         s.balls.e_t = 0.9;
+     }},
     {"profile", "std::chrono::_V2::steady_clock::now", "every event timed", [](Scene&) {}, true},
 };
 

@@ -134,6 +134,7 @@ const Zero kZeros[] = {
      [](Scene& s, reference::Generator& rng) {
          strike_instead(s, rng);
          s.cue->side = 0.0;
+         s.cue->elevation_deg = 0.0;  // a raised cue squirts up and down as well
      }},
     {"squirt",
      [](Scene& s, reference::Generator& rng) {
@@ -191,7 +192,8 @@ const std::string kBreak =
 TEST(Effects, RefusingWhatTheSceneNeedsIsAnErrorAtItsLine) {
     for (const EffectInfo& effect : effect_table()) {
         const std::string keyword = effect.keyword, line = keyword + " = false";
-        const std::string message = plan_error("[effects]\n" + line + "\n" + kBreak);
+        const std::string lifted = keyword == "airborne" ? kBreak + "elevation_deg = 5\n" : kBreak;
+        const std::string message = plan_error("[effects]\n" + line + "\n" + lifted);
         const std::string place = "s.toml:2:" + std::to_string(keyword.size() + 4) + ": effects." + line +
                                   ", but the scene needs it: ";
         EXPECT_EQ(message.rfind(place, 0), 0u) << message;

@@ -46,6 +46,7 @@ Scene scene_named(const std::string& wanted) {
         cue.mass = q.at("M").get<double>();
         cue.end_mass = q.at("end_mass").get<double>();
         scene.cue = cue;
+        scene.physics.vertical = Vertical::kDrop;  // the references are planar
     }
     return scene;
 }

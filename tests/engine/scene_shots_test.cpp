@@ -153,6 +153,47 @@ TEST(SceneShots, MasseGoesAroundYellow) {
     EXPECT_LT(std::abs(carom::cross(to_red, place(r, 1, 0.0) - place(r, 0, 0.0))), 2.0 * r.balls.R);
 }
 
+/// Whether the ball is in the air at this time.
+bool is_up(const Record& r, int ball, double t) {
+    return r.state_at(ball, t).state == carom::MotionState::kAirborne;
+}
+
+TEST(SceneShots, JumpFliesOverRed) {
+    const Record r = run("jump");
+    ASSERT_FALSE(met_by(r, 0).empty());
+    EXPECT_EQ(met_by(r, 0)[0], "yellow");
+    double t = 0.0;
+    while (place(r, 0, t).y() < place(r, 1, 0.0).y()) t += 1e-4;
+    EXPECT_TRUE(is_up(r, 0, t));
+    EXPECT_LT(std::abs(place(r, 0, t).x() - place(r, 1, 0.0).x()), 1e-9) << "straight over it";
+    EXPECT_GT(r.state_at(0, t).position.z(), 3.0 * r.balls.R);
+}
+
+TEST(SceneShots, JumpPotPotsYellow) {
+    const Record r = run("jump_pot");
+    EXPECT_EQ(met_by(r, 0)[0], "yellow");
+    EXPECT_NE(r.tracks[2].pocket, -1);
+    EXPECT_EQ(r.tracks[0].pocket, -1);
+    // Red stands in the way of the path to yellow.
+    const Vec2 way = (place(r, 0, 0.05) - place(r, 0, 0.0)).normalized();
+    EXPECT_LT(std::abs(carom::cross(way, place(r, 1, 0.0) - place(r, 0, 0.0))), 2.0 * r.balls.R);
+}
+
+TEST(SceneShots, SwerveGoesAroundYellow) {
+    const Record r = run("swerve");
+    ASSERT_FALSE(met_by(r, 0).empty());
+    EXPECT_EQ(met_by(r, 0)[0], "red");
+    EXPECT_TRUE(is_up(r, 0, 0.02));
+    const Vec2 to_red = (place(r, 2, 0.0) - place(r, 0, 0.0)).normalized();
+    EXPECT_LT(std::abs(carom::cross(to_red, place(r, 1, 0.0) - place(r, 0, 0.0))), 2.0 * r.balls.R);
+}
+
+TEST(SceneShots, RaisedBreakArrivesInTheAir) {
+    const Record r = run("raised_break");
+    const double hit = first(r, EventType::kBallBall);
+    EXPECT_TRUE(is_up(r, 0, hit - 1e-3) || is_up(r, static_cast<int>(r.tracks.size()) - 1, hit - 1e-3));
+}
+
 TEST(SceneShots, SnookerBreakComesBackToBaulk) {
     const Record r = run("snooker_break");
     int cue = -1;

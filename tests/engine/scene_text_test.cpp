@@ -139,6 +139,8 @@ TEST(SceneText, WritesEveryKeyOfTheFormat) {
         scene_text(parse_scene(with(kEveryKey, "e_c = 0.84\nf_c = 0.19",
                                     "e_c_fit = [0.9, 0.03, 0.5]\nf_c_fit = [0.1, 0.2, 0.4]"),
                                "a.toml")) +
+        scene_text(parse_scene(with(kEveryKey, "mu_sp = 0.0131", "mu_sp = 0.0131\ne_t_fit = [0.5, 0.1, 1]"),
+                               "a.toml")) +
         scene_text(parse_scene(with(kEveryKey, "camera = \"rail\"", "eye = [1, 2, 3]\ntarget = [0, 1, 0]"),
                                "a.toml"));
     for (const EffectInfo& effect : effect_table())
@@ -164,12 +166,12 @@ TEST(Validate, ChecksASceneBuiltInCode) {
         return std::string();
     };
     EXPECT_EQ(error(), "my scene: there is no ball; add a [[ball]] or a [rack]");
-    scene.ball.push_back({"cue", Vec3(0.5, 0.5, scene.balls.R), Vec3(0, 1, 0), Vec3::Zero(), {}});
+    scene.ball.push_back({"cue", Vec3(0.5, 0.5, scene.balls.R), Vec3(0, 1, 0), Vec3::Zero(), 0.0, {}});
     EXPECT_EQ(error(), "");
-    scene.ball.push_back({"1", Vec3(0.5, 0.51, scene.balls.R), Vec3::Zero(), Vec3::Zero(), {}});
+    scene.ball.push_back({"1", Vec3(0.5, 0.51, scene.balls.R), Vec3::Zero(), Vec3::Zero(), 0.0, {}});
     EXPECT_NE(error().find("my scene: balls \"cue\" and \"1\" overlap"), std::string::npos) << error();
     scene.ball[1].position = Vec3(0.5, 1.5, 0.0);
-    EXPECT_NE(error().find("z has to be the radius"), std::string::npos) << error();
+    EXPECT_NE(error().find("z has to be the sum of the two"), std::string::npos) << error();
     scene.ball[1].position = Vec3(0.5, std::nan(""), scene.balls.R);
     EXPECT_NE(error().find("must be a finite number"), std::string::npos) << error();
     scene.ball[1].position = Vec3(0.5, 1.5, scene.balls.R);

@@ -91,6 +91,7 @@ TEST(Shots, EventListsAndFinalPositions) {
             cue.side = q.at("a").get<double>();
             cue.height = q.at("b").get<double>();
             scene.cue = cue;
+            scene.physics.vertical = Vertical::kDrop;  // the references are planar
         }
         const Plan plan = plan_of(scene);
         const Record record = simulate(plan);

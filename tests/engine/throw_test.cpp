@@ -140,6 +140,7 @@ TEST(Masse, ElevationAndSideCurveThePath) {
         cue.side = side;
         cue.height = 0.0;
         cue.end_mass = 0.0;
+        scene.physics.vertical = Vertical::kDrop;  // no hop in between
         scene.cue = cue;
         return simulate(plan_of(scene));
     };

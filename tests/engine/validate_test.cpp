@@ -309,7 +309,7 @@ TEST(Validate, SaysOfRandomMistakesWhatTheTextSays) {
     for (int i = 0; i < 4000; ++i) {
         Scene scene = random_scene(random);
         for (int k = random.below(4); k > 0; --k) spoil(scene, random);
-        for (BallStart& ball : scene.ball) ball.position.z() = scene.size_of(ball).R, ball.velocity.z() = 0.0;
+        for (BallStart& ball : scene.ball) ball.position.z() = scene.size_of(ball).R + ball.height;
         if (std::isnan(scene.balls.R)) continue;  // no height is such a radius: a rule of its own
         const std::string want = by_text(scene);
         ASSERT_EQ(by_struct(scene), want) << scene_text(scene);

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -130,6 +133,60 @@ TEST(ImpactLine, EveryModelOfTheEnginesTableIsThere) {
     EXPECT_EQ(error.substr(error.find(": han") + 2), known);
 }
 
+Json answer_of(const Json& line) {
+    const ImpactAnswer answer = answer_impact(line.dump(), settings());
+    EXPECT_TRUE(answer.ok) << answer.json;
+    return Json::parse(answer.json);
+}
+
+void expect_list(const Json& got, std::initializer_list<double> want) {
+    std::size_t k = 0;
+    for (const double x : want) EXPECT_NEAR(got.at(k++).get<double>(), x, 1e-13 * std::max(1.0, std::abs(x)));
+}
+
+// The reference values of landings, of balls in the air and of a nose above the cloth (tests/engine/airborne_laws_test.cpp).
+TEST(ImpactLine, Cloth) {
+    const Json line = {
+        {"kind", "cloth"},
+        {"params", {{"R", 0.028575}, {"mu_s", 0.2}, {"mu_sp", 0.0127}, {"e_t", 0.5}, {"gravity", 9.81}}},
+        {"v", {1.2, -0.7, -3.0}},
+        {"w", {20.0, -35.0, 5.0}}};
+    const Json out = answer_of(line);
+    expect_list(out["v"], {0.571392857142857, -0.663285714285714, 1.5});
+    expect_list(out["w"], {23.212098487689, 19.9962504686914, 5.0 - 5.0});
+    Json up = line;
+    up["v"] = {1.0, 0.0, 0.5};
+    expect_list(answer_of(up)["v"], {1.0, 0.0, 0.5});
+}
+
+TEST(ImpactLine, BallsInTheAir) {
+    const Json line = {
+        {"kind", "ball_ball"},
+        {"airborne", true},
+        {"params",
+         {{"R1", 0.028575}, {"R2", 0.028575}, {"m1", 0.17}, {"m2", 0.17}, {"mu_b", 0.05}, {"e_b", 0.95}}},
+        {"r1", {0.0, 0.0, 0.028575}},
+        {"v1", {2.0, 0.0, 0.0}},
+        {"w1", {0.0, 2.0 / 0.028575, 0.0}},
+        {"r2", {0.05715, 0.0, 0.028575}},
+        {"v2", {0.0, 0.0, 0.0}},
+        {"w2", {0.0, 0.0, 0.0}}};
+    const Json out = answer_of(line);
+    expect_list(out["v1"], {0.05, 0.0, 0.0975});
+    expect_list(out["v2"], {1.95, 0.0, -0.0975});
+}
+
+TEST(ImpactLine, ANoseInTheAir) {
+    const double R = 0.028575, rho = R * std::sqrt(1.0 + 0.28 * 0.28), q = 0.5 * R;
+    const Json line = {{"kind", "cushion"},     {"airborne", true},
+                       {"model", "han_2005"},   {"params", {{"R", R}, {"e_c", 0.85}, {"f_c", 0.2}}},
+                       {"normal", {-1.0, 0.0}}, {"offset", {std::sqrt(rho * rho - q * q), q}},
+                       {"v", {2.0, 0.3, 0.4}},  {"w", {5.0, 30.0, -12.0}}};
+    const Json out = answer_of(line);
+    expect_list(out["v"], {-0.592740417914752, 0.280498574654794, 1.67557743697222});
+    expect_list(out["w"], {4.17851395710517, 41.4059844837882, -13.4953753931198});
+}
+
 TEST(ImpactLine, BallsThatDoNotApproachLeaveAsTheyCame) {
     Json line = ball_ball_line();
     line["v1"] = {-1.0, 0.0, 0.0};
@@ -178,7 +235,7 @@ TEST(ImpactLine, SaysWhatIsWrong) {
     EXPECT_EQ(error_of(""), "this is not JSON (at byte 1)");
     EXPECT_EQ(error_of("[1, 2]"), "expected an object");
     EXPECT_EQ(error_of("{}"), "the key \"kind\" is missing");
-    EXPECT_EQ(error_of("{\"kind\": 3}"), "\"kind\": expected \"ball_ball\" or \"cushion\"");
+    EXPECT_EQ(error_of("{\"kind\": 3}"), "\"kind\": expected \"ball_ball\", \"cushion\" or \"cloth\"");
     const Json line = ball_ball_line();
     EXPECT_EQ(error_of(changed(line, "/params", 1)), "\"params\": expected an object");
     EXPECT_EQ(error_of(changed(line, "/params/R", 0)), "\"R\": expected a number greater than 0");

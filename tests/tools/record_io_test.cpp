@@ -64,9 +64,9 @@ TEST(RecordFile, TheSampleHasAValueOfItsOwnInEveryField) {
     expect_unusual({p_center.x(), p_center.y(), p_radius, p_depth});
     for (const std::string& text : {c_id, c_name, j_id, j_name, p_id, p_name}) EXPECT_NE(text, "");
     const auto& [R, m, mu_s, mu_r, mu_sp, mu_b, e_b, e_c, f_c, mu_b_more, mu_b_fall, f_c_more, f_c_fall,
-                 e_c_fall, e_c_above] = record.balls;
+                 e_c_fall, e_c_above, e_t, e_t_more, e_t_fall, e_h] = record.balls;
     expect_unusual({R, m, mu_s, mu_r, mu_sp, mu_b, e_b, e_c, f_c, mu_b_more, mu_b_fall, f_c_more, f_c_fall,
-                    e_c_fall, e_c_above});
+                    e_c_fall, e_c_above, e_t, e_t_more, e_t_fall, e_h});
     const auto& [fps, pixels, lines, camera, eye, target] = record.render;
     EXPECT_TRUE(fps != 60.0 && pixels != 1280 && lines != 720 && camera != "top" && eye && target);
     const auto& [id, segments, pocket, own] = record.tracks.at(1);

@@ -150,7 +150,8 @@ TEST(RecordFile, NestingNeedsNoStack) {
 /// The sample as version 1 had it.
 Json version_1() {
     Json json = Json::parse(changed("/version", 1));
-    for (const char* key : {"mu_b_more", "mu_b_fall", "e_c_fall", "e_c_above", "f_c_more", "f_c_fall"})
+    for (const char* key : {"mu_b_more", "mu_b_fall", "e_c_fall", "e_c_above", "f_c_more", "f_c_fall", "e_t",
+                            "e_t_more", "e_t_fall", "e_h"})
         json["balls"].erase(key);
     for (const char* list : {"cushions", "jaws", "pockets"})
         for (Json& part : json["table"][list]) part.erase("name");
@@ -168,6 +169,8 @@ TEST(RecordFile, Version1IsReadWithANote) {
     BallParams& balls = expected.balls;
     balls.mu_b_more = balls.mu_b_fall = 0.0;
     balls.e_c_fall = balls.e_c_above = balls.f_c_more = balls.f_c_fall = 0.0;
+    balls.e_t_more = balls.e_t_fall = balls.e_h = 0.0;
+    balls.e_t = 0.5;
     for (Cushion& c : expected.table.cushions) c.name.clear();
     for (Jaw& j : expected.table.jaws) j.name.clear();
     for (Pocket& p : expected.table.pockets) p.name.clear();

@@ -68,7 +68,7 @@ Json value_schema(const Key& key, Files files) {
     if (is_list(key))
         return {{"type", "array"},
                 {"items", number_schema(key, files)},
-                {"minItems", key.count()},
+                {"minItems", key.count() - (key.options.last_may_lack ? 1 : 0)},
                 {"maxItems", key.count()}};
     if (key.kind != Key::Kind::kText) return number_schema(key, files);
     if (files == Files::kRecord) return {{"type", "string"}, {"maxLength", kLongestText}};

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "carom/engine/airborne.h"
 #include "carom/engine/cushion.h"
 #include "carom/kernel/closed_forms.h"
 
@@ -90,17 +91,80 @@ const Json& params_of(const Json& line) {
     return params;
 }
 
+/// Whether the line asks for the impact of balls in the air.
+bool is_airborne(const Json& line) {
+    const auto it = line.find("airborne");
+    if (it == line.end()) return false;
+    if (!it->is_boolean()) throw LineError("\"airborne\": expected true or false");
+    return it->get<bool>();
+}
+
+Vec3 vector_of(const Json& line, const char* key) {
+    double x[3];
+    read_vector(line, key, x);
+    return {x[0], x[1], x[2]};
+}
+
+Json list(const Vec3& v) {
+    return list({v.x(), v.y(), v.z()});
+}
+
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+/// Two balls of which one or both fly: one free impact, in closed form.
+Json free_balls(const Json& line) {
+    refuse_unknown(line, {"kind", "id", "airborne", "params", "r1", "v1", "w1", "r2", "v2", "w2"});
+    const Json& params = params_of(line);
+    refuse_unknown(params, {"R1", "R2", "m1", "m2", "mu_b", "e_b"});
+    FreePair pair{};
+    pair.size1 = {parameter(params, "R1", 0.0, kUnbounded, true),
+                  parameter(params, "m1", 0.0, kUnbounded, true)};
+    pair.size2 = {parameter(params, "R2", 0.0, kUnbounded, true),
+                  parameter(params, "m2", 0.0, kUnbounded, true)};
+    pair.balls.mu_b = parameter(params, "mu_b", 0.0, kUnbounded);
+    pair.balls.e_b = parameter(params, "e_b", 0.0, 1.0);
+    const Vec3 apart = vector_of(line, "r2") - vector_of(line, "r1");
+    Velocities ball1{vector_of(line, "v1"), vector_of(line, "w1")},
+        ball2{vector_of(line, "v2"), vector_of(line, "w2")};
+    if (!(length3(apart) > 0.0)) throw LineError("the centres of the two balls coincide");
+    const auto start = std::chrono::steady_clock::now();
+    hit_ball(pair, apart / length3(apart), ball1, ball2);
+    const double ns = nanoseconds_since(start);
+    return {{"v1", list(ball1.v)}, {"w1", list(ball1.w)}, {"v2", list(ball2.v)},
+            {"w2", list(ball2.w)}, {"steps", 1},          {"ns", ns}};
+}
+
+/// A ball that comes down on the cloth.
+Json cloth(const Json& line) {
+    refuse_unknown(line, {"kind", "id", "params", "v", "w"});
+    const Json& params = params_of(line);
+    refuse_unknown(params, {"R", "mu_s", "mu_sp", "e_t", "gravity"});
+    BallParams balls{};
+    balls.R = parameter(params, "R", 0.0, kUnbounded, true);
+    balls.mu_s = parameter(params, "mu_s", 0.0, kUnbounded);
+    balls.mu_sp = parameter(params, "mu_sp", 0.0, kUnbounded);
+    balls.e_t = parameter(params, "e_t", 0.0, 1.0);
+    const MotionParams motion{.R = balls.R,
+                              .slide = 0.0,
+                              .roll = 0.0,
+                              .spin = 0.0,
+                              .gravity = parameter(params, "gravity", 0.0, kUnbounded)};
+    Velocities ball{vector_of(line, "v"), vector_of(line, "w")};
+    if (ball.v.z() < 0.0) hit_cloth(balls, motion, ball);
+    return {{"v", list(ball.v)}, {"w", list(ball.w)}};
+}
+
 Json ball_ball(const Json& line, const ImpactSettings& settings) {
-    constexpr double kInfinite = std::numeric_limits<double>::infinity();
-    refuse_unknown(line, {"kind", "id", "params", "r1", "v1", "w1", "r2", "v2", "w2"});
+    if (is_airborne(line)) return free_balls(line);
+    refuse_unknown(line, {"kind", "id", "airborne", "params", "r1", "v1", "w1", "r2", "v2", "w2"});
     const Json& params = params_of(line);
     refuse_unknown(params, {"R", "m", "mu_s1", "mu_s2", "mu_b", "e_b"});
     kernel::ImpactParams p{};
-    p.R = parameter(params, "R", 0.0, kInfinite, true);
-    p.m = parameter(params, "m", 0.0, kInfinite, true);
-    p.mu_s1 = parameter(params, "mu_s1", 0.0, kInfinite);
-    p.mu_s2 = parameter(params, "mu_s2", 0.0, kInfinite);
-    p.mu_b = parameter(params, "mu_b", 0.0, kInfinite);
+    p.R = parameter(params, "R", 0.0, kUnbounded, true);
+    p.m = parameter(params, "m", 0.0, kUnbounded, true);
+    p.mu_s1 = parameter(params, "mu_s1", 0.0, kUnbounded);
+    p.mu_s2 = parameter(params, "mu_s2", 0.0, kUnbounded);
+    p.mu_b = parameter(params, "mu_b", 0.0, kUnbounded);
     p.e_b = parameter(params, "e_b", 0.0, 1.0);
     p.cloth_slip = settings.cloth_slip;
     kernel::Ball ball1{}, ball2{};
@@ -156,18 +220,38 @@ Vec2 unit_normal(const Json& line) {
     return {n[0] / length, n[1] / length};
 }
 
+/// A ball in the air at a nose, whose line it is off by D horizontally and by q in height.
+Json nose_in_air(const Json& line) {
+    refuse_unknown(line, {"kind", "id", "airborne", "model", "params", "normal", "offset", "v", "w"});
+    const CushionModelInfo& model = model_of(line);
+    const Json& params = params_of(line);
+    refuse_unknown(params, {"R", "e_c", "f_c"});
+    BallParams balls{};
+    const double R = parameter(params, "R", 0.0, kUnbounded, true);
+    balls.e_c = parameter(params, "e_c", 0.0, 1.0);
+    balls.f_c = parameter(params, "f_c", 0.0, kUnbounded);
+    const Vec2 normal = unit_normal(line);
+    double offset[2];
+    read_vector(line, "offset", offset);
+    const Vec3 out(offset[0] * normal.x(), offset[0] * normal.y(), offset[1]);
+    if (!(length3(out) > 0.0)) throw LineError("\"offset\": the ball's centre is on the nose line");
+    Velocities ball{vector_of(line, "v"), vector_of(line, "w")};
+    hit_nose(balls, R, model, out / length3(out), 0.0, ball);
+    return {{"v", list(ball.v)}, {"w", list(ball.w)}};
+}
+
 Json cushion(const Json& line) {
-    constexpr double kInfinite = std::numeric_limits<double>::infinity();
-    refuse_unknown(line, {"kind", "id", "model", "params", "normal", "v", "w"});
+    if (is_airborne(line)) return nose_in_air(line);
+    refuse_unknown(line, {"kind", "id", "airborne", "model", "params", "normal", "v", "w"});
     const CushionModelInfo& model = model_of(line);
     const Json& params = params_of(line);
     refuse_unknown(params, {"R", "m", "mu_s", "e_c", "f_c", "height"});
     CushionContact contact{};
-    contact.R = parameter(params, "R", 0.0, kInfinite, true);
-    contact.m = parameter(params, "m", 0.0, kInfinite, true);
-    contact.mu_s = parameter(params, "mu_s", 0.0, kInfinite);
+    contact.R = parameter(params, "R", 0.0, kUnbounded, true);
+    contact.m = parameter(params, "m", 0.0, kUnbounded, true);
+    contact.mu_s = parameter(params, "mu_s", 0.0, kUnbounded);
     contact.e_c = parameter(params, "e_c", 0.0, 1.0);
-    contact.f_c = parameter(params, "f_c", 0.0, kInfinite);
+    contact.f_c = parameter(params, "f_c", 0.0, kUnbounded);
     contact.height = parameter(params, "height", 0.0, 2.0 * contact.R, true);
     if (model.accepts != nullptr && !model.accepts(contact))
         throw LineError(
@@ -204,8 +288,10 @@ Json compute(std::string_view text, const ImpactSettings& settings) {
         result = ball_ball(line, settings);
     else if (kind == "cushion")
         result = cushion(line);
+    else if (kind == "cloth")
+        result = cloth(line);
     else
-        throw LineError("\"kind\": expected \"ball_ball\" or \"cushion\"");
+        throw LineError("\"kind\": expected \"ball_ball\", \"cushion\" or \"cloth\"");
     if (line.contains("id")) result["id"] = line["id"];
     return result;
 }

@@ -155,7 +155,7 @@ typedef struct carom_event {
 CAROM_API carom_status carom_record_event(const carom_record* record, size_t index, carom_event* event);
 
 /* State of a ball at time t [s]; before the start that of the start, after the end that of the end. `state` receives
- * "stationary", "spinning", "sliding", "rolling", "pocketed" or "falling" (over a pocket), or is NULL. */
+ * "stationary", "spinning", "sliding", "rolling", "pocketed", "falling" (over a pocket), "airborne" or "out", or is NULL. */
 CAROM_API carom_status carom_record_state(const carom_record* record, size_t ball, double t, double rvw[9],
                                           const char** state);
 
@@ -172,7 +172,7 @@ typedef struct carom_segment {
     double r[3], v[3]; /* centre [m] and velocity [m/s] at the start */
     double w[3];       /* angular velocity at the start [rad/s] */
     double a[3],
-        dw[3]; /* what they change by in a second, constant [m/s^2], [rad/s^2]; dw[2] is 0, and so is a[2] unless the ball falls */
+        dw[3]; /* what they change by in a second, constant [m/s^2], [rad/s^2]; dw[2] is 0, and so is a[2] unless the ball falls or flies */
     double spin_decay; /* of |w_z| [rad/s^2], at least 0 */
     int32_t state;     /* a carom_motion_state */
     int32_t held;      /* 1 in a resting contact, otherwise 0 */
@@ -184,7 +184,9 @@ typedef enum carom_motion_state {
     CAROM_SLIDING = 2,
     CAROM_ROLLING = 3,
     CAROM_POCKETED = 4,
-    CAROM_FALLING = 5
+    CAROM_FALLING = 5,
+    CAROM_AIRBORNE = 6,
+    CAROM_OUT = 7 /* it has left the table and plays no more */
 } carom_motion_state;
 
 /* The segments of a ball in the order of their starts; of two with the same start the later one counts. `segments`
@@ -246,7 +248,7 @@ CAROM_API const uint64_t* carom_batch_hash(const carom_batch* batch);
 CAROM_API const double* carom_batch_x(const carom_batch* batch); /* at the end [m] */
 CAROM_API const double* carom_batch_y(const carom_batch* batch); /* at the end [m] */
 CAROM_API const int32_t* carom_batch_pocket(
-    const carom_batch* batch); /* index of the pocket that holds it, or -1 */
+    const carom_batch* batch); /* index of the pocket that holds it, -2 if it has left the table, or -1 */
 CAROM_API const int32_t* carom_batch_fell(
     const carom_batch* batch); /* 0 for the ball that fell first, 1, ..., or -1 */
 CAROM_API const int32_t* carom_batch_cushions(

@@ -225,6 +225,8 @@ void end_transition(RestingBall& member, MotionState state, double R) {
         case MotionState::kStationary:
         case MotionState::kPocketed:
         case MotionState::kFalling:
+        case MotionState::kAirborne:
+        case MotionState::kOut:
             break;
     }
 }

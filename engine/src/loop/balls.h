@@ -7,6 +7,7 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
 #include "loop/memory.h"
+#include "physics/motion.h"
 
 namespace carom {
 
@@ -33,6 +34,11 @@ class Balls : private Borrowed<BallsMemory> {
     Vec3 position(int ball) const { return position_at(segments_[ball], now_ - segments_[ball].start); }
     Vec3 velocity(int ball) const { return velocity_at(segments_[ball], now_ - segments_[ball].start); }
     Vec3 spin(int ball) const { return spin_at(segments_[ball], now_ - segments_[ball].start, radius(ball)); }
+
+    /// With the height of a ball that flies or falls.
+    Placed placed(int ball) const {
+        return placed_at(segments_[ball], now_ - segments_[ball].start, plan_.gravity);
+    }
 
     double radius(int ball) const { return plan_.sizes[ball].R; }
     const MotionParams& motion(int ball) const { return plan_.motion[ball]; }

@@ -90,7 +90,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
         detector_.balls_near(near_box(here, most), [&](int q) {
             const bool known = std::any_of(members_.begin(), members_.end(),
                                            [q](const ClusterBall& m) { return m.ball == q; });
-            if (known) return;
+            if (known || flies(balls_.segment(q).state)) return;
             ++looks_;
             const ClusterBall candidate = member(q);
             const Gap near = gap_of(here, candidate, R);

@@ -9,7 +9,7 @@ namespace {
 
 // Order of simultaneous events. The end of a cushion counts as the cushion.
 int rank(With with) {
-    return static_cast<int>(std::min(with, With::kCushion));
+    return static_cast<int>(with == With::kNose ? With::kCushion : with);
 }
 
 }  // namespace
@@ -19,6 +19,7 @@ Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& 
                    DetectorMemory& memory)
     : Borrowed(memory),
       plan_(plan),
+      flights_(plan.in_force(Effect::kAirborne)),
       balls_(balls),
       resting_(resting),
       detect_ns_(costs != nullptr ? &costs->event.detect_ns : nullptr),
@@ -39,6 +40,11 @@ Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& 
 double Detector::closing(const Candidate& c) const {
     if (c.contact.with != With::kBall) return 0.0;
     const Segment &s = balls_.segment(c.contact.ball), &q = balls_.segment(c.contact.other);
+    if (flights_ && (flies(s.state) || flies(q.state))) {
+        const Placed one = placed_at(s, c.time - s.start, plan_.gravity),
+                     two = placed_at(q, c.time - q.start, plan_.gravity);
+        return -dot3(two.position - one.position, two.velocity - one.velocity);
+    }
     const Vec3 r = position_at(q, c.time - q.start) - position_at(s, c.time - s.start);
     const Vec3 v = velocity_at(q, c.time - q.start) - velocity_at(s, c.time - s.start);
     return -(r.x() * v.x() + r.y() * v.y());
@@ -62,6 +68,7 @@ Vec2 Detector::place(const Candidate& c) const {
             return line.from + line.direction * dot(line.direction, here - line.from);
         }
         case With::kNothing:
+        case With::kOut:
             break;
     }
     return here;
@@ -164,7 +171,7 @@ void Detector::renew(int ball) {
     const RoundedBox whole = BoxSearch::outward(swept(ball, s.start, s.duration));
     search_table(ball, whole);
     if (plan_.pairs) {
-        if (s.state != MotionState::kPocketed)
+        if (!is_gone(s.state))
             bound(ball, s.start, &whole);
         else
             ball_boxes_.remove(ball);

@@ -1,7 +1,7 @@
 // Finds the next contact or state transition. Every ball has three candidates: its state transition, its first contact
 // with the table and its first contact with another ball. Boxes exclude what a ball cannot reach before its own next
 // event (broad phase), closed forms give the times of the other contacts (contact/detect.h), and a tournament orders
-// all balls. Implemented in detector.cpp (the order), pair_search.cpp and table_search.cpp.
+// all balls. Implemented in detector.cpp (the order), pair_search.cpp, table_search.cpp and flight_search.cpp.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 
 #include "contact/contact.h"
 #include "contact/detect.h"
+#include "contact/flight.h"
 #include "loop/balls.h"
 #include "loop/box_search.h"
 #include "loop/event_queue.h"
@@ -116,10 +117,17 @@ class Detector : private Borrowed<DetectorMemory> {
     void search_table(int ball, const RoundedBox& whole);
     double time_to(const Contact& contact, const Path& path, double window) const;
 
+    // flight_search.cpp
+    Flight flight(int ball, double from) const;
+    double time_to_flight(int a, int b, double from) const;
+    void search_table_in_air(int ball);
+    double time_over_pocket(int pocket, const Path& path) const;
+
     /// The duration from one time to another, rounded up.
     static double span(double from, double to) { return (to - from) + 0x1p-50 * to; }
 
     const Plan& plan_;
+    const bool flights_;  // balls may leave the cloth
     const Balls& balls_;
     const RestingContacts& resting_;
     double *detect_ns_, *search_ns_;  // sums of a profiled run; otherwise nullptr

@@ -111,7 +111,7 @@ void Log::fail(const std::string& why) {
     text += "balls that move (id state x y vx vy wx wy wz):\n";
     for (int i = 0; i < balls_.count(); ++i) {
         const Segment& s = balls_.segment(i);
-        if (s.state == MotionState::kStationary || s.state == MotionState::kPocketed) continue;
+        if (s.state == MotionState::kStationary || is_gone(s.state)) continue;
         const double tau = std::max(0.0, balls_.now() - s.start);
         const Vec3 r = position_at(s, tau), v = velocity_at(s, tau), w = spin_at(s, tau, balls_.radius(i));
         text += fmt::format("  {} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", id(i),

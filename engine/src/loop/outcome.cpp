@@ -92,6 +92,7 @@ void Log::outcome(StopReason why, Outcome& out) const {
         const EventKind& of = kind(e.type);
         const bool table = of.partner == Partner::kCushion || of.partner == Partner::kJaw;
         if (table && of.phase != EventPhase::kRelease) ++ball.cushions;
+        if (e.type == EventType::kBallOut) ball.pocket = kOffTable;
         if (e.type != EventType::kBallPocket) continue;
         ball.pocket = e.b;
         ball.fell = fallen++;

@@ -36,7 +36,8 @@ void extend(double r, double v, double a, double T, double margin, double& low, 
 Box Detector::swept(int ball, double from, double duration) const {
     const Segment& s = balls_.segment(ball);
     const Vec3 r = position_at(s, from - s.start), v = velocity_at(s, from - s.start);
-    const double R = balls_.radius(ball),
+    // A ball in the air may meet a nose at up to sqrt(2) R (nose_reach).
+    const double R = flies(s.state) ? 1.5 * balls_.radius(ball) : balls_.radius(ball),
                  margin = R * (1.0 + kBoxShare) + kBoxShare * (std::abs(r.x()) + std::abs(r.y()));
     Box box{};
     extend(r.x(), v.x(), s.a.x(), duration, margin, box.low_x, box.high_x);
@@ -73,6 +74,13 @@ Candidate Detector::pair(int a, const Path& mine, int b, double latest) const {
     const double from = std::max(s.start, q.start);
     const double until = std::min(std::min(mover_[a].until, mover_[b].until), latest);
     const Path one = from == s.start ? mine : path(a, from), two = path(b, from);
+    if (flights_ && (flies(s.state) || flies(q.state))) {
+        // A ball in a pocket's mouth is out of the way of those above the cloth.
+        if (s.state == MotionState::kFalling || q.state == MotionState::kFalling) return {};
+        const double reach = balls_.radius(a) + balls_.radius(b);
+        if (stays_apart(two.r - one.r, two.v - one.v, two.a - one.a, reach, span(from, until))) return {};
+        return {from + time_to_flight(a, b, from), {std::min(a, b), With::kBall, std::max(a, b)}};
+    }
     const double reach = contact_distance(balls_.radius(a), balls_.radius(b));
     if (stays_apart(two.r - one.r, two.v - one.v, two.a - one.a, reach, span(from, until))) return {};
     const double t = time_to_ball(one, two, reach);

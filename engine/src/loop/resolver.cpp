@@ -30,6 +30,7 @@ Vec3 vec(const double (&x)[3]) {
 Resolver::Resolver(const Plan& plan, const Balls& balls, Log& log, RestingContacts& resting,
                    const Detector& detector, ClustersMemory& memory)
     : plan_(plan),
+      flights_(plan.in_force(Effect::kAirborne)),
       balls_(balls),
       log_(log),
       resting_(resting),
@@ -55,6 +56,9 @@ void Resolver::resolve(const Contact& contact) {
         case With::kNothing:
             transition(contact.ball);
             break;
+        case With::kOut:
+            leave_table(contact.ball);
+            break;
     }
 }
 
@@ -62,7 +66,10 @@ void Resolver::resolve(const Contact& contact) {
 Segment Resolver::after_impact(int ball, const Vec3& r, const Vec3& v, const Vec3& w) const {
     const Segment& before = balls_.segment(ball);
     const MotionParams& motion = balls_.motion(ball);
-    if (before.state != MotionState::kFalling) return start_segment(balls_.now(), r, v, w, motion);
+    if (before.state != MotionState::kFalling) {
+        if (flights_) return free_segment(balls_.now(), r, v, w, motion);
+        return start_segment(balls_.now(), r, v, w, motion);
+    }
     const double falls = fall_speed(before, balls_.now() - before.start, motion.gravity);
     return falling_segment(balls_.now(), r, v, w, falls, motion);
 }
@@ -72,6 +79,10 @@ void Resolver::begin(int ball, const Vec3& r, const Vec3& v, const Vec3& w) {
 }
 
 void Resolver::ball_ball(int a, int b) {
+    if (flights_ && is_free(a, b)) {
+        free_balls(a, b);
+        return;
+    }
     // Ball 1 is the one with the smaller x, then y: the result does not depend on the ids, to the last bit.
     const Vec3 ra = balls_.position(a), rb = balls_.position(b);
     const bool swap = rb.x() < ra.x() || (rb.x() == ra.x() && rb.y() < ra.y());
@@ -175,6 +186,10 @@ bool Resolver::cluster(int a, int b, double v_n) {
 
 void Resolver::cushion(const Contact& contact) {
     const int ball = contact.ball;
+    if (flies(balls_.segment(ball).state)) {
+        cushion_in_air(contact);
+        return;
+    }
     TableTouches touches = table_touches(plan_, balls_, detector_, resting_, contact);
     const double e_c = plan_.balls.e_c;
     for (const TableTouch& touch : touches)
@@ -183,11 +198,13 @@ void Resolver::cushion(const Contact& contact) {
     const Vec3 r = balls_.position(ball);
     Vec3 v = balls_.velocity(ball), w = balls_.spin(ball);
     const char* const model = touches[0].model->name;
+    const double up = flights_ && plan_.balls.e_h > 0.0 ? hop(touches[0], {v, w}) : 0.0;
     if (!bounce(plan_, touches, v, w))
         log_.fail(
             fmt::format("the cushion model {} found no solution for the impact of ball {}; use another one",
                         model, log_.id(ball)));
     const MotionParams& motion = balls_.motion(ball);
+    v.z() = up;
     const Segment after = after_impact(ball, r, v, w);
     // A ball that rolls in slowly is decelerated before the impact, but the spin that it keeps drives it back to the
     // cushion and ends the bounce: the acceleration after the impact decides.
@@ -206,6 +223,10 @@ void Resolver::cushion(const Contact& contact) {
 
 void Resolver::pocket(const Contact& contact) {
     const int ball = contact.ball;
+    if (flies(balls_.segment(ball).state)) {
+        pocket_in_air(contact);
+        return;
+    }
     if (balls_.segment(ball).state == MotionState::kFalling) {
         leave_pocket(contact);
         return;
@@ -254,6 +275,10 @@ void Resolver::transition(int ball) {
     }
     if (segment.held) {
         resting_.advance(ball);
+        return;
+    }
+    if (flies(segment.state)) {
+        land(ball);
         return;
     }
     const Segment after = after_transition(segment, balls_.motion(ball));

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "carom/engine/airborne.h"
+#include "loop/bounce.h"
 #include "loop/clusters.h"
 #include "loop/detector.h"
 #include "loop/log.h"
@@ -15,6 +17,8 @@ class Resolver {
     Resolver(const Plan& plan, const Balls& balls, Log& log, RestingContacts& resting,
              const Detector& detector, ClustersMemory& memory);
 
+    /// The ball moves on as the cue leaves it.
+    void strike(int ball, const Velocities& struck) { go_on(ball, balls_.segment(ball).r, struck); }
     /// Resolves the event at Balls::now(). @throws SimulationError if a model finds no solution
     void resolve(const Contact& contact);
 
@@ -32,9 +36,20 @@ class Resolver {
     void leave_pocket(const Contact& contact);
     void transition(int ball);
     Segment after_impact(int ball, const Vec3& r, const Vec3& v, const Vec3& w) const;
+    // resolver_air.cpp
+    bool is_free(int a, int b) const;
+    void free_balls(int one, int two);
+    bool balances(int a, int b) const;
+    void cushion_in_air(const Contact& contact);
+    void pocket_in_air(const Contact& contact);
+    double hop(const TableTouch& touch, const Velocities& before) const;
+    void land(int ball);
+    void leave_table(int ball);
+    void go_on(int ball, const Vec3& r, Velocities after);
     void begin(int ball, const Vec3& r, const Vec3& v, const Vec3& w);
 
     const Plan& plan_;
+    const bool flights_;  // balls may leave the cloth
     const Balls& balls_;
     Log& log_;
     RestingContacts& resting_;

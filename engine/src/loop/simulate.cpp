@@ -59,15 +59,18 @@ StopReason Run::run(const Record* so_far) {
 
 void Run::start_balls() {
     const Scene& scene = plan_.scene;
+    const bool flies = plan_.in_force(Effect::kAirborne);
     for (int i = 0; i < balls_.count(); ++i) {
         const BallStart& ball = scene.ball[i];
-        log_.begin(i, start_segment(0.0, ball.position, ball.velocity, ball.spin, balls_.motion(i)));
+        const auto begins = flies ? free_segment : start_segment;
+        log_.begin(i, begins(0.0, ball.position, ball.velocity, ball.spin, balls_.motion(i)));
     }
     for (int i = 0; scene.cue && i < balls_.count(); ++i) {
         if (log_.id(i) != scene.cue->ball) continue;
-        const StruckBall struck = strike(*scene.cue, plan_.sizes[i], plan_.in_force(Effect::kSquirt));
-        log_.begin(i, start_segment(0.0, balls_.segment(i).r, struck.v, struck.w, balls_.motion(i)));
+        const StruckBall struck = strike(*scene.cue, plan_.sizes[i], plan_.in_force(Effect::kSquirt),
+                                         flies ? Vertical::kKeep : Vertical::kDrop);
         log_.event(EventType::kCueStrike, i);
+        resolver_.strike(i, {struck.v, struck.w});
     }
 }
 
@@ -81,7 +84,7 @@ StopReason Run::stop(double next) {
     bool moves = false;
     for (int i = 0; i < balls_.count(); ++i) {
         const MotionState state = balls_.segment(i).state;
-        moves = moves || (state != MotionState::kStationary && state != MotionState::kPocketed);
+        moves = moves || (state != MotionState::kStationary && !is_gone(state));
     }
     if (next == kNever && !moves) return StopReason::kAtRest;
     if (stop_ == kNever) return StopReason::kEndless;

@@ -75,8 +75,12 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
     Candidate& first = mover_[ball].table;
     first = {};
     const Segment& s = balls_.segment(ball);
-    if (s.state == MotionState::kPocketed || parts_.empty()) return;
+    if (is_gone(s.state) || parts_.empty()) return;
     find_parts(whole);
+    if (flies(s.state)) {
+        search_table_in_air(ball);
+        return;
+    }
     if (!translates(s.state)) {  // a ball that rests inside the circle of a pocket falls
         for (const int part : near_) {
             const Contact contact = parts_[part].of(ball);
@@ -125,6 +129,7 @@ double Detector::time_to(const Contact& contact, const Path& p, double window) c
         }
         case With::kBall:
         case With::kNothing:
+        case With::kOut:
             break;
     }
     return kNever;

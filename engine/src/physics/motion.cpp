@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "carom/engine/airborne.h"
 #include "carom/engine/tolerances.h"
 
 namespace carom {
@@ -98,6 +99,34 @@ Segment falling_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, d
     s.duration = std::max(0.0, (std::sqrt(2.0 * p.gravity * p.R) - falls) / p.gravity);
     s.state = MotionState::kFalling;
     return s;
+}
+
+Segment airborne_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& p) {
+    Segment s;
+    s.start = t;
+    s.r = r;
+    s.v = v;
+    s.w = w;
+    s.a = s.dw = Vec2::Zero();
+    s.state = MotionState::kAirborne;
+    const double g = p.gravity, c = std::max(0.0, r.z() - p.R), v_z = v.z();
+    const double root = std::sqrt(v_z * v_z + 2.0 * g * c);
+    if (v_z < 0.0)
+        s.duration = c > 0.0 ? 2.0 * c / (root - v_z) : 0.0;
+    else
+        s.duration = g > 0.0 ? (v_z + root) / g : kInfinity;
+    return s;
+}
+
+Segment free_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& p) {
+    if (!(r.z() > p.R) && (v.z() <= 0.0 || v.z() < bounce_end(p.R, p.gravity)))
+        return start_segment(t, r, v, w, p);
+    return airborne_segment(t, r, v, w, p);
+}
+
+Vec3 landing_velocity(const Segment& s, const MotionParams& p) {
+    const double c = std::max(0.0, s.r.z() - p.R);
+    return {s.v.x(), s.v.y(), -std::sqrt(s.v.z() * s.v.z() + 2.0 * p.gravity * c)};
 }
 
 Segment pocketed_segment(double t, const Pocket& pocket) {

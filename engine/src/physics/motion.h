@@ -28,18 +28,33 @@ inline double fall_speed(const Segment& segment, double tau, double gravity) {
     return gravity * tau - segment.v.z();
 }
 
-/// Place and velocity of a ball with the height that a fall gives it; position_at and velocity_at leave that out.
+/// Place and velocity of a ball with the height that a fall or a flight gives it; position_at and velocity_at leave that out.
 struct Placed {
     Vec3 position, velocity;
 };
 inline Placed placed_at(const Segment& segment, double tau, double gravity) {
     Placed p{position_at(segment, tau), velocity_at(segment, tau)};
+    if (flies(segment.state)) {
+        p.position.z() = segment.r.z() + tau * (segment.v.z() - 0.5 * gravity * tau);
+        p.velocity.z() = segment.v.z() - gravity * tau;
+        return p;
+    }
     if (segment.state != MotionState::kFalling) return p;
     const double falls = fall_speed(segment, tau, gravity);
     p.position.z() -= falls * falls / (2.0 * gravity);
     p.velocity.z() = -falls;
     return p;
 }
+
+/// The segment of a ball that flies until it comes down on the cloth: a parabola, without friction. r_z is at least R.
+Segment airborne_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
+
+/// The segment that starts at time t where balls may leave the cloth: airborne if the ball is above it or rises faster than
+/// bounce_end(), else as start_segment().
+Segment free_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
+
+/// The velocity with which a ball that flies comes down: exact, also for a ball that rose from the cloth.
+Vec3 landing_velocity(const Segment& segment, const MotionParams& params);
 
 /// The segment of a ball that lies in a pocket.
 Segment pocketed_segment(double t, const Pocket& pocket);
@@ -52,7 +67,8 @@ EventType transition_type(const Segment& segment, const Segment& next);
 
 /// Whether the centre moves in this state.
 inline bool translates(MotionState state) {
-    return state == MotionState::kSliding || state == MotionState::kRolling || state == MotionState::kFalling;
+    return state == MotionState::kSliding || state == MotionState::kRolling ||
+           state == MotionState::kFalling || state == MotionState::kAirborne;
 }
 
 }  // namespace carom

@@ -98,8 +98,8 @@ Need cushion_friction(const Facts& f) {
     const CushionModelInfo &straight = *f.plan.cushion, &jaw = *f.plan.jaw;
     if (&straight == &kSmooth && (&jaw == &kSmooth || table.jaws.empty()))
         return {false, f.say("model smooth")};
-    bool level =
-        f.balls().most_cushion_friction() == 0.0 && straight.reflects_when_level && jaw.reflects_when_level;
+    bool level = !f.scene.lifts() && !f.plan.ball_ball->free && f.balls().most_cushion_friction() == 0.0 &&
+                 straight.reflects_when_level && jaw.reflects_when_level;
     for (const BallSize& ball : f.plan.sizes) {
         for (const Cushion& c : table.cushions) level = level && c.height == ball.R;
         for (const Jaw& j : table.jaws) level = level && j.height == ball.R;
@@ -121,7 +121,8 @@ Need pockets(const Facts& f) {
 
 Need squirt(const Facts& f) {
     if (!f.scene.cue) return {false, f.say("no cue")};
-    if (f.scene.cue->side == 0.0 || f.scene.cue->end_mass == 0.0)
+    const bool up = f.scene.lifts() && f.scene.cue->elevation_deg > 0.0 && f.scene.cue->height != 0.0;
+    if ((f.scene.cue->side == 0.0 && !up) || f.scene.cue->end_mass == 0.0)
         return {false, f.say("no side offset, or end mass 0")};
     return {true, f.say("the cue strikes off centre")};
 }
@@ -130,10 +131,30 @@ Need clusters(const Facts& f) {
     const ClusterModel model = f.scene.physics.clusters;
     if (f.scene.ball.size() < 3) return {false, f.say("fewer than three balls")};
     if (model == ClusterModel::kSequential) return {false, f.say("clusters = \"sequential\": pair by pair")};
+    if (f.scene.physics.ball_ball->free)
+        return {false, f.say("model {} goes pair by pair", f.scene.physics.ball_ball->name)};
     if (!f.plan.pairs) return no_two_balls_meet(f);
     return {true, f.say("clusters = \"{}\"; decided per impact: no third ball within reach means the "
-                        "pair alone",
-                        name(model))};
+                        "pair alone{}",
+                        name(model), f.scene.lifts() ? ", and so does a ball in the air" : "")};
+}
+
+Need airborne(const Facts& f) {
+    const Scene& s = f.scene;
+    if (s.physics.vertical == Vertical::kDrop)
+        return {false, f.say("vertical = \"drop\": the model is planar")};
+    for (const BallStart& ball : s.ball)
+        if (ball.flies()) return {true, f.say("ball {} starts in the air", ball.id)};
+    if (s.lifts()) return {true, f.say("the cue is raised by {} degrees", s.cue->elevation_deg)};
+    const bool tilted = !s.alike(), rough = f.balls().ball_friction();
+    if (s.physics.ball_ball->free && f.plan.pairs && (tilted || rough))
+        return {true,
+                f.say("ball_ball = \"{}\": an impact of two balls may lift them", s.physics.ball_ball->name)};
+    const bool noses = f.reach.cushions && f.has_cushions() &&
+                       (s.physics.cushion != &kSmooth || s.physics.jaw_model() != &kSmooth);
+    if (f.balls().e_h > 0.0 && noses)
+        return {true, f.say("e_h = {}: a cushion may throw a ball up", f.balls().e_h)};
+    return {false, f.say("all balls start on the cloth, the cue is level, and no impact lifts a ball")};
 }
 
 // In the order of Effect, in which people know them.
@@ -190,6 +211,12 @@ constexpr EffectInfo kTable[kEffects] = {
      .keys = "`clusters`",
      .need = clusters,
      .leave_out = [](Plan& plan) { plan.clusters = ClusterModel::kSequential; }},
+    {.keyword = "airborne",
+     .skipped_when =
+         "`vertical` is `drop`, or all balls start on the cloth, the cue is level, and no impact can lift a "
+         "ball (`e_h` 0, another model than `two_step`)",
+     .keys = "`vertical`, `height`, `velocity`, `elevation_deg`, `ball_ball`, `e_h`",
+     .need = airborne},
 };
 
 /// What the plan decides, with what [effects] says about it.
@@ -222,7 +249,6 @@ void decide_effects(Plan& plan, ReachMemory& memory, const Words& say) {
     plan.skipped.reset();
     if (plan.effects.empty()) {
         for (const EffectInfo& info : kTable) plan.effects.push_back({info.keyword, true, {}});
-        plan.effects.push_back({"airborne", false, "not simulated: the model is planar"});
     }
     for (const bool last : {false, true}) {
         for (const EffectInfo& info : kTable) {

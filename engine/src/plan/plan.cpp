@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "carom/engine/airborne.h"
 #include "carom/engine/tolerances.h"
 #include "physics/cue.h"
 #include "physics/motion.h"
@@ -104,10 +105,28 @@ void fill(Plan& plan, const Geometry& geometry, ReachMemory& memory, const Words
     }
 }
 
+void warn_of_tip(Plan& plan, const BallStart& ball) {
+    const Cue& cue = *plan.scene.cue;
+    const BallSize size = plan.scene.size_of(ball);
+    if (ball.height > 0.0 || !(cue.elevation_deg > 0.0) || !(cue.speed > 0.0)) return;
+    const StruckBall struck = strike(cue, size, plan.in_force(Effect::kSquirt), Vertical::kKeep);
+    Velocities after{struck.v, struck.w};
+    hit_cloth(plan.balls, motion_of(plan, size.R), after);
+    if (meets_tip_again(cue, size, after.v, after.w))
+        plan.warnings.push_back(fmt::format(
+            "at an elevation of {} degrees the ball would come back from the cloth and meet the tip "
+            "again; that second hit is not simulated",
+            cue.elevation_deg));
+}
+
 void warn(Plan& plan) {
     const Scene& scene = plan.scene;
     for (const BallStart& ball : scene.ball) {
         if (!scene.cue || scene.cue->ball != ball.id) continue;
+        if (plan.in_force(Effect::kAirborne)) {
+            warn_of_tip(plan, ball);
+            continue;
+        }
         const double vertical = strike(*scene.cue, scene.size_of(ball)).dropped_vertical;
         if (vertical > 0.0)
             plan.warnings.push_back(

@@ -33,7 +33,8 @@ class Bounds {
         for (const BallStart& ball : scene.ball) {
             Vec3 v = ball.velocity, w = ball.spin;
             if (scene.cue && scene.cue->ball == ball.id) {
-                const StruckBall struck = strike(*scene.cue, scene.size_of(ball));
+                const StruckBall struck =
+                    strike(*scene.cue, scene.size_of(ball), true, scene.physics.vertical);
                 v = struck.v;
                 w = struck.w;
             }
@@ -41,6 +42,12 @@ class Bounds {
             motion_.R = size.R;
             starts_.push_back(
                 {ball.position.head<2>(), v, w, start_segment(0.0, ball.position, v, w, motion_), size});
+            // A ball that starts in the air, or that the tip presses onto the cloth, flies and slips.
+            if (ball.flies() || v.z() != 0.0) {
+                lifted_ = true;
+                starts_.back().segment.state = MotionState::kSliding;
+            }
+            energy_height_ += size.m * scene.physics.gravity * ball.height;
         }
     }
 
@@ -57,7 +64,7 @@ class Bounds {
         std::vector<double>& radius = radius_;
         radius.assign(starts_.size(), 0.0);
         reach.why = say_("nothing moves");
-        if (movers == 1) {
+        if (movers == 1 && !lifted_) {
             const std::size_t m = static_cast<std::size_t>(mover);
             radius[m] = alone(starts_[m]);
             reach.why = say_("ball {}, the only one that moves, goes no farther than {:.3g} m",
@@ -65,7 +72,7 @@ class Bounds {
         }
         // The bound of a ball that meets nothing holds as long as it indeed meets nothing.
         // Nor does the cloth brake it over a pocket.
-        if (movers > 1 || meets_cushion(radius) || meets_ball(radius) || meets_pocket(radius)) {
+        if (movers > 1 || lifted_ || meets_cushion(radius) || meets_ball(radius) || meets_pocket(radius)) {
             const double far = by_energy();
             std::fill(radius.begin(), radius.end(), far);
             reach.why = far < kUnbounded ? say_("no ball goes farther than {:.3g} m until the stop", far)
@@ -106,6 +113,7 @@ class Bounds {
         for (const Start& s : starts_)
             energy += (s.size.m / lightest) *
                       (0.5 * s.v.squaredNorm() + 0.2 * s.size.R * s.size.R * s.w.squaredNorm());
+        energy += energy_height_ / lightest;
         return wide(std::sqrt(2.0 * energy) * time_);
     }
 
@@ -144,6 +152,8 @@ class Bounds {
     std::vector<double>& radius_;
     MotionParams motion_;
     double time_;
+    bool lifted_ = false;         // the cloth does not bound how far a ball goes
+    double energy_height_ = 0.0;  // [J] of all balls
 };
 
 }  // namespace

@@ -107,7 +107,7 @@ class JsonObject {
     JsonValue at(std::string_view key) const;  ///< an error if it is missing
 
   private:
-    static constexpr std::size_t kMost = 16;
+    static constexpr std::size_t kMost = 24;
     std::size_t index(std::string_view key) const;
     void note_unknown(std::string_view key) const;
 

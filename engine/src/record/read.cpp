@@ -62,7 +62,7 @@ template <class T, std::size_t kRows>
 void read_fields(const JsonObject& all, const Field<T> (&fields)[kRows], const Format& format, T& object) {
     for (const Field<T>& f : fields) {
         if (!f.in(Files::kRecord)) continue;
-        const bool may_lack = f.optional || f.options.since > format.version;
+        const bool may_lack = f.optional || f.options.later || f.options.since > format.version;
         if (may_lack && !all.has(f.record_key())) continue;
         f.set(object, read_value(f, all.at(f.record_key())));
     }

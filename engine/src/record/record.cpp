@@ -160,11 +160,14 @@ Scene scene_after(const Scene& scene, const Record& record) {
     after.ball.clear();
     for (std::size_t i = 0; i < scene.ball.size(); ++i) {
         const BallState end = record.state_at(static_cast<int>(i), record.duration);
-        if (end.state == MotionState::kPocketed) continue;
+        if (is_gone(end.state)) continue;
         BallStart& ball = after.ball.emplace_back(scene.ball[i]);
-        // A scene has its balls on the cloth: one that falls begins to fall anew.
-        ball.position = {end.position.x(), end.position.y(), record.size(static_cast<int>(i)).R};
-        ball.velocity = {end.velocity.x(), end.velocity.y(), 0.0};
+        // One that falls into a pocket begins to fall anew.
+        const double R = record.size(static_cast<int>(i)).R;
+        const bool in_air = end.state == MotionState::kAirborne;
+        ball.height = in_air ? std::max(0.0, end.position.z() - R) : 0.0;
+        ball.position = {end.position.x(), end.position.y(), R + ball.height};
+        ball.velocity = {end.velocity.x(), end.velocity.y(), in_air ? end.velocity.z() : 0.0};
         ball.spin = end.spin;
         ball.where = {};
     }

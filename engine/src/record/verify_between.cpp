@@ -9,9 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "carom/engine/airborne.h"
 #include "carom/engine/tolerances.h"
 #include "contact/roots.h"
 #include "physics/motion.h"
+#include "record/gaps.h"
 
 namespace carom {
 namespace {
@@ -68,6 +70,13 @@ class Between {
                                    : pieces_[ball].r;
     }
 
+    SeenBall seen(std::size_t ball, double t) const {
+        const Segment& s = segment(ball);
+        const Vec2 r = place(ball, t);
+        const double z = placed_at(s, std::min(t - s.start, s.duration), record_.gravity).position.z();
+        return {Vec3(r.x(), r.y(), z), R(ball), flies(s.state), s.state == MotionState::kFalling};
+    }
+
     double energy(std::size_t ball, double t) const {
         const Segment& s = segment(ball);
         const double tau = std::min(t - s.start, s.duration);
@@ -98,9 +107,9 @@ class Between {
         while (piece.segment + 1 < segments.size() && segments[piece.segment + 1].start <= from)
             ++piece.segment;
         const Segment& s = segments[piece.segment];
-        piece.pocketed = s.state == MotionState::kPocketed;
+        piece.pocketed = is_gone(s.state);
         const bool still = s.state == MotionState::kStationary || piece.pocketed;
-        piece.moves = translates(s.state) || s.state == MotionState::kFalling;
+        piece.moves = translates(s.state);
         if (first || before != piece.segment || !still) piece.energy = energy(ball, from);
         const double tau = std::min(from - s.start, s.duration);
         piece.r = planar(position_at(s, tau));
@@ -116,12 +125,16 @@ class Between {
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             start += pieces_[i].energy;
             const MotionState state = segment(i).state;
-            const bool still = state == MotionState::kStationary || state == MotionState::kPocketed;
+            const bool still = state == MotionState::kStationary || is_gone(state);
             middle += still ? pieces_[i].energy : energy(i, half);
         }
         if (from == times_.front()) first_energy_ = last_energy_ = start;
+        // At the start stands what slow contacts of balls in the air have added; each of them is judged at its event.
+        const double parting = parting_speed(record_.balls.R, record_.gravity);
+        double added =
+            plan_.in_force(Effect::kAirborne) ? static_cast<double>(pieces_.size()) * parting * parting : 0.0;
         for (const auto& [t, now] : {std::pair{from, start}, std::pair{half, middle}}) {
-            if (now > last_energy_ + 1e-12 * first_energy_)
+            if (now > last_energy_ + 1e-12 * first_energy_ + std::exchange(added, 0.0))
                 report("U4", t, "energy rises from {:.17g} to {:.17g} J/kg", last_energy_, now);
             last_energy_ = now;
         }
@@ -129,41 +142,36 @@ class Between {
 
     void check_pair(std::size_t i, std::size_t j, double from, double to) {
         if (pieces_[i].pocketed || !(pieces_[i].moves || pieces_[j].moves)) return;
-        const double touching = contact_distance(R(i), R(j));
+        const double touching = R(i) + R(j);
         const Vec2 apart = pieces_[j].r - pieces_[i].r;
         const double near = touching + pieces_[i].reach + pieces_[j].reach;
         if (dot(apart, apart) > near * near) return;
         for (const double share : kShares) {
             const double t = from + share * (to - from);
-            const double gap = length(place(j, t) - place(i, t)) - touching;
+            const double gap = gap_between(seen(i, t), seen(j, t));
             if (gap < -kTouchTolerance)
                 report("U3", t, "balls {} and {} overlap by {:.3g} m", id(i), id(j), -gap);
         }
     }
 
     void check_table(std::size_t ball, double from, double to) {
-        const double radius = R(ball);
+        // A ball in the air may touch a nose at sqrt(2) R.
+        const double near = 1.5 * R(ball) + pieces_[ball].reach;
+        const bool in_air = flies(segment(ball).state);
         for (const CushionLine& line : plan_.geometry.cushions) {
-            const double height = std::abs(cross(line.direction, pieces_[ball].r - line.from));
-            if (height > radius + pieces_[ball].reach) continue;
-            check_crossing(ball, line, from, to);
+            if (std::abs(cross(line.direction, pieces_[ball].r - line.from)) > near) continue;
+            if (!in_air) check_crossing(ball, line, from, to);
             for (const double share : kShares) {
-                const double t = from + share * (to - from);
-                const Vec2 offset = place(ball, t) - line.from;
-                const double foot = dot(line.direction, offset);
-                const double gap = std::abs(cross(line.direction, offset)) - (radius - line.inset);
-                if (foot >= 0.0 && foot <= line.length && gap < -kTouchTolerance)
+                const double t = from + share * (to - from), gap = gap_to(line, seen(ball, t));
+                if (gap < -kTouchTolerance)
                     report("U3", t, "ball {} is {:.3g} m deep in a cushion", id(ball), -gap);
             }
         }
         for (const Nose& nose : plan_.geometry.noses) {
-            const double reach = radius + nose.radius - nose.inset;
             const Vec2 apart = pieces_[ball].r - nose.center;
-            const double near = reach + pieces_[ball].reach;
-            if (dot(apart, apart) > near * near) continue;
+            if (dot(apart, apart) > (near + nose.radius) * (near + nose.radius)) continue;
             for (const double share : kShares) {
-                const double t = from + share * (to - from);
-                const double gap = length(place(ball, t) - nose.center) - reach;
+                const double t = from + share * (to - from), gap = gap_to(nose, seen(ball, t));
                 if (gap < -kTouchTolerance)
                     report("U3", t, "ball {} is {:.3g} m deep in a jaw or cushion end", id(ball), -gap);
             }
@@ -197,10 +205,10 @@ class Between {
 }  // namespace
 
 double ball_energy(const Record& record, int ball, const BallState& state) {
-    if (state.state == MotionState::kPocketed) return 0.0;
+    if (is_gone(state.state)) return 0.0;
     const BallSize size = record.size(ball);
-    const double fallen =
-        state.state == MotionState::kFalling ? record.gravity * (state.position.z() - size.R) : 0.0;
+    const bool off = state.state == MotionState::kFalling || state.state == MotionState::kAirborne;
+    const double fallen = off ? record.gravity * (state.position.z() - size.R) : 0.0;
     return size.m / record.balls.m *
            (0.5 * state.velocity.squaredNorm() + 0.2 * size.R * size.R * state.spin.squaredNorm() + fallen);
 }

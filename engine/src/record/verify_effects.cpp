@@ -33,7 +33,7 @@ class Skipped {
                     record_.stopped == StopReason::kAtRest || record_.stopped == StopReason::kEndless;
                 const double last = for_ever ? kNever : record_.duration;
                 const double end = k + 1 < segments.size() ? segments[k + 1].start : last;
-                if (segments[k].state == MotionState::kPocketed || end < start_) continue;
+                if (is_gone(segments[k].state) || end < start_) continue;
                 check_frictions(segments[k], end > start_);
                 const Path path = path_of(segments[k], std::min(end - start_, segments[k].duration));
                 if (check_cushions) check_table(path);
@@ -63,6 +63,7 @@ class Skipped {
     void check_frictions(const Segment& s, bool lasts) {
         if (!lasts) return;
         const BallParams& p = plan_.scene.balls;
+        if (!plan_.in_force(Effect::kAirborne) && flies(s.state)) need("airborne", "flies");
         if (!plan_.in_force(Effect::kSpinDecay) && p.mu_sp * plan_.gravity != 0.0 && s.w.z() != 0.0)
             need("spin_decay", "has vertical spin");
         if (!plan_.in_force(Effect::kSliding) && p.mu_s * plan_.gravity != 0.0 &&

@@ -10,6 +10,7 @@
 #include "carom/engine/cushion.h"
 #include "carom/engine/geometry.h"
 #include "carom/engine/tolerances.h"
+#include "physics/nose_reach.h"
 #include "scene/sections.h"
 
 namespace carom::detail {
@@ -41,12 +42,15 @@ void check_overlaps(const Section& top, const Scene& scene) {
         const Vec2 p = planar(scene.ball[i].position);
         const double R = scene.size_of(scene.ball[i]).R;
         for (std::size_t j = 0; j < i; ++j) {
-            const double diameter = contact_distance(R, scene.size_of(scene.ball[j]).R);
+            const double other = scene.size_of(scene.ball[j]).R;
+            const bool lie = scene.ball[i].height == 0.0 && scene.ball[j].height == 0.0;
+            const double diameter = lie ? contact_distance(R, other) : R + other;
             const double least = diameter - touch_tolerance(p);
             // The axes are compared first, because most pairs are far apart.
             const Vec2 d = p - planar(scene.ball[j].position);
             if (std::abs(d.x()) >= diameter || std::abs(d.y()) >= diameter) continue;
-            const double distance = d.norm();
+            const double up = scene.ball[i].position.z() - scene.ball[j].position.z();
+            const double distance = lie ? d.norm() : std::sqrt(d.squaredNorm() + up * up);
             if (distance >= least) continue;
             top.fail(scene.ball[i].where, "balls {} and {} overlap by {:.4g} m; move one of them",
                      in_quotes(scene.ball[j].id), in_quotes(scene.ball[i].id), diameter - distance);
@@ -62,15 +66,18 @@ void check_reach(const Section& top, const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
         const Vec2 p = planar(ball.position);
         const double touch = touch_tolerance(p), R = scene.size_of(ball).R;
-        const auto reach = [&](double height) {
-            return R - nose_inset(scene.physics.cushion_touch, R, height);
+        // How deep a ball is in a nose at this horizontal distance.
+        const auto depth_at = [&](double distance, double height) {
+            const double inset = nose_inset(scene.physics.cushion_touch, R, height);
+            if (ball.height == 0.0) return R - inset - distance;
+            return nose_reach(R, height, inset) - length(Vec2(distance, ball.position.z() - height));
         };
         for (const Cushion& c : scene.table.cushions) {
-            const double depth = reach(c.height) - distance_to_segment(p, c.from, c.to);
+            const double depth = depth_at(distance_to_segment(p, c.from, c.to), c.height);
             if (depth > touch) refuse(ball, "cushion", c.id, depth);
         }
         for (const Jaw& j : scene.table.jaws) {
-            const double depth = reach(j.height) + j.radius - (p - j.center).norm();
+            const double depth = depth_at((p - j.center).norm() - j.radius, j.height);
             if (depth > touch) refuse(ball, "jaw", j.id, depth);
         }
     }
@@ -125,16 +132,17 @@ void check_sizes(const Section& top, const Scene& scene) {
             top.fail(where, "balls {} and {} differ in size: {}", in_quotes(scene.ball.front().id),
                      in_quotes(ball.id), why);
         };
-        if (rough && size.R != first.R)
+        if (rough && size.R != first.R && !model.free)
             refuse(
-                "friction between balls of different radius acts on a tilted line of centres, for which "
-                "there is no formula here; set balls.mu_b = 0 or physics.ball_ball = \"elastic\"");
+                "friction between balls of different radius acts on a tilted line of centres, for which this "
+                "model "
+                "has no formula; use physics.ball_ball = \"two_step\" or set balls.mu_b = 0");
         if (rough && !model.rough_masses)
             refuse(
                 fmt::format("the model {} takes balls of one mass; use physics.ball_ball = \"inelastic\" or "
                             "set balls.mu_b = 0",
                             model.name));
-        if (scene.ball.size() > 2 && scene.physics.clusters != ClusterModel::kSequential)
+        if (scene.ball.size() > 2 && scene.physics.clusters != ClusterModel::kSequential && !model.free)
             refuse(
                 fmt::format("clusters = \"{}\" takes balls that are alike; set physics.clusters = "
                             "\"sequential\"",
@@ -161,6 +169,30 @@ void check_cushion_model(const Section& top, const Scene& scene) {
     for (const Jaw& j : scene.table.jaws) check(*scene.physics.jaw_model(), "jaw", j.id, j.height);
 }
 
+/// Refuses what a planar scene cannot do.
+void check_vertical(const Section& top, const Scene& scene) {
+    if (scene.physics.vertical == Vertical::kKeep) return;
+    for (const BallStart& ball : scene.ball)
+        if (ball.flies())
+            top.fail(ball.where,
+                     "ball {} starts in the air, which physics.vertical = \"drop\" does not simulate; remove "
+                     "one of "
+                     "the two",
+                     in_quotes(ball.id));
+    if (scene.physics.ball_ball->free)
+        top.fail(
+            top.where("physics", "ball_ball"),
+            "physics.ball_ball = \"{}\" lifts balls, which physics.vertical = \"drop\" does not simulate; "
+            "remove one of the two",
+            scene.physics.ball_ball->name);
+}
+
+/// Whether a ball of the scene may ever leave the cloth.
+bool may_fly(const Scene& scene) {
+    const bool impacts = scene.physics.ball_ball->free || scene.balls.e_h > 0.0;
+    return scene.lifts() || (scene.physics.vertical == Vertical::kKeep && impacts);
+}
+
 /// Whether impacts with the table can give a ball vertical spin.
 bool cushions_twist(const Scene& scene) {
     const auto twists = [&](const CushionModelInfo* model) {
@@ -180,7 +212,7 @@ struct Motions {
 Motions possible_motions(const Scene& scene) {
     Motions m;
     const bool struck = scene.cue && scene.cue->speed > 0.0;
-    m.travel = m.slip = struck;
+    m.travel = m.slip = struck || scene.lifts();
     m.twist = struck && scene.cue->side != 0.0;
     for (const BallStart& ball : scene.ball) {
         const double R = scene.size_of(ball).R;
@@ -210,6 +242,11 @@ void check_rest(const Section& top, const Scene& scene) {
     };
     if (scene.physics.gravity == 0.0 && (m.travel || m.twist))
         refuse("physics", "physics.gravity", "balls move");
+    if (scene.balls.e_t + scene.balls.e_t_more >= 1.0 && may_fly(scene))
+        top.fail(top.has("balls", "e_t_fit") ? top.where("balls", "e_t_fit") : top.where("balls", "e_t"),
+                 "with balls.e_t = 1 balls bounce for ever and the run cannot end at rest; lower it, or add "
+                 "[stop] "
+                 "with time or events");
     if (scene.balls.mu_s == 0.0 && m.slip) refuse("balls", "balls.mu_s", "balls slide");
     if (scene.balls.mu_r == 0.0 && m.travel) refuse("balls", "balls.mu_r", "balls roll");
     if (scene.balls.mu_sp == 0.0 && m.twist) refuse("balls", "balls.mu_sp", "balls spin");
@@ -217,6 +254,7 @@ void check_rest(const Section& top, const Scene& scene) {
 
 void check_numbers(const Section& top, const Scene& scene, Change change) {
     check_cloth(top, scene);
+    check_vertical(top, scene);
     check_noses(top, scene);
     check_sizes(top, scene);
     check_cushion_model(top, scene);

@@ -140,10 +140,12 @@ std::vector<double> Section::numbers(const toml::node& node, const Key& key) con
     const toml::array* array = node.as_array();
     const char* shape = key.options.shape;
     if (!array) fail(node, "{} must be an array {}, not {}", full(key.key), shape, type_name(node));
-    if (array->size() != key.count())
+    const bool lacks = key.options.last_may_lack && array->size() + 1 == key.count();
+    if (array->size() != key.count() && !lacks)
         fail(node, "{} has {} values; write {} = {}", full(key.key), array->size(), key.key, shape);
     std::vector<double> out;
     for (const toml::node& value : *array) out.push_back(number(value, element(key, out.size()), key.range));
+    out.resize(key.count());
     return out;
 }
 

@@ -84,14 +84,22 @@ Found find_in_ball(const Scene& scene, std::string_view key) {
         const auto ball = [i](Scene& s) -> BallStart& { return s.ball[i]; };
         if (key != "radius" && key != "mass") {
             const bool place = key.substr(0, key.find('.')) == "position";
-            return find(kBallStartFields, "ball", key, place ? Change::kPlaces : Change::kNumbers, ball);
+            Found found = find(kBallStartFields, "ball", key,
+                               place || key == "height" ? Change::kPlaces : Change::kNumbers, ball);
+            if (key == "height")
+                found.put = [put = std::move(found.put), i](Scene& s, double value) {
+                    const Change change = put(s, value);
+                    s.ball[i].position.z() = s.size_of(s.ball[i]).R + value;
+                    return change;
+                };
+            return found;
         }
         if (!scene.ball[i].own) fail("the ball has no size of its own; give it one, then vary it");
         Found found = find(kSizeFields, "ball", key, Change::kTable,
                            [i](Scene& s) -> BallSize& { return *s.ball[i].own; });
         found.put = [put = std::move(found.put), i](Scene& s, double value) {
             const Change change = put(s, value);
-            s.ball[i].position.z() = s.ball[i].own->R;
+            s.ball[i].position.z() = s.ball[i].own->R + s.ball[i].height;
             return change;
         };
         return found;
@@ -105,7 +113,7 @@ Found find_in_balls(std::string_view key) {
     if (key == "radius")
         found.put = [put = std::move(found.put)](Scene& s, double value) {
             const Change change = put(s, value);
-            for (BallStart& ball : s.ball) ball.position.z() = s.size_of(ball).R;
+            for (BallStart& ball : s.ball) ball.position.z() = s.size_of(ball).R + ball.height;
             return change;
         };
     return found;

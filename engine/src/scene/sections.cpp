@@ -26,7 +26,7 @@ BallStart read_ball(const Section& s, const BallSize& common) {
     ball.where = s.where();
     s.read(kBallStartFields, ball);
     check_id(s, ball.id);
-    ball.position.z() = size.R;
+    ball.position.z() = size.R + ball.height;
     return ball;
 }
 
@@ -46,8 +46,8 @@ void read_balls(const Section& top, Scene& scene) {
     use_balls(scene, scene.ball_preset);
     if (!s) return;
     s->read(kBallFields, scene.balls);
-    for (const auto& [number, fit] :
-         {std::pair{"mu_b", "mu_b_fit"}, std::pair{"e_c", "e_c_fit"}, std::pair{"f_c", "f_c_fit"}})
+    for (const auto& [number, fit] : {std::pair{"mu_b", "mu_b_fit"}, std::pair{"e_c", "e_c_fit"},
+                                      std::pair{"f_c", "f_c_fit"}, std::pair{"e_t", "e_t_fit"}})
         if (s->has(number) && s->has(fit))
             s->fail(fit, "balls.{} and balls.{} are two values for one coefficient; remove one", number, fit);
     check_fits(*s, scene.balls);

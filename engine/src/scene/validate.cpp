@@ -19,14 +19,16 @@ namespace {
 using detail::in_quotes;
 using detail::Section;
 
-/// Refuses a ball that is not on the cloth, which no file can describe.
+/// Refuses a ball whose centre is not where its height says, which no file can describe.
 void check_heights(const Section& top, const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
-        if (ball.position.z() == scene.size_of(ball).R && ball.velocity.z() == 0.0) continue;
+        const double R = scene.size_of(ball).R;
+        if (ball.position.z() == R + ball.height) continue;
         top.fail(SourceLocation{},
-                 "ball {} has its centre at z = {} m and rises at {} m/s; balls roll on the "
-                 "cloth: z has to be the radius, {} m, and the speed 0",
-                 in_quotes(ball.id), ball.position.z(), ball.velocity.z(), scene.size_of(ball).R);
+                 "ball {} has its centre at z = {} m, its radius is {} m and its height above the cloth {} "
+                 "m; z has to be "
+                 "the sum of the two",
+                 in_quotes(ball.id), ball.position.z(), R, ball.height);
     }
 }
 
@@ -93,7 +95,6 @@ void check_effects(const Scene& scene) {
 
 void check_all(const Scene& scene) {
     const Section top(scene.file, "");
-    check_heights(top, scene);
     const Section balls(scene.file, "balls");
     balls.check(kBallPresetFields, scene);
     balls.check(kBallFields, scene.balls);
@@ -103,6 +104,7 @@ void check_all(const Scene& scene) {
     check_friction(top, scene);
     check_table(scene);
     check_balls(scene);
+    check_heights(top, scene);
     if (scene.cue) {
         const Section cue(scene.file, "cue");
         cue.check(kCueFields, *scene.cue);

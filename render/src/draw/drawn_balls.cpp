@@ -16,11 +16,16 @@ float linear(float srgb) {
     return srgb * srgb;  // the same conversion as from_screen() in shaders/common.glsl
 }
 
+// [radii] How far the shading around a ball reaches: farther from one in the air.
+double shadow_reach(const DrawBall& ball) {
+    return shaders::kShadowReach * std::max(1.0, ball.center.z() / ball.radius);
+}
+
 BallPlace place_of(const DrawBall& ball, const TableMesh& table) {
     if (ball.in_pocket) return BallPlace::kPocket;
     const bool near = std::any_of(table.noses.begin(), table.noses.end(), [&](const auto& nose) {
         return distance_to_segment(ball.center.head<2>(), nose[0], nose[1]) <
-               shaders::kShadowReach * ball.radius;
+               shadow_reach(ball) * ball.radius;
     });
     return near ? BallPlace::kCushion : BallPlace::kCloth;
 }
@@ -62,12 +67,14 @@ PixelBox whole(FrameSize size) {
 
 // Pixels that the ball and its shadow may cover; the whole image if part of the ball is behind the eye.
 PixelBox box_of(const DrawBall& ball, const Camera& camera) {
-    const double reach = (ball.in_pocket ? 1.0 : shaders::kShadowReach) * ball.radius;
+    const double reach = (ball.in_pocket ? 1.0 : shadow_reach(ball)) * ball.radius;
+    // Down to the shadow of one in the air.
+    const double down = ball.in_pocket ? ball.radius : std::max(ball.radius, ball.center.z());
     const PixelBox all = whole(camera.size);
     Vec2 low(1e9, 1e9), high(-1e9, -1e9);
     for (int i = 0; i < 8; ++i) {
         const Vec3 corner = ball.center + Vec3((i & 1) ? reach : -reach, (i & 2) ? reach : -reach,
-                                               (i & 4) ? ball.radius : -ball.radius);
+                                               (i & 4) ? ball.radius : -down);
         const std::optional<Vec2> pixel = camera.project(corner);
         if (!pixel) return all;
         low = low.cwiseMin(*pixel);

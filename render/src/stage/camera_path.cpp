@@ -59,7 +59,7 @@ int ball_by_id(const Record& record, const std::string& id) {
 Vec3 place_to_follow(const Record& record, int ball, double t) {
     const BallTrack& track = record.tracks[ball];
     const Segment& last = track.segments.back();
-    if (last.state == MotionState::kPocketed && t > last.start) t = last.start;
+    if (is_gone(last.state) && t > last.start) t = last.start;
     Vec3 place = record.state_at(ball, t).position;
     place.z() = record.size(ball).R;
     return place;

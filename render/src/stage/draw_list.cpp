@@ -16,7 +16,7 @@ std::vector<Vec2> visited_places(const Record& record) {
     for (const BallTrack& track : record.tracks) {
         for (std::size_t i = 0; i < track.segments.size(); ++i) {
             const Segment& segment = track.segments[i];
-            if (segment.state == MotionState::kPocketed) continue;
+            if (is_gone(segment.state)) continue;
             const double next = i + 1 < track.segments.size() ? track.segments[i + 1].start : record.duration;
             const double lasts = std::min(std::max(0.0, next - segment.start), segment.duration);
             for (int piece = 0; piece <= kPieces; ++piece) {
@@ -85,6 +85,8 @@ DrawList Stage::at(double t, std::optional<FrameBudget> cost) const {
     for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
         const BallState state = record_.state_at(static_cast<int>(i), t);
         if (!state.position.allFinite()) continue;
+        // One that has left the table falls out of sight.
+        if (state.state == MotionState::kOut && state.position.z() < 0.0) continue;
         DrawBall ball;
         ball.in_pocket = state.state == MotionState::kPocketed;
         if (ball.in_pocket && is_covered(record_, i, t)) continue;

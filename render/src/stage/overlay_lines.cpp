@@ -52,7 +52,7 @@ int pieces_of(const Camera& camera, const Segment& segment, double lasts) {
 void add_trail(DrawList& list, const BallTrack& track, double t, float width, const Rgba* color) {
     for (std::size_t i = 0; i < track.segments.size(); ++i) {
         const Segment& segment = track.segments[i];
-        if (segment.start >= t || segment.state == MotionState::kPocketed) return;
+        if (segment.start >= t || is_gone(segment.state)) return;
         const double end = i + 1 < track.segments.size() ? std::min(track.segments[i + 1].start, t) : t;
         const double lasts = std::min(end - segment.start, segment.duration);
         if (!(lasts > 0.0) || segment.v.norm() == 0.0) continue;
@@ -134,7 +134,7 @@ void add_spin(DrawList& list, const Record& record, double t) {
     const Rgba level{1.0F, 0.95F, 0.35F, 1.0F}, vertical{0.45F, 1.0F, 0.95F, 1.0F};
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         const BallState state = record.state_at(static_cast<int>(i), t);
-        if (state.state == MotionState::kPocketed || state.state == MotionState::kStationary) continue;
+        if (is_gone(state.state) || state.state == MotionState::kStationary) continue;
         const double R = record.size(static_cast<int>(i)).R;
         const Vec3 top = state.position + Vec3(0.0, 0.0, R);
         // The spin moves the top of the ball with w x R z; the arrow shows 0.1 s of this, at most ten radii.

@@ -41,8 +41,9 @@ void SweepPlayer::append_results(std::string& rows) {
     for (const BallOutcome& ball : outcome.balls) {
         append_csv(rows, ball.position.x());
         append_csv(rows, ball.position.y());
-        append_csv(rows,
-                   ball.pocket < 0 ? std::string_view() : simulator_.scene().table.pockets[ball.pocket].id);
+        append_csv(rows, ball.pocket == kOffTable ? std::string_view("out")
+                         : ball.pocket < 0        ? std::string_view()
+                                                  : simulator_.scene().table.pockets[ball.pocket].id);
     }
 }
 

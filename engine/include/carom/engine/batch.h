@@ -116,10 +116,10 @@ struct Batch {
     std::vector<std::int64_t> events;     ///< n
     std::vector<std::int32_t> first_hit;  ///< n: the first ball that the struck ball meets, or -1
     std::vector<double> x, y;             ///< n x b [m], at the end
-    std::vector<std::int32_t> pocket;     ///< n x b: index of the pocket that holds the ball, or -1
-    std::vector<std::int32_t> fell;       ///< n x b: 0 for the ball that fell first, 1, ..., or -1
-    std::vector<std::int32_t> cushions;   ///< n x b: how often the ball met a cushion or a jaw
-    std::vector<std::uint64_t> hash;      ///< n, if asked for: Outcome::hash
+    std::vector<std::int32_t> pocket;    ///< n x b: index of the pocket that holds the ball, kOffTable, or -1
+    std::vector<std::int32_t> fell;      ///< n x b: 0 for the ball that fell first, 1, ..., or -1
+    std::vector<std::int32_t> cushions;  ///< n x b: how often the ball met a cushion or a jaw
+    std::vector<std::uint64_t> hash;     ///< n, if asked for: Outcome::hash
     struct Message {
         std::size_t shot;
         std::string text;  ///< why the shot has no result

@@ -26,6 +26,18 @@ struct CushionContact {
 CushionContact cushion_contact(const BallParams& balls, const BallSize& size, double height,
                                const Vec2& normal, const Vec3& v, const Vec3& w);
 
+/// The friction at a slip [m/s] at the nose, and the restitution at a speed [m/s] along the normal.
+double cushion_friction(const BallParams& balls, double slip);
+double cushion_restitution(const BallParams& balls, double speed);
+
+/// Tangential impulse per mass [m/s] of a ball in the air at a nose, where nothing but the nose acts on it.
+/// @param e, f  restitution and friction
+/// @param v_n, slip  [m/s] speed along the normal, and at right angles to it at the nose
+using GripFunction = double (*)(double e, double f, double v_n, double slip);
+
+/// Coulomb's friction of a whole impact, f (1 + e) v_n, or what ends the slip (2/7 of it).
+double coulomb_grip(double e, double f, double v_n, double slip);
+
 /// Velocities after the impact, in place. v_z is 0 before and afterwards (planar).
 ///
 /// @param normal  unit, horizontal, from the cushion into the table.
@@ -46,6 +58,8 @@ struct CushionModelInfo {
     bool reflects_when_level = false;
     /// Whether the model has a solution for all velocities; null: for every contact. In mathavan_2010 a ball can jam.
     bool (*accepts)(const CushionContact& contact) = nullptr;
+    /// Friction of a ball in the air; null: none.
+    GripFunction grip = coulomb_grip;
 };
 
 /// The models that others refer to; cushion_model("stronge") and all_of() find the rest.

@@ -45,7 +45,9 @@ struct KeyOptions {
     const char* record_key = nullptr;  ///< the key in record files, where it is another one
     Files files = Files::kBoth;
     int since = 1;                            ///< the version of record files that brought the key
+    bool later = false;                       ///< added within that version: older files of it lack the key
     bool needed = false;                      ///< the scene has to give it
+    bool last_may_lack = false;               ///< the last number of a list may be left out where it is 0
     const char* standard = nullptr;           ///< the default in words, where it is no value
     const char* instead_of = nullptr;         ///< the key whose place this one takes where it is given
     std::span<const char* const> names = {};  ///< the texts that are allowed; empty: all
@@ -89,7 +91,10 @@ struct Field : Key {
     FieldValue value(const T& object) const {
         FieldValue value = get(object);
         // The height of a ball is no part of its place.
-        if (auto* list = std::get_if<std::vector<double>>(&value)) list->resize(count());
+        if (auto* list = std::get_if<std::vector<double>>(&value)) {
+            list->resize(count());
+            if (options.last_may_lack && list->back() == 0.0) list->pop_back();
+        }
         return value;
     }
 };
@@ -281,9 +286,9 @@ constexpr Field<detail::ClassOf<kFirst>> field(const char* key, const Interval& 
 /// fit; `fit` is the list of all three, in scene files and where one of the others is not 0.
 template <auto kFirst, auto... kOthers>
 constexpr Field<detail::ClassOf<kFirst>> number_or_fit(const char* key, const Interval& range,
-                                                       const char* meaning) {
+                                                       const char* meaning, const KeyOptions& options = {}) {
     using T = detail::ClassOf<kFirst>;
-    return {{key, Key::Kind::kNumber, range, meaning, {}, false, 1, nullptr},
+    return {{key, Key::Kind::kNumber, range, meaning, options, false, 1, nullptr},
             [](const T& object) -> FieldValue { return object.*kFirst; },
             [](T& object, const FieldValue& value) {
                 object.*kFirst = std::get<double>(value);

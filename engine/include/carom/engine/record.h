@@ -19,17 +19,36 @@
 
 namespace carom {
 
-/// kFalling: over a pocket, not yet in it.
-enum class MotionState : std::uint8_t { kStationary, kSpinning, kSliding, kRolling, kPocketed, kFalling };
+/// kFalling: over a pocket, not yet in it. kOut: it has flown over the cushions and plays no more.
+enum class MotionState : std::uint8_t {
+    kStationary,
+    kSpinning,
+    kSliding,
+    kRolling,
+    kPocketed,
+    kFalling,
+    kAirborne,
+    kOut
+};
 constexpr auto names_of(MotionState) {
-    return std::array{"stationary", "spinning", "sliding", "rolling", "pocketed", "falling"};
+    return std::array{"stationary", "spinning", "sliding",  "rolling",
+                      "pocketed",   "falling",  "airborne", "out"};
+}
+/// Whether a ball in this state plays no more.
+constexpr bool is_gone(MotionState state) {
+    return state == MotionState::kPocketed || state == MotionState::kOut;
+}
+/// Whether a ball moves without the cloth, on a parabola.
+constexpr bool flies(MotionState state) {
+    return state == MotionState::kAirborne || state == MotionState::kOut;
 }
 
 /// One ball between two events that touch it. Times inside are relative to `start`.
 struct Segment {
     double start = 0.0;  ///< s since the start of the shot
     /// Centre, velocity, angular velocity at the start. While a ball falls, r_z stays the height at which that began, and v_z
-    /// is how fast it falls at the start: tau later it is by (v_z - g tau)^2 / 2g lower than r_z.
+    /// is how fast it falls at the start: tau later it is by (v_z - g tau)^2 / 2g lower than r_z. While it flies, its height is
+    /// r_z + v_z tau - g tau^2 / 2.
     Vec3 r, v, w;
     Vec2 a;                   ///< acceleration [m/s^2], constant
     Vec2 dw;                  ///< d(w_x, w_y)/dt [rad/s^2], constant
@@ -60,9 +79,11 @@ enum class EventType : std::uint8_t {
     kBallCushionRelease,
     kBallJawHold,
     kBallJawRelease,
-    kBallEdge,  ///< the centre passes the edge of a pocket: the ball falls, or is back on the cloth
+    kBallEdge,   ///< the centre passes the edge of a pocket: the ball falls, or is back on the cloth
+    kBallCloth,  ///< a ball that flew, or that another impact pressed down, hits the cloth
+    kBallOut,    ///< the centre of a ball that flies is over a cushion: it has left the table
 };
-inline constexpr int kEventTypes = 17;
+inline constexpr int kEventTypes = 19;
 
 /// What Event::b is the index of.
 enum class Partner : std::uint8_t { kNone, kBall, kCushion, kJaw, kPocket };
@@ -70,7 +91,7 @@ enum class Partner : std::uint8_t { kNone, kBall, kCushion, kJaw, kPocket };
 /// What happens to the ball.
 enum class EventPhase : std::uint8_t {
     kStrike,      ///< the cue hits it
-    kImpact,      ///< it meets another ball, a cushion, a jaw or a pocket
+    kImpact,      ///< it meets another ball, a cushion, a jaw, a pocket or the cloth
     kTransition,  ///< it goes over from one state of motion to another by itself
     kHold,        ///< a resting contact begins
     kRelease      ///< a resting contact ends
@@ -103,6 +124,8 @@ inline constexpr EventKind kEventKinds[kEventTypes] = {
     {EventType::kBallJawHold, "ball_jaw_hold", EventPhase::kHold, Partner::kJaw},
     {EventType::kBallJawRelease, "ball_jaw_release", EventPhase::kRelease, Partner::kJaw},
     {EventType::kBallEdge, "ball_edge", EventPhase::kTransition, Partner::kPocket},
+    {EventType::kBallCloth, "ball_cloth", EventPhase::kImpact},
+    {EventType::kBallOut, "ball_out", EventPhase::kTransition},
 };
 
 constexpr const EventKind& kind(EventType type) {

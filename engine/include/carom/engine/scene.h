@@ -84,6 +84,12 @@ struct BallParams {
     /// each m/s, and not below 0.
     double e_c_fall = 0.0;   ///< [s/m]
     double e_c_above = 0.0;  ///< [m/s]
+    /// Restitution of ball and cloth, which may fall with the speed V [m/s]: e_t + e_t_more exp(-e_t_fall V). Source of 0.5: D.
+    /// Alciatore, "Physical properties".
+    double e_t = 0.5, e_t_more = 0.0;
+    double e_t_fall = 0.0;  ///< [s/m]
+    /// Share of the downward speed from a cushion that throws a ball up again. 0: the published planar cushions.
+    double e_h = 0.0;
     BallSize size() const { return {R, m}; }
     bool ball_friction() const { return mu_b != 0.0 || mu_b_more != 0.0; }
     double most_cushion_friction() const { return f_c + f_c_more; }
@@ -137,6 +143,22 @@ inline constexpr Field<BallParams> kBallFields[] = {
         "f_c_fit", kFriction,
         "cushion friction a + b exp(-c u) at the slip u in m/s at the nose before the impact",
         "[a, b, c] for a + b exp(-c u)", "f_c"),
+    number_or_fit<&BallParams::e_t, &BallParams::e_t_more, &BallParams::e_t_fall>(
+        "e_t", kRestitution, "restitution of ball and cloth, at any speed", {.since = 2, .later = true}),
+    field<&BallParams::e_t_more>(
+        "e_t_more", kRestitution,
+        "at a speed of V m/s towards the cloth its restitution is `e_t` + `e_t_more` exp(-`e_t_fall` V)",
+        {.files = Files::kRecord, .since = 2, .later = true}),
+    field<&BallParams::e_t_fall>("e_t_fall", at_least(0.0, kMaxFriction, "s/m"), "see `e_t_more`",
+                                 {.files = Files::kRecord, .since = 2, .later = true}),
+    fit<&BallParams::e_t, &BallParams::e_t_more, &BallParams::e_t_fall>(
+        "e_t_fit", kFriction,
+        "restitution of ball and cloth a + b exp(-c V) at the speed V in m/s towards the cloth",
+        "[a, b, c] for a + b exp(-c V)", "e_t"),
+    field<&BallParams::e_h>("e_h", kRestitution,
+                            "share of the downward speed from a cushion that throws a ball up again: a hop; "
+                            "about 0.2 on a real table",
+                            {.since = 2, .later = true}),
 };
 
 /// Friction between two balls whose surfaces slip by `slip` [m/s] at the contact. Source of the form: D.
@@ -147,19 +169,25 @@ double ball_friction(const BallParams& balls, double slip);
 /// A ball at the start.
 struct BallStart {
     std::string id = "cue";
-    Vec3 position = {0.635, 0.5, 0.0};           ///< centre [m], z = its radius
-    Vec3 velocity = Vec3::Zero();                ///< [m/s], z = 0
+    Vec3 position = {0.635, 0.5, 0.0};           ///< centre [m], z = its radius + its height
+    Vec3 velocity = Vec3::Zero();                ///< [m/s]
     Vec3 spin = Vec3::Zero();                    ///< [rad/s]
+    double height = 0.0;                         ///< [m] between the ball and the cloth
     SourceLocation where;                        ///< where the file puts it ([rack] for a racked ball)
     std::optional<BallSize> own = std::nullopt;  ///< radius and mass of its own; nothing: those of all balls
+    /// Whether it starts in the air.
+    bool flies() const { return height > 0.0 || velocity.z() != 0.0; }
     bool operator==(const BallStart&) const = default;
 };
 inline constexpr Field<BallStart> kBallStartFields[] = {
     field<&BallStart::id>("id", at_least(1.0, kMaxIdLength, "bytes"),
                           "used once; no commas, quotes or control characters"),
     field<&BallStart::position>("position", kCoordinate, "of the centre", {.shape = "[x, y]"}),
+    field<&BallStart::height>("height", at_least(0.0, kMaxLength, "m"),
+                              "of its lowest point above the cloth: it starts in the air"),
     field<&BallStart::velocity>("velocity", at_least(-kMaxSpeed, kMaxSpeed, "m/s"),
-                                "to start moving without a cue", {.shape = "[vx, vy]"}),
+                                "to start moving without a cue; vz, upward, may be left out",
+                                {.shape = "[vx, vy, vz]", .last_may_lack = true}),
     field<&BallStart::spin>("spin", at_least(-kMaxSpin, kMaxSpin, "rad/s"), "angular velocity at the start",
                             {.shape = "[wx, wy, wz]"}),
 };
@@ -235,7 +263,7 @@ inline constexpr Field<Cue> kCueFields[] = {
     field<&Cue::speed>("speed", at_least(0.0, kMaxSpeed, "m/s"), "of the cue"),
     field<&Cue::aim_deg>("aim_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"), "0 is +x, 90 is +y"),
     field<&Cue::elevation_deg>("elevation_deg", {0.0, false, 90.0, true, "degrees"},
-                               "of the butt; the vertical velocity is dropped"),
+                               "of the butt; more than 0 throws the ball up"),
     field<&Cue::side, &Cue::height>(
         "offset", at_least(-1.0, 1.0, "ball radii"),
         "left and up positive, together at most 0.5: farther out the tip slips off",
@@ -259,6 +287,11 @@ constexpr auto names_of(CushionTouch) {
 enum class PocketModel : std::uint8_t { kFall, kAtOnce };
 constexpr auto names_of(PocketModel) {
     return std::array{"fall", "at_once"};
+}
+/// Whether balls leave the cloth. kDrop: a planar model, which drops the vertical part of a strike.
+enum class Vertical : std::uint8_t { kKeep, kDrop };
+constexpr auto names_of(Vertical) {
+    return std::array{"keep", "drop"};
 }
 enum class ClusterModel : std::uint8_t { kCompliant, kSequential, kRigid };
 constexpr auto names_of(ClusterModel) {
@@ -288,6 +321,7 @@ struct Physics {
     std::optional<int> substeps;  ///< set: the published march with N of them, instead of the tolerance
     CushionTouch cushion_touch = CushionTouch::kRadius;
     PocketModel pocket = PocketModel::kFall;
+    Vertical vertical = Vertical::kKeep;
     bool operator==(const Physics&) const = default;
 };
 inline constexpr Field<Physics> kPhysicsFields[] = {
@@ -322,6 +356,11 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
                             "over the edge before it has sunk, or it "
                             "is pocketed `at_once`, as in planar simulators",
                             {.since = 2}),
+    field<&Physics::vertical>(
+        "vertical",
+        "a ball that is struck or thrown up flies, or the vertical part is dropped, as in planar "
+        "simulators",
+        {.since = 2}),
 };
 
 /// What a plan computes or leaves out. The keywords of [effects], and when one is left out: effect_table() in plan.h, in this
@@ -337,8 +376,9 @@ enum class Effect : std::uint8_t {
     kPockets,
     kSquirt,
     kClusters,
+    kAirborne,
 };
-inline constexpr std::size_t kEffects = 10;
+inline constexpr std::size_t kEffects = 11;
 
 /// [effects]: one effect forced in or out of the plan.
 struct EffectOverride {
@@ -391,6 +431,13 @@ struct Scene {
     Stop stop;
     RenderSettings render;
     BallSize size_of(const BallStart& start) const { return start.own.value_or(balls.size()); }
+    /// Whether a ball may leave the cloth before it meets anything: one starts in the air, or the cue is raised.
+    bool lifts() const {
+        const bool raised = cue && cue->elevation_deg > 0.0 && cue->speed > 0.0;
+        return physics.vertical == Vertical::kKeep &&
+               (raised ||
+                std::any_of(ball.begin(), ball.end(), [](const BallStart& b) { return b.flies(); }));
+    }
     /// Whether all balls have one radius and mass.
     bool alike() const {
         return std::all_of(ball.begin(), ball.end(),

@@ -53,10 +53,13 @@ Record simulate(const Plan& plan, const SimulateOptions& options = {});
 /// no longer has, or has later). The result has the bits of a run that never stopped. @throws SimulationError
 Record resume(const Plan& plan, const Record& so_far, const SimulateOptions& options = {});
 
+/// Instead of the index of a pocket: the ball has left the table (ball_out).
+inline constexpr int kOffTable = -2;
+
 /// What became of one ball.
 struct BallOutcome {
     Vec3 position = Vec3::Zero();  ///< at the end [m]; of a pocketed ball the bottom of the pocket
-    int pocket = -1;               ///< index of the pocket that holds it, or -1
+    int pocket = -1;               ///< index of the pocket that holds it, kOffTable, or -1
     int fell = -1;                 ///< 0 for the ball that fell first, 1 for the next one, ..., or -1
     int cushions = 0;  ///< how often it met a cushion or a jaw: bounces, and contacts that began to last
     bool operator==(const BallOutcome&) const = default;

@@ -29,6 +29,17 @@ inline double length(const Vec2& a) {
     return std::sqrt(x * x + y * y) / scale;
 }
 
+/// Sums over three axes keep x and y together, so that swapping these swaps no rounding.
+inline double dot3(const Vec3& a, const Vec3& b) {
+    return (a.x() * b.x() + a.y() * b.y()) + a.z() * b.z();
+}
+inline Vec3 cross3(const Vec3& a, const Vec3& b) {
+    return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
+}
+inline double length3(const Vec3& a) {
+    return length(Vec2(length(planar(a)), a.z()));
+}
+
 /// z-component of a x b.
 inline double cross(const Vec2& a, const Vec2& b) {
     return a.x() * b.y() - a.y() * b.x();

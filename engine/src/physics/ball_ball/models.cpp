@@ -7,10 +7,10 @@
 
 namespace carom {
 
-extern const BallBallModelInfo kInelastic, kElastic;
+extern const BallBallModelInfo kInelastic, kElastic, kTwoStep;
 
 std::span<const BallBallModelInfo* const> all_of(const BallBallModelInfo*) {
-    static constexpr const BallBallModelInfo* kModels[] = {&kMathavan, &kInelastic, &kElastic};
+    static constexpr const BallBallModelInfo* kModels[] = {&kMathavan, &kInelastic, &kElastic, &kTwoStep};
     return kModels;
 }
 

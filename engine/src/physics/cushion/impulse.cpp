@@ -1,7 +1,5 @@
 // Cushion model `impulse`: one frictional impulse along the inclined normal, as for two rough spheres. It is Coulomb's f J_n,
 // or what ends the slip (2/7 of it). Equations: docs/reference/physics.md, "Cushion impact".
-#include <algorithm>
-
 #include "physics/cushion/nose.h"
 
 namespace carom {
@@ -11,7 +9,7 @@ bool cushion_impulse(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3&
     if (!(approach_speed(normal, v) > 0.0)) return true;
     const NoseContact c = nose_contact(p, normal, v, w);
     const double J_n = -(1.0 + p.e_c) * c.u_n;
-    const double J_t = std::min(p.f_c * J_n, 2.0 / 7.0 * c.speed_t);
+    const double J_t = coulomb_grip(p.e_c, p.f_c, -c.u_n, c.speed_t);
     apply_at_nose(p, c, J_n, J_t, v, w);
     return true;
 }

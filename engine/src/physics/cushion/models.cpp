@@ -33,15 +33,24 @@ CushionContact cushion_contact(const BallParams& balls, const BallSize& size, do
                                const Vec2& normal, const Vec3& v, const Vec3& w) {
     CushionContact contact{
         .R = size.R, .m = size.m, .mu_s = balls.mu_s, .e_c = balls.e_c, .f_c = balls.f_c, .height = height};
-    if (balls.f_c_more != 0.0) {
-        const double slip = detail::nose_contact(contact, normal, v, w).speed_t;
-        contact.f_c += balls.f_c_more * exponential(-balls.f_c_fall * slip);
-    }
-    if (balls.e_c_fall != 0.0) {
-        const double beyond = std::max(0.0, detail::approach_speed(normal, v) - balls.e_c_above);
-        contact.e_c = std::max(0.0, balls.e_c - balls.e_c_fall * beyond);
-    }
+    if (balls.f_c_more != 0.0)
+        contact.f_c = cushion_friction(balls, detail::nose_contact(contact, normal, v, w).speed_t);
+    if (balls.e_c_fall != 0.0) contact.e_c = cushion_restitution(balls, detail::approach_speed(normal, v));
     return contact;
+}
+
+double cushion_friction(const BallParams& balls, double slip) {
+    if (balls.f_c_more == 0.0) return balls.f_c;
+    return balls.f_c + balls.f_c_more * exponential(-balls.f_c_fall * slip);
+}
+
+double cushion_restitution(const BallParams& balls, double speed) {
+    if (balls.e_c_fall == 0.0) return balls.e_c;
+    return std::max(0.0, balls.e_c - balls.e_c_fall * std::max(0.0, speed - balls.e_c_above));
+}
+
+double coulomb_grip(double e, double f, double v_n, double slip) {
+    return std::min(f * ((1.0 + e) * v_n), 2.0 / 7.0 * slip);
 }
 
 }  // namespace carom

@@ -19,6 +19,7 @@ constinit const CushionModelInfo kSmooth = {
     .source = "reflection",
     .resolve = detail::cushion_smooth,
     .reflects_when_level = true,
+    .grip = nullptr,
 };
 
 }  // namespace carom

@@ -108,16 +108,17 @@ double velocity_after(double r, double e, double f) {
 
 }  // namespace
 
+double stronge_grip(double e, double f, double v_n, double slip) {
+    if (!(f > 0.0) || !(slip > 0.0)) return 0.0;
+    const double r = slip / v_n;
+    return (r - velocity_after(r, e, f)) / kBeta * v_n;
+}
+
 bool cushion_stronge(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w) {
     if (!(approach_speed(normal, v) > 0.0)) return true;
     const NoseContact c = nose_contact(p, normal, v, w);
     const double approach = -c.u_n;
-    double J_t = 0.0;
-    if (p.f_c > 0.0 && c.speed_t > 0.0) {
-        const double r = c.speed_t / approach;
-        J_t = (r - velocity_after(r, p.e_c, p.f_c)) / kBeta * approach;
-    }
-    apply_at_nose(p, c, (1.0 + p.e_c) * approach, J_t, v, w);
+    apply_at_nose(p, c, (1.0 + p.e_c) * approach, stronge_grip(p.e_c, p.f_c, approach, c.speed_t), v, w);
     return true;
 }
 
@@ -129,6 +130,7 @@ extern constinit const CushionModelInfo kStronge = {
     .resolve = detail::cushion_stronge,
     .reads_friction = true,
     .reflects_when_level = true,
+    .grip = detail::stronge_grip,
 };
 
 }  // namespace carom

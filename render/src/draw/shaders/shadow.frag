@@ -27,7 +27,9 @@ void main() {
     // The lamp is wide, so its shadow has no sharp edge.
     vec2 from_shadow = v_place - v_away;
     float inner = max(1.0 - dot(from_shadow, from_shadow) * (1.0 / 3.4), 0.0);
-    float dark = 1.0 - (1.0 - 0.55 * hidden) * (1.0 - 0.55 * inner * inner);
+    // From higher up a ball hides less of the sky and of the wide lamp.
+    float lift = max(v_ball.z / v_ball.w, 1.0);
+    float dark = 1.0 - (1.0 - 0.55 * hidden / (lift * lift)) * (1.0 - 0.55 * inner * inner / lift);
     dark *= cloth;
 #endif
     // A ball that falls has no shadow left.

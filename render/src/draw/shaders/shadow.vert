@@ -18,6 +18,8 @@ void main() {
     vec3 to_eye = normalize(u_eye - a_ball.xyz), side = normalize(cross(u_up_scaled, to_eye)), up = cross(to_eye, side);
     gl_Position = u_view_projection * vec4(a_ball.xyz + 2.15 * a_ball.w * (corner.x * side + corner.y * up), 1.0);
 #else
-    gl_Position = u_view_projection * vec4(a_ball.xy + v_place * a_ball.w, 0.0, 1.0);
+    // The shadow of a ball in the air is wider, in proportion to the height of its centre, and so farther off.
+    float lift = max(a_ball.z / a_ball.w, 1.0);
+    gl_Position = u_view_projection * vec4(a_ball.xy + v_place * (a_ball.w * lift), 0.0, 1.0);
 #endif
 }

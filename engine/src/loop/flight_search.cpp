@@ -1,0 +1,75 @@
+// Search for contacts of balls in the air.
+#include <algorithm>
+#include <limits>
+
+#include "contact/pocket_edge.h"
+#include "loop/detector.h"
+#include "physics/nose_reach.h"
+
+namespace carom {
+
+// The motion of a ball from the time `from` on, with its height.
+Flight Detector::flight(int ball, double from) const {
+    const Segment& s = balls_.segment(ball);
+    const double tau = from - s.start;
+    const Placed placed = placed_at(s, tau, plan_.gravity);
+    const bool falls = flies(s.state) || s.state == MotionState::kFalling;
+    return {placed.position, placed.velocity, Vec3(s.a.x(), s.a.y(), falls ? -plan_.gravity : 0.0),
+            std::max(0.0, s.duration - tau),
+            kClosingUlp * std::numeric_limits<double>::epsilon() *
+                (length3(placed.velocity) + mover_[ball].surface)};
+}
+
+// [s] Time from `from` on until two balls meet, one of which flies.
+double Detector::time_to_flight(int a, int b, double from) const {
+    const Flight one = flight(a, from), two = flight(b, from);
+    const Flight relative{two.r - one.r, two.v - one.v, two.a - one.a, std::min(one.horizon, two.horizon),
+                          one.noise + two.noise};
+    return flight_to_ball(relative, balls_.radius(a) + balls_.radius(b));
+}
+
+// [s] Time until a ball that flies over a pocket leaves its circle where there is no cloth.
+double Detector::time_over_pocket(int index, const Path& path) const {
+    const Pocket& pocket = plan_.geometry.pockets[index];
+    const double enters = time_to_pocket(path, pocket.center, pocket.radius);
+    if (enters == kNever) return kNever;
+    const double leaves =
+        enters + time_to_edge(path.r + enters * path.v, path.v, pocket.center, pocket.radius);
+    const bool back = is_bed(plan_.scene.table, pocket, path.r + leaves * path.v);
+    return back || leaves > path.horizon ? kNever : leaves;
+}
+
+// It meets noses at their height, flies over them and is then out (where the table has an end), and meets a pocket only at its far
+// side. Where it lands is its own transition.
+void Detector::search_table_in_air(int ball) {
+    Candidate& first = mover_[ball].table;
+    const double start = balls_.segment(ball).start, R = balls_.radius(ball);
+    const Flight f = flight(ball, start);
+    const Path p = path(ball, start);
+    const Table& table = plan_.scene.table;
+    const bool ends = table.width > 0.0 && table.length > 0.0;
+    const Contact out{ball, With::kOut, -1};
+    const auto leaves = [&](double t) {
+        if (ends && t < kNever) take_first({start + t, out}, first);
+    };
+    for (const int part : near_) {
+        const Contact contact = parts_[part].of(ball);
+        double t = kNever;
+        if (contact.with == With::kCushion) {
+            const CushionLine& c = plan_.geometry.cushions[contact.other];
+            t = flight_to_line(f, {c.from.x(), c.from.y(), c.height}, c.direction, c.length,
+                               nose_reach(R, c.height, c.inset));
+            leaves(flight_over_line(f, c.from, c.direction, c.length));
+        } else if (contact.with == With::kNose) {
+            const Nose& n = plan_.geometry.noses[contact.other];
+            t = flight_to_circle(f, {n.center.x(), n.center.y(), n.height}, n.radius,
+                                 nose_reach(R, n.height, n.inset));
+            if (n.radius > 0.0) leaves(time_to_circle(p, n.center, n.radius));
+        } else {
+            t = time_over_pocket(contact.other, p);
+        }
+        if (t < kNever) take_first({start + t, contact}, first);
+    }
+}
+
+}  // namespace carom

@@ -1,0 +1,178 @@
+// Impacts of balls in the air, and those after which balls leave the cloth.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "contact/pocket_edge.h"
+#include "loop/resolver.h"
+#include "physics/nose_reach.h"
+
+namespace carom {
+
+namespace {
+
+// [R] A ball that has flown over a pocket and is not higher than this at its far side falls into it. pooltool's value.
+constexpr double kCatchHeight = 1.4;
+// [events] A pair that has had so many in a row to itself balances: the upper ball trembles on the lower one for ever. That is 10 s.
+constexpr std::size_t kMostTrembles = 20000;
+
+}  // namespace
+
+/// Whether two balls meet as free ones: where one of them flies, and in the model that takes them so.
+bool Resolver::is_free(int a, int b) const {
+    return plan_.ball_ball->free || flies(balls_.segment(a).state) || flies(balls_.segment(b).state);
+}
+
+/// Begins the motion of a ball after an impact. One that lies on the cloth and is pressed down hits it now.
+void Resolver::go_on(int ball, const Vec3& r, Velocities after) {
+    const bool lies = !(r.z() > balls_.radius(ball));
+    if (lies && after.v.z() < 0.0 && balls_.segment(ball).state != MotionState::kFalling) {
+        hit_cloth(plan_.balls, balls_.motion(ball), after);
+        log_.event(EventType::kBallCloth, ball);
+    }
+    begin(ball, r, after.v, after.w);
+}
+
+/// Whether all has been quiet for long but for these two.
+bool Resolver::balances(int a, int b) const {
+    const std::vector<Event>& events = log_.events();
+    if (events.size() < kMostTrembles) return false;
+    const auto of_the_pair = [a, b](const Event& e) {
+        return e.type == EventType::kBallCloth ? e.a == a || e.a == b
+                                               : e.type == EventType::kBallBall && e.a == a && e.b == b;
+    };
+    return std::all_of(events.end() - kMostTrembles, events.end(), of_the_pair);
+}
+
+void Resolver::free_balls(int a, int b) {
+    // Ball 1 is the one further left, then nearer, then lower.
+    const Placed pa = balls_.placed(a), pb = balls_.placed(b);
+    const auto before = [](const Vec3& p, const Vec3& q) {
+        if (p.x() != q.x()) return p.x() < q.x();
+        return p.y() != q.y() ? p.y() < q.y() : p.z() < q.z();
+    };
+    const bool swap = before(pb.position, pa.position);
+    const int one = swap ? b : a, two = swap ? a : b;
+    Placed p1 = swap ? pb : pa, p2 = swap ? pa : pb;
+    const auto sinks = [this](int ball) { return balls_.segment(ball).state == MotionState::kFalling; };
+    // A ball that falls into a pocket meets others in the plane, as everywhere.
+    if (sinks(one) || sinks(two)) {
+        p1 = {balls_.position(one), balls_.velocity(one)};
+        p2 = {balls_.position(two), balls_.velocity(two)};
+        p1.position.z() = p2.position.z() = 0.0;
+    }
+    const auto lies = [this](int ball) { return !flies(balls_.segment(ball).state); };
+
+    if (lies(one) && lies(two)) {
+        const Approach approach = approach_of(balls_, one, two);
+        const bool alike = plan_.sizes[one] == plan_.sizes[two];
+        if (alike && resting_.try_hold(approach, plan_.balls.e_b)) return;
+    }
+    FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.balls};
+    if (!plan_.ball_ball->reads_restitution) pair.balls.e_b = 1.0;
+    if (!plan_.ball_ball->reads_friction || !plan_.in_force(Effect::kThrow))
+        pair.balls.mu_b = pair.balls.mu_b_more = 0.0;
+    const Vec3 apart = p2.position - p1.position, n = apart / length3(apart);
+    Velocities ball1{p1.velocity, balls_.spin(one)}, ball2{p2.velocity, balls_.spin(two)};
+    const double v_n = dot3(ball1.v - ball2.v, n);
+    const double parting = parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity);
+    if (pair.balls.e_b * v_n < parting && balances(a, b))
+        log_.fail(fmt::format(
+            "balls {} and {} balance on each other; move one of them by a thousandth of a millimetre",
+            log_.id(a), log_.id(b)));
+    {
+        const Stopwatch watch(kernel_ns_);
+        if (pair.balls.e_b * v_n < parting)
+            part_slowly(pair, n, lies(one), lies(two), parting, ball1, ball2);
+        else
+            hit_ball(pair, n, ball1, ball2);
+    }
+    if (cost_ != nullptr) {
+        cost_->steps = 1;
+        cost_->method = "free";
+    }
+    resting_.release(one);
+    resting_.release(two);
+    log_.event(EventType::kBallBall, a, b);
+    const auto here = [&](int ball) {
+        return lies(ball) ? balls_.position(ball) : balls_.placed(ball).position;
+    };
+    go_on(one, here(one), ball1);
+    go_on(two, here(two), ball2);
+}
+
+void Resolver::cushion_in_air(const Contact& contact) {
+    const int ball = contact.ball;
+    const Placed at = balls_.placed(ball);
+    const bool jaw = is_jaw(contact, plan_.geometry);
+    const CushionModelInfo& model = jaw ? *plan_.jaw : *plan_.cushion;
+    Vec2 foot;
+    double height = 0.0, radius = 0.0;
+    if (contact.with == With::kNose) {
+        const Nose& nose = plan_.geometry.noses[contact.other];
+        foot = nose.center;
+        height = nose.height;
+        radius = nose.radius;
+    } else {
+        const CushionLine& line = plan_.geometry.cushions[contact.other];
+        foot = line.from + line.direction * dot(line.direction, planar(at.position) - line.from);
+        height = line.height;
+    }
+    const Vec2 out = planar(at.position) - foot;
+    const double distance = length(out), level = distance - radius;
+    const Vec2 away = distance > 0.0 ? Vec2(out / distance) : Vec2(0.0, 0.0);
+    Vec3 n(level * away.x(), level * away.y(), at.position.z() - height);
+    n /= length3(n);
+    Velocities after{at.velocity, balls_.spin(ball)};
+    hit_nose(plan_.balls, balls_.radius(ball), model, n, parting_speed(balls_.radius(ball), plan_.gravity),
+             after);
+    if (cost_ != nullptr) cost_->method = model.name;
+    log_.event(jaw ? EventType::kBallJaw : EventType::kBallCushion, contact);
+    go_on(ball, at.position, after);
+}
+
+/// [m/s] How fast a cushion throws a ball up that lay on the cloth.
+double Resolver::hop(const TableTouch& touch, const Velocities& before) const {
+    const int ball = touch.approach.contact.ball;
+    const MotionParams& motion = balls_.motion(ball);
+    if (balls_.segment(ball).state == MotionState::kFalling || touch.model->grip == nullptr) return 0.0;
+    const double up = motion.R - touch.height, reach = nose_reach(motion.R, touch.height, 0.0);
+    const Vec3 n(motion.R / reach * touch.normal.x(), motion.R / reach * touch.normal.y(), up / reach);
+    return hop_speed(plan_.balls, motion, *touch.model, n, before);
+}
+
+void Resolver::pocket_in_air(const Contact& contact) {
+    const double z = balls_.placed(contact.ball).position.z();
+    if (z <= kCatchHeight * balls_.radius(contact.ball))
+        log_.fall(contact.ball, contact.other);
+    else
+        leave_table(contact.ball);
+}
+
+void Resolver::land(int ball) {
+    const Segment& s = balls_.segment(ball);
+    const MotionParams& motion = balls_.motion(ball);
+    Vec3 r = balls_.position(ball);
+    r.z() = motion.R;
+    const std::vector<Pocket>& pockets = plan_.geometry.pockets;
+    for (std::size_t k = 0; k < pockets.size(); ++k) {
+        if (!(length(planar(r) - pockets[k].center) < pockets[k].radius)) continue;
+        log_.fall(ball, static_cast<int>(k));
+        return;
+    }
+    go_on(ball, r, {landing_velocity(s, motion), balls_.spin(ball)});
+}
+
+void Resolver::leave_table(int ball) {
+    const Placed at = balls_.placed(ball);
+    Segment gone =
+        airborne_segment(balls_.now(), at.position, at.velocity, balls_.spin(ball), balls_.motion(ball));
+    gone.state = MotionState::kOut;
+    gone.duration = kNever;
+    log_.begin(ball, gone);
+    log_.event(EventType::kBallOut, ball);
+}
+
+}  // namespace carom

@@ -1,0 +1,28 @@
+// How far balls are from each other and from noses, as the judge of records sees it.
+#pragma once
+
+#include "carom/engine/ball_ball.h"
+#include "carom/engine/geometry.h"
+#include "carom/engine/record.h"
+#include "carom/engine/vec.h"
+
+namespace carom {
+
+/// A ball where it is, with its height.
+struct SeenBall {
+    Vec3 r;
+    double R;
+    bool flies, sinks = false;  ///< in the air; over a pocket
+};
+
+/// [m] Between two balls, negative where they overlap. The planar distance where both lie; one that sinks into a pocket is out of the
+/// way of those that fly.
+double gap_between(const SeenBall& one, const SeenBall& two);
+/// [m] To the nose of a cushion; a large number where the ball is beyond its ends.
+double gap_to(const CushionLine& line, const SeenBall& ball);
+/// [m] To a jaw or the end of a cushion; a ball over a jaw's disc is beside it.
+double gap_to(const Nose& nose, const SeenBall& ball);
+/// [m] To the cloth: 0 for a ball that lies there.
+double gap_to_cloth(const SeenBall& ball);
+
+}  // namespace carom

@@ -1,0 +1,418 @@
+// Whole shots with balls in the air.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "carom/engine/airborne.h"
+#include "carom/engine/ball_ball.h"
+#include "carom/engine/cushion.h"
+#include "carom/engine/math.h"
+#include "carom/engine/simulate.h"
+#include "carom/engine/verify.h"
+#include "reference/random_impacts.h"
+#include "support/engine_cases.h"
+#include "support/random_scenes.h"
+
+namespace carom {
+namespace {
+
+using namespace test;
+using reference::Generator;
+
+/// A ball whose lowest point is `height` above the cloth.
+void add_high_ball(Scene& scene, const std::string& id, double x, double y, double height,
+                   const Vec3& v = Vec3::Zero(), const Vec3& w = Vec3::Zero()) {
+    add_ball(scene, id, Vec3(x, y, scene.balls.R + height), v, w);
+    scene.ball.back().height = height;
+}
+
+/// A random scene with balls in the air: thrown, dropped, struck by a raised cue, unlike, between jaws.
+Scene flying_scene(std::uint64_t seed) {
+    Generator random(seed);
+    const auto chance = [&](double p) { return random.uniform(0.0, 1.0) < p; };
+    Scene scene = empty_scene();
+    const double kind = random.uniform(0.0, 1.0);
+    scene.table = kind < 0.5   ? make_table("seven_foot")
+                  : kind < 0.8 ? make_table("snooker")
+                               : box(1.0, 2.0, 0.036576);
+    scene.balls.e_t = random.uniform(0.2, 0.8);
+    if (chance(0.3)) scene.balls.e_h = random.uniform(0.0, 0.5);
+    scene.balls.e_b = random.uniform(0.5, 1.0);
+    static constexpr const char* kCushions[] = {"han_2005", "stronge", "impulse", "smooth"};
+    scene.physics.cushion = cushion_model(kCushions[static_cast<int>(random.uniform(0.0, 4.0))]);
+    const bool two_step = chance(0.4), unlike = two_step && chance(0.5);
+    if (two_step) scene.physics.ball_ball = ball_ball_model("two_step");
+    scene.physics.clusters = chance(0.5) ? ClusterModel::kCompliant : ClusterModel::kSequential;
+    if (unlike) scene.physics.clusters = ClusterModel::kSequential;
+    const int balls = 1 + static_cast<int>(random.uniform(0.0, 8.0));
+    const double width = scene.table.width, length_of_table = scene.table.length;
+    for (int tries = 0; static_cast<int>(scene.ball.size()) < balls && tries < 200; ++tries) {
+        BallStart ball;
+        ball.id = std::to_string(scene.ball.size());
+        BallSize size = scene.balls.size();
+        if (unlike && chance(0.4)) size.R *= random.uniform(0.8, 1.2), size.m *= random.uniform(0.6, 1.5);
+        if (unlike) ball.own = size;
+        const double x = random.uniform(0.06, width - 0.06), y = random.uniform(0.06, length_of_table - 0.06);
+        if (chance(0.4)) ball.height = random.uniform(0.0, 0.2);
+        ball.position = {x, y, size.R + ball.height};
+        const double fast = random.uniform(0.0, 5.0);
+        if (chance(0.5)) {
+            const SinCos way = sin_cos(random.uniform(0.0, 6.28));
+            const double up = random.uniform(-1.0, 2.0);
+            ball.velocity = {fast * way.cos, fast * way.sin, chance(0.5) ? up : 0.0};
+            for (int k = 0; k < 3; ++k) ball.spin[k] = random.uniform(-100.0, 100.0);
+        }
+        scene.ball.push_back(ball);
+        try {
+            validate(scene);
+        } catch (const SceneError&) {
+            scene.ball.pop_back();
+        }
+    }
+    // Sometimes one more ball onto two others.
+    if (scene.ball.size() >= 2 && chance(0.3)) {
+        BallStart top = scene.ball.front();
+        top.id = "top";
+        top.velocity = top.spin = Vec3::Zero();
+        top.height += 2.2 * top.position.z() + random.uniform(0.0, 0.05);
+        top.position.z() = scene.size_of(top).R + top.height;
+        top.position.x() += random.uniform(-0.01, 0.01);
+        scene.ball.push_back(top);
+    }
+    return scene;
+}
+
+double scene_radius() {
+    return empty_scene().balls.R;
+}
+
+std::vector<double> times_of(const Record& record, EventType type) {
+    std::vector<double> times;
+    for (const Event& e : record.events)
+        if (e.type == type) times.push_back(e.time);
+    return times;
+}
+
+TEST(Airborne, ADroppedBallBouncesUntilItLies) {
+    Scene scene = empty_scene();
+    add_high_ball(scene, "a", 0.0, 0.0, 0.3);
+    const Record r = run_verified(scene);
+    const std::vector<double> landings = times_of(r, EventType::kBallCloth);
+    ASSERT_EQ(landings.size(), 6u) << "five of them leave the cloth again";
+    EXPECT_NEAR(landings[0], 0.247309683414749, 1e-15);
+    EXPECT_NEAR(landings[5], 0.726472195030825, 1e-14);
+    EXPECT_NEAR(r.state_at(0, 0.5 * (landings[0] + landings[1])).position.z() - scene.balls.R, 0.075, 1e-14);
+    EXPECT_NEAR(r.state_at(0, 0.5 * (landings[1] + landings[2])).position.z() - scene.balls.R, 0.01875,
+                1e-14);
+    EXPECT_EQ(r.stopped, StopReason::kAtRest);
+    EXPECT_EQ(r.state_at(0, 1.0).position, Vec3(0.0, 0.0, scene.balls.R));
+}
+
+TEST(Airborne, BouncesWithoutLossRepeatToTheBit) {
+    Scene scene = empty_scene();
+    scene.balls.e_t = 1.0;
+    scene.stop.events = 100000;
+    add_ball(scene, "a", Vec3(0.0, 0.0, scene.balls.R), Vec3(0.0, 0.0, 1.5));
+    const Record r = simulate(plan_of(scene));
+    const std::vector<Segment>& segments = r.tracks[0].segments;
+    for (const Segment& s : segments) {
+        ASSERT_EQ(s.v.z(), 1.5);
+        ASSERT_EQ(s.duration, segments[0].duration);
+        ASSERT_EQ(s.r.z(), scene.balls.R);
+    }
+}
+
+// A ball that bounces loses as much speed to the cloth as one that slides all the time, but for what throwing it up would have taken.
+TEST(Airborne, BouncesBrakeAsSlidingDoes) {
+    Scene scene = empty_scene();
+    add_ball(scene, "a", Vec3(0.0, 0.0, scene.balls.R), Vec3(4.0, 0.0, 1.5));
+    const Record r = run_verified(scene);
+    const std::vector<double> landings = times_of(r, EventType::kBallCloth);
+    const BallState last = r.state_at(0, landings.back());
+    EXPECT_EQ(last.state, MotionState::kSliding);
+    const double slid = scene.balls.mu_s * 9.81 * landings.back();
+    EXPECT_NEAR(4.0 - last.velocity.x(), slid - scene.balls.mu_s * 1.5,
+                2.0 * scene.balls.mu_s * bounce_end(scene.balls.R, 9.81));
+}
+
+TEST(Airborne, OnABallThatLies) {
+    Scene scene = empty_scene();
+    const double R = scene.balls.R;
+    scene.balls.e_b = 0.95;
+    add_ball(scene, "low", 0.0, 0.0);
+    add_high_ball(scene, "high", 0.0, 0.0, 2.0 * R + 1.0 / (2.0 * 9.81));
+    scene.stop.events = 4;
+    const Record r = run_verified(scene);
+    ASSERT_EQ(r.events.size(), 4u);
+    EXPECT_EQ(r.events[0].type, EventType::kBallBall);
+    EXPECT_EQ(r.events[1].type, EventType::kBallCloth);
+    EXPECT_EQ(r.events[2].type, EventType::kBallBall);
+    EXPECT_EQ(r.events[3].type, EventType::kBallCloth);
+    EXPECT_EQ(r.events[3].time, r.events[0].time);
+    EXPECT_NEAR(r.tracks[1].segments.back().v.z(), 0.4746875, 1e-14);
+    EXPECT_EQ(r.tracks[0].segments.back().v.z(), 0.0);
+}
+
+Scene jump(double elevation) {
+    Scene scene = empty_scene();
+    scene.table = make_table("nine_foot");
+    add_ball(scene, "cue", 0.635, 0.5);
+    Cue cue;
+    cue.mass = 0.25;
+    cue.speed = 4.0;
+    cue.elevation_deg = elevation;
+    cue.height = 0.0;
+    cue.restitution = 1.0;
+    scene.cue = cue;
+    return scene;
+}
+
+TEST(Airborne, AJumpShotClearsABall) {
+    Scene scene = jump(35.0);
+    add_ball(scene, "1", 0.635, 0.5 + 0.428);
+    const Record r = run_verified(scene);
+    const Event* hit = first(r, EventType::kBallBall);
+    const Event* nose = first(r, EventType::kBallCushion);
+    ASSERT_NE(nose, nullptr);
+    EXPECT_TRUE(hit == nullptr || hit->time > nose->time) << "it flies over the ball";
+    Scene drop = scene;
+    drop.physics.vertical = Vertical::kDrop;
+    const Plan planar_plan = plan_of(drop);
+    EXPECT_FALSE(planar_plan.in_force(Effect::kAirborne));
+    ASSERT_EQ(planar_plan.warnings.size(), 1u);
+    const Record flat = simulate(planar_plan);
+    ASSERT_NE(first(flat, EventType::kBallBall), nullptr);
+    EXPECT_LT(first(flat, EventType::kBallBall)->time, 0.2);
+    EXPECT_EQ(count(flat, EventType::kBallCloth), 0);
+}
+
+TEST(Airborne, TheTipIsMetAgainBeyondAnElevation) {
+    EXPECT_TRUE(plan_of(jump(42.0)).warnings.empty());
+    ASSERT_EQ(plan_of(jump(43.0)).warnings.size(), 1u);
+    EXPECT_NE(plan_of(jump(43.0)).warnings[0].find("meet the tip again"), std::string::npos);
+}
+
+TEST(Airborne, ABallLeavesTheTable) {
+    Scene scene = empty_scene();
+    scene.table = make_table("nine_foot");
+    add_high_ball(scene, "a", 0.635, 2.3, 0.02, Vec3(0.0, 4.0, 1.5));
+    const Record r = run_verified(scene);
+    const Event* out = first(r, EventType::kBallOut);
+    ASSERT_NE(out, nullptr);
+    EXPECT_EQ(r.stopped, StopReason::kAtRest);
+    EXPECT_EQ(r.state_at(0, r.duration).state, MotionState::kOut);
+    EXPECT_NEAR(out->time, 0.24 / 4.0, 0.02);
+    EXPECT_TRUE(scene_after(scene, r).ball.empty());
+}
+
+TEST(Airborne, IntoAPocketThroughTheAir) {
+    Scene scene = empty_scene();
+    scene.table = make_table("nine_foot");
+    const Pocket& corner =
+        *std::max_element(scene.table.pockets.begin(), scene.table.pockets.end(),
+                          [](const Pocket& p, const Pocket& q) { return p.center.sum() < q.center.sum(); });
+    const Vec2 from(corner.center.x() - 0.4, corner.center.y() - 0.4);
+    // It lands in the middle of the pocket.
+    const double t = 0.2;
+    const Vec2 v = (corner.center - from) / t;
+    add_high_ball(scene, "a", from.x(), from.y(), 0.0, Vec3(v.x(), v.y(), 0.5 * 9.81 * t));
+    const Record r = run_verified(scene);
+    EXPECT_EQ(count(r, EventType::kBallPocket), 1);
+    EXPECT_NEAR(first(r, EventType::kBallPocket)->time, t, 1e-12);
+}
+
+TEST(Airborne, ACushionThrowsABallUp) {
+    Scene scene = empty_scene();
+    scene.table = box(1.0, 2.0, 1.28 * scene.balls.R);
+    add_ball(scene, "a", 0.5, 1.0, 0.0, 4.0);
+    scene.balls.mu_s = 1e-9;
+    scene.stop.time = 0.6;
+    scene.physics.cushion = &kHan2005;
+    EXPECT_FALSE(plan_of(scene).in_force(Effect::kAirborne));
+    const Record flat = run_verified(scene);
+    scene.balls.e_h = 0.2;
+    EXPECT_TRUE(plan_of(scene).in_force(Effect::kAirborne));
+    const Record r = run_verified(scene);
+    const Event* nose = first(r, EventType::kBallCushion);
+    ASSERT_NE(nose, nullptr);
+    const BallState after = r.state_at(0, nose->time), level = flat.state_at(0, nose->time);
+    EXPECT_EQ(after.state, MotionState::kAirborne);
+    EXPECT_GT(after.velocity.z(), 0.2);
+    EXPECT_EQ(after.velocity.y(), level.velocity.y()) << "the horizontal part is that of the model";
+}
+
+TEST(Airborne, TwoStepLiftsTheCueBallOfAFullHit) {
+    Scene scene = empty_scene();
+    scene.balls.mu_b = 0.05;
+    scene.balls.e_b = 0.95;
+    scene.balls.mu_s = 0.2;
+    scene.physics.ball_ball = ball_ball_model("two_step");
+    add_ball(scene, "cue", 0.0, 0.0, 2.0, 0.0, rolling_spin(2.0, 0.0, scene.balls.R));
+    add_ball(scene, "1", 0.5, 0.0);
+    const Record r = run_verified(scene);
+    const Event* hit = first(r, EventType::kBallBall);
+    ASSERT_NE(hit, nullptr);
+    const BallState cue = r.state_at(0, hit->time);
+    EXPECT_EQ(cue.state, MotionState::kAirborne);
+    EXPECT_NEAR(cue.velocity.z() / cue.velocity.x(), 0.0975 / 0.05, 0.02);
+    scene.balls.mu_b = 0.0;
+    EXPECT_FALSE(plan_of(scene).in_force(Effect::kAirborne)) << "without friction, and alike, nothing lifts";
+}
+
+TEST(Airborne, UnlikeBallsWithFrictionNeedTwoStep) {
+    Scene scene = empty_scene();
+    add_ball(scene, "cue", 0.0, 0.0, 2.0, 0.0);
+    add_ball(scene, "1", 0.5, 0.0);
+    scene.ball[0].own = BallSize{0.0301, 0.199};
+    scene.ball[0].position.z() = 0.0301;
+    EXPECT_THROW(validate(scene), SceneError);
+    scene.physics.ball_ball = ball_ball_model("two_step");
+    validate(scene);
+    run_verified(scene);
+}
+
+// A ball set gently into the hollow of three, on top of two, and dropped on them: slow contacts end.
+TEST(Airborne, Piles) {
+    for (const double drop : {0.0, 1e-6, 0.01, 0.2}) {
+        for (const double off : {0.0, 1e-6, 1e-3}) {
+            Scene scene = empty_scene();
+            const double R = scene.balls.R, s = R * 2.0 / std::sqrt(3.0);
+            for (int k = 0; k < 3; ++k) {
+                const SinCos at = sin_cos_deg(120.0 * k);
+                add_ball(scene, std::to_string(k), s * 1.0001 * at.cos, s * 1.0001 * at.sin);
+            }
+            const double rise = std::sqrt(4.0 * R * R - s * s * 1.0002);
+            add_high_ball(scene, "top", off, 0.3 * off, rise + drop + off + 1e-9);
+            const Record r = run_verified(scene);
+            EXPECT_EQ(r.stopped, StopReason::kAtRest);
+            EXPECT_LT(r.events.size(), 20000u) << drop << " " << off;
+            EXPECT_EQ(r.tracks[3].segments.back().r.z(), R);
+        }
+    }
+}
+
+// Dropped dead centre on a ball that lies, it stays there for ever: an error says so.
+TEST(Airborne, ABallThatBalancesIsAnError) {
+    Scene scene = empty_scene();
+    add_ball(scene, "low", 0.0, 0.0);
+    add_high_ball(scene, "high", 0.0, 0.0, 2.0 * scene.balls.R + 0.01);
+    try {
+        simulate(plan_of(scene));
+        FAIL() << "it came to rest";
+    } catch (const SimulationError& error) {
+        EXPECT_NE(std::string(error.what()).find("balls low and high balance on each other"),
+                  std::string::npos);
+    }
+}
+
+// The result is continuous in the height of a ball: 1e-3 m above the cloth, 1e-6, ... against 0.
+TEST(Airborne, NothingJumpsWithTheHeight) {
+    const auto after = [](double height) {
+        Scene scene = empty_scene();
+        scene.physics.ball_ball = ball_ball_model("two_step");
+        scene.stop.time = 0.5;
+        add_high_ball(scene, "a", 0.0, 0.0, height, Vec3(3.0, 0.0, 0.0), Vec3(0.0, 50.0, 20.0));
+        // So near that it does not fall on the way.
+        const double R = scene_radius();
+        add_ball(scene, "b", std::sqrt(4.0 * R * R - 1e-4) + 1e-9, 0.01);
+        const Record r = simulate(plan_of(scene));
+        const Event* hit = first(r, EventType::kBallBall);
+        EXPECT_NE(hit, nullptr);
+        return r.state_at(1, hit->time);
+    };
+    const BallState lies = after(0.0);
+    for (double height = 1e-4; height > 1e-12; height *= 0.1) {
+        const BallState s = after(height);
+        EXPECT_LE((s.velocity - lies.velocity).norm(), 1e-9 + 400.0 * height) << height;
+        EXPECT_LE(scene_radius() * (s.spin - lies.spin).norm(), 1e-9 + 400.0 * height) << height;
+    }
+}
+
+// The order in which a scene lists its balls changes no bit.
+TEST(Airborne, TheOrderOfTheBallsDoesNotMatter) {
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        Scene scene = flying_scene(seed);
+        if (scene.ball.empty()) continue;
+        Scene turned = scene;
+        std::reverse(turned.ball.begin(), turned.ball.end());
+        const Record a = simulate(plan_of(scene)), b = simulate(plan_of(turned));
+        ASSERT_EQ(a.events.size(), b.events.size()) << seed;
+        EXPECT_EQ(a.duration, b.duration) << seed;
+        for (std::size_t i = 0; i < a.tracks.size(); ++i)
+            EXPECT_EQ(a.tracks[i].segments, b.tracks[a.tracks.size() - 1 - i].segments) << seed;
+    }
+}
+
+// Where nothing calls for it, forcing the effect on changes no bit.
+TEST(Airborne, ForcedOnWithoutNeedItChangesNothing) {
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        Scene scene = RandomScene(seed).make();
+        const Plan plan = plan_of(scene);
+        ASSERT_FALSE(plan.in_force(Effect::kAirborne));
+        scene.effects.push_back({"airborne", true, {}});
+        const Plan forced = plan_of(scene);
+        ASSERT_TRUE(forced.in_force(Effect::kAirborne));
+        SimulateOptions options;
+        EXPECT_EQ(simulate(plan, options).hash(), simulate(forced, options).hash()) << seed;
+    }
+}
+
+// CAROM_FLYING_SCENES=FROM:COUNT runs others, and CAROM_FLYING_TEXT=1 prints them.
+TEST(Airborne, RandomScenesComeToRest) {
+    std::uint64_t from = 1, count = 400;
+    if (const char* asked = std::getenv("CAROM_FLYING_SCENES")) {
+        char* rest = nullptr;
+        from = std::strtoull(asked, &rest, 10);
+        count = std::strtoull(rest + 1, nullptr, 10);
+    }
+    int broken = 0, flights = 0, outs = 0, pocketed = 0;
+    for (std::uint64_t seed = from; seed < from + count; ++seed) {
+        const Scene scene = flying_scene(seed);
+        if (scene.ball.empty()) continue;
+        try {
+            validate(scene);
+        } catch (const SceneError&) {
+            continue;
+        }
+        if (std::getenv("CAROM_FLYING_TEXT") != nullptr) std::printf("%s", scene_text(scene).c_str());
+        const std::string what = what_breaks(scene);
+        broken += !what.empty();
+        EXPECT_EQ(what, "") << "seed " << seed;
+        if (!what.empty()) continue;
+        const Record r = simulate(plan_of(scene));
+        flights += test::count(r, EventType::kBallCloth);
+        outs += test::count(r, EventType::kBallOut);
+        pocketed += test::count(r, EventType::kBallPocket);
+    }
+    EXPECT_EQ(broken, 0);
+    if (count >= 400) {
+        EXPECT_GT(flights, 1000);
+        EXPECT_GT(outs, 10);
+        EXPECT_GT(pocketed, 10);
+    }
+}
+
+// A run that stopped goes on with the same bits, from any event.
+TEST(Airborne, ResumesWithTheSameBits) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        Scene scene = flying_scene(seed);
+        if (scene.ball.empty()) continue;
+        const Plan whole = plan_of(scene);
+        const Record all = simulate(whole);
+        for (const double part : {0.2, 0.5, 0.9}) {
+            Scene cut = scene;
+            cut.stop.events = static_cast<std::int64_t>(part * static_cast<double>(all.events.size()));
+            const Record first_part = simulate(plan_of(cut));
+            EXPECT_EQ(resume(whole, first_part).hash(), all.hash()) << seed;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace carom
