@@ -5,6 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -13,6 +14,8 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -108,17 +111,51 @@ NativeSweep make_sweep(const NativeScene& scene, const std::vector<std::string>&
     }
 }
 
-std::pair<std::vector<std::string>, std::vector<Failure>> sweep_shots(const NativeSweep& sweep,
-                                                                      std::uint64_t first, std::size_t shots,
-                                                                      int threads, const ShotArrays& out) {
+/// The place of a key among those of a sweep, and where its draws go.
+using FloatDraws = std::pair<std::size_t, Flat<double>>;
+using WholeDraws = std::pair<std::size_t, Flat<std::int64_t>>;
+/// Of a list: for every shot the place of its text among the texts that came, in the order in which they came first.
+using ListDraws = std::pair<std::size_t, Flat<std::int32_t>>;
+
+/// Reads the draws of one key, which are every `keys`-th of `texts`; a draw is written so that it reads back to the same bits.
+template <class T>
+void read_draws(const std::vector<std::string>& texts, std::size_t key, std::size_t keys, T* out) {
+    for (std::size_t i = key; i < texts.size(); i += keys)
+        std::from_chars(texts[i].data(), texts[i].data() + texts[i].size(), *out++);
+}
+
+std::vector<std::string> read_list_draws(const std::vector<std::string>& texts, std::size_t key,
+                                         std::size_t keys, std::int32_t* out) {
+    std::vector<std::string> names;
+    std::unordered_map<std::string_view, std::int32_t> places;
+    for (std::size_t i = key; i < texts.size(); i += keys) {
+        const auto [place, is_new] = places.emplace(texts[i], static_cast<std::int32_t>(names.size()));
+        if (is_new) names.push_back(texts[i]);
+        *out++ = place->second;
+    }
+    return names;
+}
+
+/// @return why shots have no result, and the texts of each of `lists`
+std::pair<std::vector<Failure>, std::vector<std::vector<std::string>>> sweep_shots(
+    const NativeSweep& sweep, std::uint64_t first, std::size_t shots, int threads, const ShotArrays& out,
+    const std::vector<FloatDraws>& floats, const std::vector<WholeDraws>& wholes,
+    const std::vector<ListDraws>& lists) {
     const kernel::Isa isa = chosen_isa();
-    std::vector<std::string> values;
+    const std::size_t keys = sweep.variation.keys().size();
+    std::vector<std::vector<std::string>> names;
     std::vector<Failure> failures =
         played(out, sweep.variation.base().ball.size(), threads,
                [&](const BatchOptions& options, const BatchArrays& into) {
-                   return simulate_many(sweep.variation, first, shots, isa, options, into, values);
+                   std::vector<std::string> texts;
+                   auto messages = simulate_many(sweep.variation, first, shots, isa, options, into, texts);
+                   for (const auto& [key, draws] : floats) read_draws(texts, key, keys, draws.data());
+                   for (const auto& [key, draws] : wholes) read_draws(texts, key, keys, draws.data());
+                   for (const auto& [key, draws] : lists)
+                       names.push_back(read_list_draws(texts, key, keys, draws.data()));
+                   return messages;
                });
-    return {std::move(values), std::move(failures)};
+    return {std::move(failures), std::move(names)};
 }
 
 std::vector<std::string> pocket_ids(const NativeScene& scene) {
@@ -148,7 +185,9 @@ void add_batches(nb::module_& m) {
     nb::class_<NativeSweep>(m, "Sweep")
         .def_prop_ro("keys", [](const NativeSweep& s) { return s.variation.keys(); })
         .def_prop_ro("fingerprint", [](const NativeSweep& s) { return s.variation.fingerprint(); })
-        .def("play", sweep_shots, nb::arg("first"), nb::arg("shots"), nb::arg("threads"), nb::arg("out"));
+        .def("unit", [](const NativeSweep& s, std::size_t key) { return s.variation.unit(key); })
+        .def("play", sweep_shots, nb::arg("first"), nb::arg("shots"), nb::arg("threads"), nb::arg("out"),
+             nb::arg("floats"), nb::arg("wholes"), nb::arg("lists"));
     m.def("make_sweep", make_sweep);
     m.def("pocket_ids", pocket_ids);
 }

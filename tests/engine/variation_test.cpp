@@ -106,6 +106,20 @@ TEST_F(VariationTest, AShotDependsOnSeedNumberAndKeyAlone) {
     EXPECT_EQ(std::stod(alone.shot(7).values[0]), alone.shot(7).scene->cue->speed);
 }
 
+TEST_F(VariationTest, UnitsAreThoseOfTheKeys) {
+    const Variation v =
+        vary({"cue.speed=uniform(1,2)", "cue.aim_deg=normal(90,1)", "balls.mu_s=uniform(0.1,0.2)",
+              "physics.cushion=list(\"stronge\")", "table.pocket.p1.radius=uniform(0.05,0.06)",
+              "cue.offset.side=normal(0.1)", "ball.cue.position=list([0.5,0.5])"});
+    std::vector<std::string> units;
+    for (std::size_t i = 0; i < v.keys().size(); ++i) units.push_back(v.unit(i));
+    EXPECT_EQ(units, (std::vector<std::string>{"m/s", "degrees", "", "", "m", "ball radii", ""}));
+    const std::string rack = folder_.write("r.toml", "[rack]\ngame = \"eight_ball\"\n");
+    const Variation breaks(rack, {"rack.gap=uniform(0,1e-4)", "rack.seed=integer(1,9)"}, 1);
+    EXPECT_EQ(breaks.unit(0), "m");
+    EXPECT_EQ(breaks.unit(1), "");
+}
+
 TEST_F(VariationTest, NormalIsAroundTheNumberOfTheScene) {
     const Variation v = vary({"cue.speed=normal(0.1)"});
     double sum = 0.0;

@@ -12,6 +12,8 @@ import pytest
 
 SOURCE = pathlib.Path(os.environ.get("CAROM_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
 SCENES = sorted((SOURCE / "scenes").glob("*.toml"))
+#: Whether tests that take minutes run, too: CAROM_SLOW_TESTS=1.
+SLOW = os.environ.get("CAROM_SLOW_TESTS") == "1"
 BAD_SCENES = sorted((SOURCE / "tests/data/bad_scenes").glob("*.toml"))
 
 

@@ -317,6 +317,16 @@ const std::vector<std::string>& Variation::keys() const {
     return parts_->keys;
 }
 
+std::string Variation::unit(std::size_t key) const {
+    const Rule& rule = parts_->rules.at(key);
+    if (rule.rack != nullptr) return rule.rack->range.unit;
+    try {
+        return SceneNumber(parts_->base, rule.key).row().range.unit;
+    } catch (const std::invalid_argument&) {
+        return "";
+    }
+}
+
 std::uint64_t Variation::fingerprint() const {
     return parts_->fingerprint;
 }

@@ -1,6 +1,7 @@
 // Many scenes from one file: single values replaced by draws, shot by shot.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -53,6 +54,8 @@ class Variation {
 
     const Scene& base() const;  ///< the file as it is
     const std::vector<std::string>& keys() const;
+    /// The unit of what the rule number `key` draws: "m/s", "degrees"; "" where it has none, or is no number of the scene.
+    std::string unit(std::size_t key) const;
 
     /// Shot 0, 1, ...; any thread may ask. Where the balls are not those of the file (a rack of another
     /// size), there is no scene but an error: all shots share the columns of one table.

@@ -1,0 +1,210 @@
+"""The plan of a sweep: what its shots are, and how they are cut into shards."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from carom import _carom
+from carom._scene import Scene
+from carom.sweep._columns import MOST_SHOTS, Player
+
+FORMAT = "carom sweep plan 1"
+#: The first shots, whose records every worker compares with the plan's before it plays others.
+_PROBE = 8
+_MOST_SHARDS = 10_000_000
+#: Whether records are hashed: not at all, for the digest of a shard, or for a column as well.
+_HASHES = ("none", "digest", "column")
+
+
+class SweepError(RuntimeError):
+    """A plan, a folder or a worker that does not fit, or a file that is not what it has to be. `str()` names them and says what to do."""
+
+
+class Plan(NamedTuple):
+    """What the shots of a sweep are. Make one by `plan`, or read one by `Plan.load`."""
+
+    scene: str  # TOML
+    name: str  # of the scene, in messages
+    vary: tuple[str, ...]  # rules of `carom sweep --vary`
+    seed: int
+    shots: int
+    shard: int  # shots of a shard; the last one may have fewer
+    hashes: str  # "none", "digest" or "column"
+    version: str  # of carom
+    probe: str  # digest of the records of the first shots: the same bits, the same carom
+
+    @property
+    def id(self) -> str:
+        """SHA-256 of all of it."""
+        return sha256(canonical(self._content()))
+
+    @property
+    def shards(self) -> int:
+        """How many shards there are."""
+        return -(-self.shots // self.shard)
+
+    def range(self, shard: int) -> tuple[int, int]:
+        """The first shot of a shard, and the one behind its last."""
+        if not 0 <= shard < self.shards:
+            raise ValueError(f"shard={shard}: expected 0 to {self.shards - 1}")
+        return shard * self.shard, min((shard + 1) * self.shard, self.shots)
+
+    def file(self, shard: int) -> str:
+        """The name of the file of a shard in its folder."""
+        return f"shard-{shard:0{len(str(self.shards - 1))}}.parquet"
+
+    def files(self) -> Iterator[str]:
+        """The names of all files, in the order of the shots."""
+        return map(self.file, range(self.shards))
+
+    def types(self) -> dict[str, tuple[str, str]]:
+        """For every column its type, "int64", "uint64", "float64" or "text", and its unit, or ""."""
+        types = player_of(self).types()
+        return types | {"record_hash": ("uint64", "")} if self.hashes == "column" else types
+
+    def _content(self) -> dict[str, Any]:
+        content: dict[str, Any] = {"format": FORMAT, **self._asdict(), "vary": list(self.vary)}
+        return content
+
+    def text(self) -> str:
+        """The file: JSON."""
+        import json
+
+        return json.dumps({**self._content(), "sha256": self.id}, indent=1, ensure_ascii=False) + "\n"
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the plan. A file that holds the same plan stays; raises SweepError where there is anything else."""
+        name = os.fspath(path)
+        if os.path.exists(name):
+            if Plan.load(name) != self:
+                raise SweepError(f"{name}: there is another plan already; remove it, or write to another place")
+            return
+        write_whole(name, self.text().encode())
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Plan:
+        """Reads a plan. Raises SweepError for a file that is none, or that was changed."""
+        import json
+
+        name = os.fspath(path)
+        try:
+            with open(name, encoding="utf-8") as file:
+                tree = json.load(file)
+        except json.JSONDecodeError as error:
+            raise SweepError(f"{name}:{error.lineno}:{error.colno}: {error.msg}; a plan is what carom.sweep.plan(...).save() writes") from None
+        except (OSError, ValueError) as error:
+            raise SweepError(f"{name}: cannot read it: {getattr(error, 'strerror', None) or error}") from None
+        return cls._of(tree, name)
+
+    @classmethod
+    def _of(cls, tree: Any, name: str) -> Plan:
+        if not isinstance(tree, dict) or tree.get("format") != FORMAT:
+            raise SweepError(f'{name}: no plan of a sweep: "format" has to be "{FORMAT}"')
+        content = {key: value for key, value in tree.items() if key not in ("format", "sha256")}
+        if tuple(content) != cls._fields or tree.get("sha256") != sha256(canonical({"format": FORMAT, **content})):
+            raise SweepError(f"{name}: the plan was changed by hand or is damaged; make a new one with carom.sweep.plan")
+        return cls(**content | {"vary": tuple(content["vary"])})
+
+
+def sha256(data: bytes) -> str:
+    import hashlib
+
+    return hashlib.sha256(data).hexdigest()
+
+
+def canonical(tree: Any) -> bytes:
+    """A tree as bytes that are equal if and only if the trees are."""
+    import json
+
+    return json.dumps(tree, ensure_ascii=False, sort_keys=True, separators=(",", ":")).encode()
+
+
+def write_whole(path: str, data: bytes) -> None:
+    """The file appears complete or not at all, and stays after a power cut."""
+    temporary = f"{path}.{os.getpid()}.tmp"
+    try:
+        with open(temporary, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(temporary, path)
+    except OSError as error:
+        if os.path.exists(temporary):
+            os.unlink(temporary)
+        raise SweepError(f"{path}: cannot write it: {error.strerror}") from None
+    sync_folder(os.path.dirname(path) or ".")
+
+
+def sync_folder(path: str) -> None:
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+@lru_cache(maxsize=8)
+def player_of(plan: Plan) -> Player:
+    return Player(Scene.loads(plan.scene, plan.name), plan.vary, plan.seed)
+
+
+def _probe(player: Player, shots: int) -> str:
+    _, played = player.play(0, min(shots, _PROBE), 1, hashes=True)
+    assert played.hash is not None
+    return sha256(played.hash.astype("<u8").tobytes() + played.status.tobytes())
+
+
+@lru_cache(maxsize=8)
+def wrong_worker(plan: Plan) -> str:
+    """Why this process must not play shots of the plan: it has another carom, or its carom does not give the plan's bits. Or ""."""
+    if plan.version != _carom.VERSION:
+        return f"this is carom {_carom.VERSION}, and the plan is of carom {plan.version}: install that one here, or make a new plan"
+    if _probe(player_of(plan), plan.shots) != plan.probe:
+        return (
+            f"this carom {_carom.VERSION} plays the first shots with other bits than the one that made the plan: "
+            "install the same build everywhere, or make a new plan"
+        )
+    return ""
+
+
+def plan(
+    scene: Scene | str | os.PathLike[str],
+    vary: Mapping[str, Any] | Sequence[str],
+    shots: int,
+    *,
+    seed: int = 1,
+    shard: int = 250_000,
+    hashes: str = "digest",
+) -> Plan:
+    """The plan of a sweep; it plays no more than the first few shots.
+
+    scene: or the path of its file
+    vary: rules as for `carom sweep --vary`, or a mapping from keys to distributions ("normal(0.5)") or lists of values
+    shots: at most 2**53
+    seed: of all draws
+    shard: shots of a file, which is also what is lost at most when a worker is killed; 10 to 60 s of work are a good size
+    hashes: "digest" keeps one hash of the records of every shard, with which a shard can be played again and compared; "column" also
+        keeps `int(record.hash(), 16)` of every shot in a column "record_hash"; "none" saves the time, which is much for short shots
+
+    Raises ValueError for a number out of its range and for a rule that cannot be read or that gives no valid scene, SceneError
+    for the scene.
+    """
+    if not isinstance(scene, Scene):
+        scene = Scene.load(scene)
+    if not 1 <= shots <= MOST_SHOTS:
+        raise ValueError(f"shots={shots}: expected 1 to 2**53")
+    if shard < 1:
+        raise ValueError(f"shard={shard}: expected at least 1")
+    if -(-shots // shard) > _MOST_SHARDS:
+        raise ValueError(f"shard={shard}: these are more than {_MOST_SHARDS} shards; take at least {-(-shots // _MOST_SHARDS)} shots for each")
+    if hashes not in _HASHES:
+        raise ValueError(f"hashes={hashes!r}: expected one of {', '.join(_HASHES)}")
+    player = Player(scene, vary, seed)
+    name = os.path.basename(scene.file)
+    made = Plan(scene.source, name, tuple(player.rules), int(seed), int(shots), int(shard), hashes, _carom.VERSION, _probe(player, shots))
+    if "record_hash" in player.types():
+        raise ValueError("vary: record_hash is the name of a column of its own")
+    return made

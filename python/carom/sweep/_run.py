@@ -1,0 +1,320 @@
+"""Shards on threads, processes and machines."""
+
+from __future__ import annotations
+
+import os
+import queue
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from carom.sweep._folder import PLAN, status
+from carom.sweep._plan import Plan, SweepError, wrong_worker
+from carom.sweep._shard import Stopped, Tally, footer, make_shard, need, run_shard, tables
+
+if TYPE_CHECKING:
+    import pyarrow
+
+#: Shards that are with an executor at a time, at least: the memory of the client does not grow with the sweep.
+_WINDOW = 1024
+#: The same where results wait for earlier ones.
+_WINDOW_OF_RESULTS = 64
+
+
+class Progress(NamedTuple):
+    """How far a run is."""
+
+    shards: int  # of the plan
+    done: int  # of these are there
+    rows: int  # in them
+    played: int  # rows that this run has played
+    seconds: float  # since this run began
+    outcomes: dict[str, int]  # of all rows
+
+    @property
+    def rate(self) -> float:
+        """Shots a second of this run."""
+        return self.played / max(self.seconds, 1e-9)
+
+    @property
+    def failed(self) -> int:
+        """Shots at which the simulation could not go on."""
+        return self.outcomes.get("failed", 0)
+
+
+class _Count:
+    """Makes Progress of the results of shards."""
+
+    def __init__(self, plan: Plan, tell: Callable[[Progress], None] | None) -> None:
+        self.plan, self.tell = plan, tell
+        self.start = time.perf_counter()
+        self.done = self.rows = self.played = 0
+        self.outcomes: dict[str, int] = {}
+
+    def add(self, outcomes: Mapping[str, int], played: bool) -> None:
+        rows = sum(outcomes.values())
+        self.done += 1
+        self.rows += rows
+        self.played += rows if played else 0
+        for name, count in outcomes.items():
+            self.outcomes[name] = self.outcomes.get(name, 0) + count
+
+    def progress(self) -> Progress:
+        return Progress(self.plan.shards, self.done, self.rows, self.played, time.perf_counter() - self.start, dict(self.outcomes))
+
+    def show(self) -> None:
+        if self.tell is not None:
+            self.tell(self.progress())
+
+
+class _Threads:
+    """The executor of one process. It can end in the middle of a shard."""
+
+    def __init__(self, threads: int) -> None:
+        self.ended = threading.Event()
+        self.pool = ThreadPoolExecutor(threads or len(os.sched_getaffinity(0)), "carom-sweep")
+
+    def submit(self, work: Callable[..., Any], *arguments: Any) -> Any:
+        return self.pool.submit(work, *arguments, self.ended.is_set)
+
+    def __enter__(self) -> _Threads:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.ended.set()
+        self.pool.shutdown(cancel_futures=True)
+
+
+def _is_dask(executor: Any) -> bool:
+    return any(type_.__module__.partition(".")[0] == "distributed" for type_ in type(executor).__mro__)
+
+
+def _window(executor: Any, least: int) -> int:
+    return max(least, 4 * sum(executor.nthreads().values())) if _is_dask(executor) else least
+
+
+class _Tasks:
+    """Hands the work on shards to an executor, a window at a time, and takes the results as they come."""
+
+    def __init__(self, executor: Any, work: Callable[..., Any], arguments: Callable[[int], tuple[Any, ...]], retries: int) -> None:
+        self.executor, self.work, self.arguments = executor, work, arguments
+        self.left = retries
+        self.ended: queue.SimpleQueue[tuple[int, Any]] = queue.SimpleQueue()
+        self.running: dict[int, Any] = {}
+
+    def begin(self, shard: int) -> None:
+        options: dict[str, Any] = {}
+        if _is_dask(self.executor):
+            options = {"pure": False, "key": f"carom-shard-{shard}-{os.urandom(4).hex()}"}
+        try:
+            future = self.executor.submit(self.work, *self.arguments(shard), **options)
+        except (BrokenExecutor, RuntimeError) as error:
+            raise SweepError(f"shard {shard}: the executor takes no more work ({error}); what is made is whole: run again") from None
+        self.running[shard] = future
+        future.add_done_callback(lambda done: self.ended.put((shard, done)))
+
+    def next(self) -> tuple[int, Any]:
+        """The shard whose work has ended, and its result."""
+        from concurrent.futures import CancelledError
+
+        while True:
+            shard, future = self.ended.get()
+            if self.running.pop(shard, None) is None:
+                continue
+            try:
+                return shard, future.result()
+            except (BrokenExecutor, CancelledError) as error:
+                raise SweepError(f"shard {shard}: its worker or the scheduler is gone ({type(error).__name__}); what is made is whole: run again") from None
+            except Exception as error:
+                if type(error).__name__ in ("CancelledError", "FutureCancelledError"):
+                    raise SweepError(f"shard {shard}: the scheduler is gone; what is made is whole: run again") from None
+                # Dask gives a task up when several workers have died with it, which may be the machines' fault.
+                if type(error).__name__ != "KilledWorker" or self.left == 0:
+                    raise
+                self.left -= 1
+                self.begin(shard)
+
+    def give_up(self) -> None:
+        for future in self.running.values():
+            future.cancel()
+
+
+def _results(executor: Any, work: Callable[..., Any], arguments: Callable[[int], tuple[Any, ...]], shards: Iterable[int], retries: int) -> Iterator[Any]:
+    """The results of `work` on shards, as they come."""
+    if not hasattr(executor, "submit"):
+        each = getattr(executor, "imap_unordered", executor.map)
+        yield from each(_Call(work), (arguments(shard) for shard in shards))
+        return
+    tasks, window, todo = _Tasks(executor, work, arguments, retries), _window(executor, _WINDOW), iter(shards)
+    try:
+        for shard in todo:
+            tasks.begin(shard)
+            if len(tasks.running) >= window:
+                yield tasks.next()[1]
+        while tasks.running:
+            yield tasks.next()[1]
+    finally:
+        tasks.give_up()
+
+
+class _Call:
+    """For what has `map` alone: a function of one argument, which pickles."""
+
+    def __init__(self, work: Callable[..., Any]) -> None:
+        self.work = work
+
+    def __call__(self, arguments: tuple[Any, ...]) -> Any:
+        return self.work(*arguments)
+
+
+def _in_order(executor: Any, work: Callable[..., Any], arguments: Callable[[int], tuple[Any, ...]], count: int, retries: int) -> Iterator[Any]:
+    """The results of `work` on shards 0, 1, ..., in this order; few of them wait for earlier ones."""
+    if not hasattr(executor, "submit"):
+        yield from getattr(executor, "imap", executor.map)(_Call(work), (arguments(shard) for shard in range(count)))
+        return
+    tasks, window, waiting, begun = _Tasks(executor, work, arguments, retries), _window(executor, _WINDOW_OF_RESULTS), {}, 0
+    try:
+        for wanted in range(count):
+            while wanted not in waiting:
+                while begun < min(count, wanted + window):
+                    tasks.begin(begun)
+                    begun += 1
+                shard, result = tasks.next()
+                waiting[shard] = result
+            yield waiting.pop(wanted)
+    finally:
+        tasks.give_up()
+
+
+def _executor(executor: Any) -> Any:
+    if executor != "threads" and not hasattr(executor, "submit") and not hasattr(executor, "map"):
+        raise ValueError(f'executor={executor!r}: expected "threads", an executor of concurrent.futures, a Dask client, or what has submit or map')
+    return executor
+
+
+def run(
+    plan: Plan,
+    folder: str | os.PathLike[str],
+    executor: Any = "threads",
+    *,
+    threads: int = 0,
+    shards: Iterable[int] | None = None,
+    retries: int = 3,
+    progress: Callable[[Progress], None] | None = None,
+) -> Progress:
+    """Makes the shards of a sweep that are not in the folder yet, and the folder with its plan if there is none.
+
+    executor: "threads" of this process, an executor of concurrent.futures, a client of Dask, or anything else that has `submit` or
+        `map`. Its workers have to see the folder.
+    threads: for "threads", how many; 0 takes one for each core
+    shards: only these
+    retries: how often shards are tried again that Dask gives up because their workers died
+    progress: is called after every shard
+
+    May be killed at any time, together with any of its workers: what is in the folder is whole, and the next run makes the rest. Raises
+    SweepError where the folder holds something else or a worker has another carom; OSError where a file cannot be written.
+    """
+    need("pyarrow.parquet")
+    _executor(executor)
+    name = os.path.abspath(folder)
+    os.makedirs(name, exist_ok=True)
+    plan.save(os.path.join(name, PLAN))
+    wanted = range(plan.shards) if shards is None else sorted(set(shards))
+    for shard in wanted if shards is not None else ():
+        plan.range(shard)
+    missing = set(status(name).missing)
+    count = _Count(plan, progress)
+    _count_what_is_there(count, name, (shard for shard in wanted if shard not in missing))
+    count.show()
+    todo = [shard for shard in wanted if shard in missing]
+    if executor == "threads":
+        with _Threads(threads) as local:
+            results = _results(local, make_shard, lambda shard: (plan, shard, name, 1), todo, 0)
+            _take(count, results)
+    else:
+        # Workers read the plan from the folder: a task stays small.
+        _take(count, _results(executor, run_shard, lambda shard: (os.path.join(name, PLAN), shard, name), todo, retries))
+    return count.progress()
+
+
+def _take(count: _Count, results: Iterator[Any]) -> None:
+    try:
+        for result in results:
+            count.add(result["outcomes"], result["played"])
+            count.show()
+    finally:
+        close = getattr(results, "close", None)
+        if close is not None:
+            close()
+
+
+def _count_what_is_there(count: _Count, folder: str, shards: Iterable[int]) -> None:
+    import json
+
+    plan = count.plan
+    with ThreadPoolExecutor() as pool:
+        for about in pool.map(lambda shard: footer(plan, shard, os.path.join(folder, plan.file(shard))), shards):
+            count.add(json.loads(about["carom.outcomes"]), played=False)
+
+
+def _reduced(plan: Plan, shard: int, fn: Callable[[pyarrow.Table], Any], stop: Callable[[], bool] = lambda: False) -> tuple[Any, dict[str, int]]:
+    import pyarrow
+
+    need("pyarrow")
+    wrong = wrong_worker(plan)
+    if wrong:
+        raise SweepError(f"shard {shard}: process {os.getpid()}: {wrong}")
+    tally = Tally()
+    table = pyarrow.concat_tables(tables(plan, shard, 1, stop, tally))
+    return fn(table), tally.outcomes()
+
+
+def _merge(a: Any, b: Any) -> Any:
+    if isinstance(a, Mapping):
+        return {key: _merge(a[key], b[key]) if key in a and key in b else a.get(key, b.get(key)) for key in [*a, *(key for key in b if key not in a)]}
+    if isinstance(a, (tuple, list)):
+        if len(a) != len(b):
+            raise ValueError(f"cannot add a {type(a).__name__} of {len(b)} to one of {len(a)}")
+        return type(a)(_merge(x, y) for x, y in zip(a, b))
+    return a + b
+
+
+def reduce(
+    plan: Plan,
+    fn: Callable[[pyarrow.Table], Any],
+    executor: Any = "threads",
+    *,
+    merge: Callable[[Any, Any], Any] = _merge,
+    threads: int = 0,
+    retries: int = 3,
+    progress: Callable[[Progress], None] | None = None,
+) -> Any:
+    """Plays a sweep and keeps no rows: `fn` makes of the table of every shard what is wanted of it, and `merge` makes one of two.
+
+    fn: for processes it has to pickle: a function of a module
+    merge: adds numbers and arrays, and what stands in the same place of mappings, tuples and lists
+
+    Results are merged in the order of the shards, whoever finishes first, so that the bits do not depend on the workers. Everything else
+    as for `run`; but a reduction that is killed begins anew.
+    """
+    need("pyarrow")
+    _executor(executor)
+    count = _Count(plan, progress)
+
+    def merged(results: Iterator[tuple[Any, dict[str, int]]]) -> Any:
+        whole: Any = None
+        for number, (part, outcomes) in enumerate(results):
+            whole = part if number == 0 else merge(whole, part)
+            count.add(outcomes, played=True)
+            count.show()
+        return whole
+
+    if executor == "threads":
+        with _Threads(threads) as local:
+            return merged(_in_order(local, _reduced, lambda shard: (plan, shard, fn), plan.shards, 0))
+    return merged(_in_order(executor, _reduced, lambda shard: (plan, shard, fn), plan.shards, retries))
+
+
+__all__ = ["Progress", "Stopped", "reduce", "run"]
