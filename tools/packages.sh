@@ -9,8 +9,10 @@ carom_packages=(
     pkg-config python3 python3-numpy
 )
 # What continuous integration needs in addition: a second compiler with its sanitizers, the static checks, valgrind, what counts
-# lines, and what reads the completions and the man page.
-carom_check_packages=(clang clang-format clang-tidy glslang-tools valgrind llvm zsh groff-base)
+# lines, what reads the completions and the man page, and what runs the script of pages.
+carom_check_packages=(clang clang-format clang-tidy glslang-tools valgrind llvm zsh groff-base nodejs)
+# The browser that the tests open pages in. Ubuntu has it as a snap only: there these tests are left out.
+carom_browser=chromium
 # What the Python package is built and tested with (tools/python.sh); its tests are left out where they are missing.
 carom_python_packages=(python3-dev python3-venv)
 # What tools/docs makes the site with; it is left out where they are missing.
@@ -99,4 +101,5 @@ carom_ensure_check_packages() {
     carom_ensure "${carom_check_packages[@]}"
     # The sanitizers' library is of clang's version: libclang-rt-14-dev in Debian 12.
     carom_ensure "libclang-rt-$(clang -dumpversion | cut -d. -f1)-dev"
+    carom_installed "$carom_browser" || [ -z "$(apt-cache show "$carom_browser" 2>/dev/null)" ] || carom_ensure "$carom_browser"
 }

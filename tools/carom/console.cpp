@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -58,6 +59,33 @@ std::size_t columns() {
     return all - std::min(all, kFree);
 }
 
+/// The command line and the program's version, as prepare_process() was given them.
+std::string& kept_command_line() {
+    static std::string line;
+    return line;
+}
+std::string& kept_version() {
+    static std::string version;
+    return version;
+}
+
+/// An argument as a shell takes it: in quotes where it has to be.
+std::string quoted(const std::string& argument) {
+    const auto plain = [](unsigned char c) {
+        return std::isalnum(c) != 0 || std::strchr("-_./=,:+%@", c) != nullptr;
+    };
+    if (!argument.empty() && std::all_of(argument.begin(), argument.end(), plain)) return argument;
+    std::string out = "'";
+    for (const char c : argument) {
+        if (c == '\'')
+            out += "'\\''";
+        else
+            out += c;
+    }
+    out += '\'';
+    return out;
+}
+
 [[noreturn]] void output_failed() {
     const int reason = errno;
     if (reason == EPIPE) throw OutputClosed();
@@ -66,7 +94,18 @@ std::size_t columns() {
 
 }  // namespace
 
-void prepare_process() {
+const std::string& command_line() {
+    return kept_command_line();
+}
+
+const std::string& program_version() {
+    return kept_version();
+}
+
+void prepare_process(int argc, char** argv, const char* version) {
+    kept_version() = version;
+    kept_command_line() = "carom";
+    for (int i = 1; i < argc; ++i) kept_command_line() += " " + quoted(argv[i]);
     // If a standard stream is closed, the first file that is opened would get its number. So /dev/null is opened in its place, in
     // the wrong direction, so that using the stream fails as if it were closed.
     for (int fd = 0; fd <= 2; ++fd) {

@@ -26,8 +26,12 @@ class Interrupted : public std::exception {};
 /// The reader of standard output has ended (`carom ... | head -1`). The exit status is 1, and no message is printed.
 class OutputClosed : public std::exception {};
 
-/// Sets up signals and the three standard streams. Must be called once, before anything else.
-void prepare_process();
+/// Sets up signals and the three standard streams, and keeps the command line. Must be called once, before anything else.
+void prepare_process(int argc, char** argv, const char* version);
+
+/// How the program was called, as it can be typed again; empty in a test that has not called prepare_process().
+const std::string& command_line();
+const std::string& program_version();
 
 /// "1 frame", "2 frames".
 std::string counted(std::size_t count, std::string_view what);

@@ -12,6 +12,7 @@ namespace carom::tools {
 // A command is one file, which adds itself to the table of options; those that measure stand in folders.
 void add_simulate(Options& program);
 void add_render(Options& program);
+void add_view(Options& program);
 void add_margin(Options& program);
 void add_accuracy(Options& program);
 void add_sweep(Options& program);
@@ -35,6 +36,7 @@ int run(int argc, char** argv) {
         "Exit status: 0, 1 failed while running, 2 bad usage or bad scene, 130 interrupted.";
     add_simulate(program);
     add_render(program);
+    add_view(program);
     add_margin(program);
     add_accuracy(program);
     add_sweep(program);
@@ -78,6 +80,6 @@ int guarded(int argc, char** argv) {
 }  // namespace carom::tools
 
 int main(int argc, char** argv) {
-    carom::tools::prepare_process();
+    carom::tools::prepare_process(argc, argv, CAROM_VERSION);
     return carom::tools::guarded(argc, argv);
 }

@@ -44,14 +44,6 @@ struct RenderArgs {
     const FilmKind* film() const { return raw || y4m || !sheet.empty() ? nullptr : film_kind(pattern); }
 };
 
-/// Reads a record. Notes about missing parts are written to standard error.
-Record record_from(const std::string& path) {
-    std::vector<std::string> notes;
-    Record record = read_record(path, &notes);
-    for (const std::string& note : notes) message(fmt::format("note: {}: {}", path, note));
-    return record;
-}
-
 void check_args(const RenderArgs& args) {
     const auto second = [](const char* option, std::optional<double> value) {
         if (value && !(*value >= 0.0 && std::isfinite(*value))) {
@@ -214,8 +206,7 @@ int run(const RenderArgs& args) {
     if (!args.size.empty()) parse_size(args.size);
     SimulateOptions simulation;
     simulation.profile = overlay_of(args).margin;
-    const Record record = args.input.ends_with(".json") ? record_from(args.input)
-                                                        : simulate_plan(plan_scene(args.input), simulation);
+    const Record record = read_shot(args.input, simulation);
     render::SequenceOptions options = sequence_options(args, record);
     if (options.overlay.margin) set_simulation_costs(record, options);
     ProgressLine line("rendering:");

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "carom/engine/tolerances.h"
 #include "console.h"
@@ -27,8 +28,7 @@ std::optional<FrameSize> two_numbers(const std::string& text) {
 }  // namespace
 
 void add_gl(Options& command, std::string& gl) {
-    command.option("--gl", &gl, "NAME", "OpenGL without a display: osmesa, or egl (surfaceless)")
-        .one_of({"osmesa", "egl"});
+    command.option("--gl", &gl, "NAME", "OpenGL without a display").one_of({"osmesa", "egl"});
 }
 
 void add_picture(Options& command, std::optional<double>& fps, std::string& size) {
@@ -78,6 +78,14 @@ Record simulate_plan(const Plan& plan, SimulateOptions options) {
     };
     Record record = simulate(plan, options);
     throw_if_interrupted();
+    return record;
+}
+
+Record read_shot(const std::string& path, SimulateOptions options) {
+    if (!is_record(path)) return simulate_plan(plan_scene(path), std::move(options));
+    std::vector<std::string> notes;
+    Record record = read_record(path, &notes);
+    for (const std::string& note : notes) message(fmt::format("note: {}: {}", path, note));
     return record;
 }
 

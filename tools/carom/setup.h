@@ -36,6 +36,15 @@ SimulateOptions interruptible();
 /// Calls simulate() and shows a progress line. SIGINT ends the run. @throws SimulationError, Interrupted
 Record simulate_plan(const Plan& plan, SimulateOptions options);
 
+/// A record from a file (.json), whose notes go to standard error, or else what simulating a scene gives.
+/// @throws SceneError, SimulationError, Interrupted
+Record read_shot(const std::string& path, SimulateOptions options);
+
+/// Whether a file is read as a record, by its name.
+inline bool is_record(const std::string& path) {
+    return path.ends_with(".json");
+}
+
 /// Reads exactly kCount numbers with a separator between them: "1280x720". Returns nothing if the text is anything else.
 template <class Number, std::size_t kCount>
 std::optional<std::array<Number, kCount>> numbers_in(const std::string& text, char separator) {

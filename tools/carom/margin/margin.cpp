@@ -92,6 +92,14 @@ double MarginRun::total(std::size_t frame) const {
     return ms;
 }
 
+void add_simulation(MarginRun& run, const FrameCost& frame) {
+    run.stage[kSimulate].push_back(frame.simulate_ms());
+    run.stage[kDetect].push_back(frame.detect_ms);
+    run.stage[kResolve].push_back(frame.resolve_ms);
+    run.stage[kKernel].push_back(frame.kernel_ms);
+    run.stage[kCluster].push_back(frame.cluster_ms);
+}
+
 MarginRun one_run(const Plan& plan, const MarginArgs& args, double fps, const std::string& title) {
     MarginRun run;
     SimulateOptions options = interruptible();
@@ -101,13 +109,7 @@ MarginRun one_run(const Plan& plan, const MarginArgs& args, double fps, const st
     run.simulate_wall_ms = wall_ms() - start;
     const long frames = checked_frame_count(0.0, run.record.duration, fps);
     run.frames = costs_by_frame(run.record, 0.0, fps, frames);
-    for (const FrameCost& frame : run.frames) {
-        run.stage[kSimulate].push_back(frame.simulate_ms());
-        run.stage[kDetect].push_back(frame.detect_ms);
-        run.stage[kResolve].push_back(frame.resolve_ms);
-        run.stage[kKernel].push_back(frame.kernel_ms);
-        run.stage[kCluster].push_back(frame.cluster_ms);
-    }
+    for (const FrameCost& frame : run.frames) add_simulation(run, frame);
     if (!args.no_render) draw(run, args, fps, title);
     throw_if_interrupted();
     return run;
@@ -217,7 +219,7 @@ int run(const MarginArgs& args) {
     if (margin.rendered) margin.size = draw_options(last.record, args, fps).size;
     margin.timing = cost_of_timing(plan);
     write_report(args.csv, margin_csv(margin, last));
-    if (!args.plot.empty()) plot_margin(margin, last, args.scene, args.plot);
+    if (!args.plot.empty()) write_plot(margin_plot(margin, last, args.scene), args.plot);
     if (!args.trace.empty()) write_report(args.trace, margin_trace(last, fps));
     print(args.json ? margin_json(margin, last) : margin_text(margin, last, args.scene));
     return kOk;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "carom/engine/record.h"
 #include "carom/render/sequence.h"
 #include "margin/frame_costs.h"
+#include "report/plot.h"
 
 namespace carom::tools {
 
@@ -54,6 +56,8 @@ struct MarginRun {
     std::vector<double> frame_walls;  ///< of drawing to writing, for every frame but the first
     double total(std::size_t frame) const;
 };
+/// Appends what simulating one frame cost.
+void add_simulation(MarginRun& run, const FrameCost& frame);
 MarginRun one_run(const Plan& plan, const MarginArgs& args, double fps, const std::string& title);
 
 /// Compares the sum of the parts with the wall time, over all frames except the first, whose start is not known.
@@ -107,8 +111,9 @@ Margin combine(const std::vector<MarginRun>& runs, double fps, bool rendered);
 std::string margin_json(const Margin& margin, const MarginRun& last);
 std::string margin_text(const Margin& margin, const MarginRun& last, const std::string& scene);
 std::string margin_csv(const Margin& margin, const MarginRun& last);
-void plot_margin(const Margin& margin, const MarginRun& last, const std::string& scene,
-                 const std::string& path);
+Plot margin_plot(const Margin& margin, const MarginRun& last, const std::string& scene);
+/// The same for a page, which marks the worst frame.
+nlohmann::ordered_json margin_chart(const Margin& margin, const MarginRun& last, const std::string& scene);
 
 /// The frames of one run as Chrome trace events: frame k begins at k / fps, or when the one before is done,
 /// as in a loop that simulates, draws and waits for its time.

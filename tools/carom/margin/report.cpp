@@ -11,6 +11,7 @@
 #include "bench/clock.h"
 #include "console.h"
 #include "margin/margin.h"
+#include "report/html.h"
 #include "report/plot.h"
 #include "report/table.h"
 
@@ -169,8 +170,7 @@ std::string margin_csv(const Margin& margin, const MarginRun& last) {
     return table_csv(table);
 }
 
-void plot_margin(const Margin& margin, const MarginRun& last, const std::string& scene,
-                 const std::string& path) {
+Plot margin_plot(const Margin& margin, const MarginRun& last, const std::string& scene) {
     Plot plot;
     plot.title = fmt::format("What each frame costs: {} at {} fps", scene, margin.fps);
     plot.notes = {fmt::format("{}{} of {} frames missed; strokes below: contacts",
@@ -200,7 +200,17 @@ void plot_margin(const Margin& margin, const MarginRun& last, const std::string&
             if (event.type == kind) ticks.at.push_back(event.time);
         if (!ticks.at.empty()) plot.ticks.push_back(ticks);
     }
-    write_plot(plot, path);
+    return plot;
+}
+
+Json margin_chart(const Margin& margin, const MarginRun& last, const std::string& scene) {
+    Json chart = chart_json(margin_plot(margin, last, scene));
+    chart["x"]["unit"] = "s";
+    chart["marks"] = {
+        {{"x", time_of(margin, margin.worst)},
+         {"y", margin.total[margin.worst]},
+         {"name", fmt::format("worst frame: {}, {:.3f} ms", margin.worst, margin.total[margin.worst])}}};
+    return chart;
 }
 
 std::string margin_trace(const MarginRun& run, double fps) {

@@ -97,19 +97,23 @@ std::string table_csv(const Table& table) {
     return out;
 }
 
+nlohmann::ordered_json cell_json(const Cell& cell) {
+    return std::visit(
+        [](const auto& value) {
+            if constexpr (std::is_same_v<decltype(value), const std::monostate&>)
+                return Json(nullptr);
+            else
+                return Json(value);
+        },
+        cell.value);
+}
+
 nlohmann::ordered_json table_json(const Table& table) {
-    const auto json = [](const auto& value) {
-        if constexpr (std::is_same_v<decltype(value), const std::monostate&>)
-            return Json(nullptr);
-        else
-            return Json(value);
-    };
     Json list = Json::array();
     for (const Table::Row& row : table.rows) {
         Json object = Json::object();
         for (std::size_t i = 0; i < row.cells.size(); ++i)
-            if (!table.columns[i].key.empty())
-                object[table.columns[i].key] = std::visit(json, row.cells[i].value);
+            if (!table.columns[i].key.empty()) object[table.columns[i].key] = cell_json(row.cells[i]);
         list.push_back(object);
     }
     return list;

@@ -74,6 +74,9 @@ void append_csv(std::string& line, double x);
 void append_csv(std::string& line, std::int64_t count);
 void append_csv(std::string& line, std::string_view words);
 
+/// One value as JSON; null where there is none.
+nlohmann::ordered_json cell_json(const Cell& cell);
+
 /// A list of objects. What has no value, or is no finite number, is null.
 nlohmann::ordered_json table_json(const Table& table);
 

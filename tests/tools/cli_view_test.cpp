@@ -1,0 +1,262 @@
+// carom view: pages. The states that their script computes are the engine's, to the bit; a browser shows them, moves in them by keys and
+// pointer, says nothing on its console, and loads nothing.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/splitmix64.h"
+#include "carom/engine/record.h"
+#include "carom/render/draw_list.h"
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr char kView[] = CAROM_SOURCE_DIR "/tests/tools/view/";
+
+bool has(const char* program) {
+    return run_process({program, "--version"}).status == 0;
+}
+
+std::vector<std::string> scene_files() {
+    std::vector<std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(CAROM_SOURCE_DIR "/scenes"))
+        files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::string stem(const std::string& path) {
+    return std::filesystem::path(path).stem().string();
+}
+
+/// A record whose balls have names that would end the script, begin a tag, or end a line of it. Scenes refuse such names; a record comes
+/// from anywhere.
+std::string hostile_record(const TemporaryFolder& folder) {
+    const std::string file = folder.file("hostile.json");
+    EXPECT_EQ(carom({"simulate", folder.write("small.toml", kSmallScene), "-o", file, "--hash"}).status, 0);
+    Json record = Json::parse(read_file(file));
+    record["tracks"][0]["id"] = "</script><script>document.title='x'</script>";
+    record["tracks"][1]["id"] = "<b>1</b><!--";
+    record["tracks"][2]["id"] = "a\u2028b'\"&amp;\\";
+    return folder.write("hostile.json", record.dump());
+}
+
+/// Times at which a page is compared with the engine: outside the shot, even ones, events and their neighbours, random ones.
+std::vector<double> times_of(const Record& record) {
+    std::vector<double> times = {-1.0, 0.0, record.duration, record.duration + 1.0};
+    for (int k = 1; k < 300; ++k) times.push_back(record.duration * k / 300.0);
+    for (const Event& event : record.events)
+        for (const double toward : {-1.0, 1e9}) {
+            times.push_back(event.time);
+            times.push_back(std::nextafter(event.time, toward));
+        }
+    SplitMix64 random(7);
+    for (int k = 0; k < 200; ++k) times.push_back(record.duration * random.uniform());
+    return times;
+}
+
+std::string states_csv(const Record& record) {
+    std::string csv;
+    for (const double t : times_of(record)) {
+        for (int i = 0; i < static_cast<int>(record.tracks.size()); ++i) {
+            const BallState s = record.state_at(i, t);
+            csv += fmt::format("{},{},{},{}", i, t, name(s.state), s.pocket);
+            for (const Vec3* v : {&s.position, &s.velocity, &s.spin})
+                for (const double x : *v) csv += fmt::format(",{}", x);
+            const Eigen::Quaterniond q = record.orientation_at(i, t);
+            csv += fmt::format(",{},{},{},{}\n", q.w(), q.x(), q.y(), q.z());
+        }
+    }
+    return csv;
+}
+
+/// The page of a scene, or of a record, and the record that it holds.
+struct MadePage {
+    std::string file;
+    Record record;
+};
+
+MadePage make_page(const TemporaryFolder& folder, const std::string& scene,
+                   const std::vector<std::string>& options = {"--no-margin"}) {
+    const std::string file = folder.file(stem(scene) + ".html");
+    std::vector<std::string> arguments = {"view", scene, "-o", file};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProcessResult made = carom(arguments);
+    EXPECT_EQ(made.status, 0) << made.err;
+    if (scene.ends_with(".json")) return {file, read_record(scene)};
+    const std::string json = folder.file(stem(scene) + ".json");
+    EXPECT_EQ(carom({"simulate", scene, "-o", json, "--hash"}).status, 0);
+    return {file, read_record(json)};
+}
+
+TEST(View, ThePagesStatesAreTheEnginesToTheBit) {
+    if (!has("node")) GTEST_SKIP() << "node is not installed";
+    const TemporaryFolder folder;
+    std::vector<std::string> scenes = scene_files();
+    scenes.push_back(hostile_record(folder));
+    EXPECT_GE(scenes.size(), 20u);
+    double most_turned = 0.0;
+    for (const std::string& scene : scenes) {
+        const MadePage page = make_page(folder, scene);
+        const std::string csv = states_csv(page.record), file = folder.write("states.csv", csv);
+        const ProcessResult node = run_process({"node", kView + std::string("states.mjs"), page.file, file});
+        ASSERT_EQ(node.status, 0) << node.err;
+        long compared = 0, differ = -1;
+        double turned = 1.0;
+        const char* const counts = std::strstr(node.out.c_str(), "compared ");
+        ASSERT_NE(counts, nullptr) << node.out;
+        ASSERT_EQ(std::sscanf(counts, "compared %ld differ %ld turned %lf", &compared, &differ, &turned), 3)
+            << node.out;
+        EXPECT_EQ(differ, 0) << scene << "\n" << node.out;
+        EXPECT_EQ(compared, 11 * std::count(csv.begin(), csv.end(), '\n'));
+        // Orientations come from another sin and cos, and add up over all segments.
+        EXPECT_LT(turned, 1e-9) << scene;
+        most_turned = std::max(most_turned, turned);
+    }
+    RecordProperty("largest_difference_of_an_orientation_rad", fmt::format("{}", most_turned));
+}
+
+Json manifest_page(const std::string& name, const MadePage& page) {
+    const Record& record = page.record;
+    const render::Stage stage(record, {});
+    const render::Bounds& bounds = stage.table()->bounds;
+    const double times[] = {0.21 * record.duration, 0.55 * record.duration, record.duration};
+    Json states = Json::array();
+    for (const double t : times) {
+        Json balls = Json::array();
+        for (int i = 0; i < static_cast<int>(record.tracks.size()); ++i) {
+            const BallState s = record.state_at(i, t);
+            balls.push_back({{"id", record.tracks[i].id},
+                             {"x", s.position.x()},
+                             {"y", s.position.y()},
+                             {"z", s.position.z()},
+                             {"state", carom::name(s.state)},
+                             {"radius", record.size(i).R}});
+        }
+        states.push_back(balls);
+    }
+    return {
+        {"name", name},
+        {"file", page.file},
+        {"bounds", {{"low", {bounds.low.x(), bounds.low.y()}}, {"high", {bounds.high.x(), bounds.high.y()}}}},
+        {"times", times},
+        {"states", states}};
+}
+
+TEST(View, ABrowserShowsEveryScene) {
+    if (!has("node")) GTEST_SKIP() << "node is not installed";
+    if (!has("chromium")) GTEST_SKIP() << "chromium is not installed";
+    const TemporaryFolder folder;
+    Json pages = Json::array();
+    std::vector<std::string> scenes = scene_files();
+    scenes.push_back(hostile_record(folder));
+    for (const std::string& scene : scenes) {
+        const bool timed = stem(scene) == "eight_ball_break";
+        const MadePage page = timed ? make_page(folder, scene, {}) : make_page(folder, scene);
+        pages.push_back(manifest_page(stem(scene), page));
+        if (!timed) continue;
+        const auto bytes = std::filesystem::file_size(page.file);
+        EXPECT_LT(bytes, 200000u) << "the page of a break";
+        RecordProperty("bytes_of_the_page_of_a_break", std::to_string(bytes));
+    }
+    const Json manifest = {{"chromium", "chromium"},
+                           {"profile", folder.file("profile")},
+                           {"timed", "eight_ball_break"},
+                           {"pages", pages}};
+    // For a person: CAROM_VIEW_PICTURES names a folder, and what the browser shows goes there.
+    const char* const pictures = std::getenv("CAROM_VIEW_PICTURES");
+    const ProcessResult seen =
+        run_process({"node", kView + std::string("browser.mjs"),
+                     folder.write("manifest.json", manifest.dump()), pictures != nullptr ? pictures : ""});
+    EXPECT_EQ(seen.status, 0) << seen.out << seen.err;
+    EXPECT_TRUE(contains(seen.out, fmt::format("{} pages, 0 faults", scenes.size()))) << seen.out;
+    std::fputs(seen.out.c_str(), stdout);
+}
+
+TEST(View, APageHoldsItsRecordAndItsPolicy) {
+    const TemporaryFolder folder;
+    const MadePage page = make_page(folder, hostile_record(folder));
+    const std::string html = read_file(page.file);
+    EXPECT_TRUE(contains(
+        html, "content=\"default-src 'none'; base-uri 'none'; form-action 'none'; style-src 'sha256-"));
+    EXPECT_FALSE(contains(html, "unsafe"));
+    // Only what the page itself brings ends a script: names of balls cannot.
+    std::size_t ends = 0;
+    for (std::size_t at = 0; (at = html.find("</script", at)) != std::string::npos; ++at) ++ends;
+    EXPECT_EQ(ends, 2u + 6u);
+    const std::string before = "<script type=\"application/json\" id=\"shot\">";
+    const std::size_t from = html.find(before) + before.size();
+    const Record held = parse_record(html.substr(from, html.find("</script>", from) - from), "the page");
+    EXPECT_EQ(held.hash(), page.record.hash());
+    EXPECT_EQ(held.tracks.at(0).id, "</script><script>document.title='x'</script>");
+}
+
+TEST(View, ARecordIsShownAsItIs) {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("small.toml", kSmallScene), json = folder.file("shot.json"),
+                      page = folder.file("shot.html");
+    ASSERT_EQ(carom({"simulate", scene, "-o", json}).status, 0);
+    const ProcessResult plain = carom({"view", json, scene, "-o", page});
+    EXPECT_EQ(plain.status, 0) << plain.err;
+    EXPECT_TRUE(
+        contains(plain.err, "shot.json: the record is not profiled, so the page has no chart of frames"));
+    EXPECT_TRUE(contains(read_file(page), "id=\"second\""));
+    EXPECT_TRUE(contains(read_file(page), "\"margin\":null"));
+    ASSERT_EQ(carom({"simulate", scene, "-o", json, "--profile"}).status, 0);
+    const ProcessResult profiled = carom({"view", json, "-o", page});
+    EXPECT_EQ(profiled.status, 0) << profiled.err;
+    EXPECT_EQ(profiled.err, "");
+    EXPECT_TRUE(contains(read_file(page), "simulation only; "));
+}
+
+TEST(View, WithMarginThePageHasEveryFrame) {
+    const TemporaryFolder folder;
+    const std::string page = folder.file("shot.html");
+    const ProcessResult made = carom({"view", folder.write("small.toml", kSmallScene), "-o", page});
+    ASSERT_EQ(made.status, 0) << made.err;
+    const std::string html = read_file(page), before = "id=\"page\">";
+    const std::size_t from = html.find(before) + before.size();
+    const Json data = Json::parse(html.substr(from, html.find("</script>", from) - from));
+    const Json& margin = data.at("margin");
+    EXPECT_EQ(margin.at("series").at(0).at("name"), "whole frame");
+    EXPECT_EQ(margin.at("levels").at(0).at("y"), 1000.0 / 60.0);
+    EXPECT_EQ(margin.at("marks").size(), 1u);
+    EXPECT_EQ(data.at("command"), fmt::format("carom view {} -o {}", folder.file("small.toml"), page));
+    const Record record = parse_record(
+        html.substr(html.find("id=\"shot\">") + 10, html.find("</script>") - html.find("id=\"shot\">") - 10),
+        "page");
+    EXPECT_EQ(margin.at("series").at(0).at("points").size(),
+              static_cast<std::size_t>(record.duration * 60.0) + 1);
+    EXPECT_EQ(record.costs.size(), record.events.size());
+}
+
+TEST(View, RefusesWhatItCannotDoBeforeItBegins) {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("small.toml", kSmallScene);
+    const auto refused = [&](std::vector<std::string> options, const std::string& message) {
+        options.insert(options.begin(), {"view", scene});
+        const ProcessResult result = carom(options);
+        EXPECT_EQ(result.status, 2) << message;
+        EXPECT_TRUE(contains(result.err, message)) << result.err;
+    };
+    refused({"-o", folder.file("shot.htm5")}, "a page is an HTML file; give it a name that ends in .html");
+    refused({folder.file("none.json"), "-o", folder.file("a.html")}, "none.json");
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});
+}
+
+}  // namespace
+}  // namespace carom::test

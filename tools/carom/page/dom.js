@@ -1,0 +1,61 @@
+// Small helpers that every page uses: elements, numbers, and the frame of a page.
+"use strict";
+
+/** An element: make("button", {class: "x", onclick: f}, "text", child, ...). Nothing here is ever parsed as HTML. */
+function make(tag, attributes = {}, ...children) {
+  const svg = ["svg", "path", "line", "text", "g", "circle", "rect", "title"].includes(tag) && attributes.svg !== false;
+  const element = svg ? document.createElementNS("http://www.w3.org/2000/svg", tag) : document.createElement(tag);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (value === null || value === undefined || key === "svg") continue;
+    if (typeof value === "function") element[key] = value;
+    else element.setAttribute(key, value);
+  }
+  element.append(...children.flat().filter((child) => child !== null && child !== undefined));
+  return element;
+}
+
+/** What stands in the page under this id; null where there is nothing. */
+function pageData(id) {
+  const element = document.getElementById(id);
+  return element === null ? null : JSON.parse(element.textContent);
+}
+
+/** A number with a few digits, as a person reads it; thin spaces stand before units. */
+function shown(x, digits = 3) {
+  if (x === null || x === undefined) return "\u2013";
+  if (typeof x !== "number") return typeof x === "boolean" ? (x ? "yes" : "no") : String(x);
+  if (x === 0) return "0";
+  const size = Math.abs(x);
+  if (size >= 1e6 || size < 1e-4) return x.toExponential(digits - 1).replace("e+", "e");
+  return String(Number(x.toPrecision(size >= 1000 ? Math.max(digits, 4) : digits)));
+}
+
+/** A time in ns in the unit that suits it. */
+function duration(ns) {
+  const [size, name] = ns < 1e3 ? [1, "ns"] : ns < 1e6 ? [1e3, "µs"] : ns < 1e9 ? [1e6, "ms"] : [1e9, "s"];
+  return `${shown(ns / size)}\u2009${name}`;
+}
+
+/** Title, what was called, and the footer, around the parts of a page. */
+function pageFrame(page, ...parts) {
+  document.body.append(
+    make("header", {}, make("h1", {}, page.title), make("p", {class: "lead"}, page.lead || "")),
+    make("main", {}, ...parts),
+    make("footer", {}, make("p", {}, "Made by ", make("code", {}, page.command)), make("p", {}, page.machine)));
+}
+
+const prefers = (what) => matchMedia(`(prefers-${what})`).matches;
+
+/** Calls draw() when the element has a width, and whenever that is another one; never while the browser lays out. */
+function onWidth(element, draw) {
+  let width = 0;
+  new ResizeObserver(() => {
+    if (element.clientWidth === width) return;
+    width = element.clientWidth;
+    requestAnimationFrame(draw);
+  }).observe(element);
+}
+
+/** A symbol of 16 x 16: what fonts do not have everywhere. */
+const icon = (d) => make("svg", {viewBox: "0 0 16 16", width: 16, height: 16, "aria-hidden": "true"}, make("path", {d, fill: "currentColor"}));
+const ICONS = {play: "M4 2v12l10-6z", pause: "M3 2h4v12H3zM9 2h4v12H9z", back: "M3 2h2v12H3zM14 2v12L6 8z", next: "M11 2h2v12h-2zM2 2v12l8-6z"};

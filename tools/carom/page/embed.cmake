@@ -1,0 +1,13 @@
+# Writes the scripts and the style of pages into one C++ file: cmake -DOUTPUT=page_files.cpp -P embed.cmake
+set(folder ${CMAKE_CURRENT_LIST_DIR})
+set(text "// Made by tools/carom/page/embed.cmake from the files beside it.\n#include \"page/page.h\"\n\n")
+string(APPEND text "namespace carom::tools {\n\nconst std::vector<PageFile>& page_files() {\n    static const std::vector<PageFile> files = {\n")
+file(GLOB sources ${folder}/*.js ${folder}/*.css)
+foreach(path IN LISTS sources)
+  get_filename_component(name ${path} NAME)
+  file(READ ${path} source)
+  file(SHA256 ${path} hash)
+  string(APPEND text "{\"${name}\", R\"page(${source})page\", \"${hash}\"},\n")
+endforeach()
+string(APPEND text "    };\n    return files;\n}\n\n}  // namespace carom::tools\n")
+file(WRITE ${OUTPUT} "${text}")

@@ -1,0 +1,98 @@
+#include "page/page.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+
+#include "console.h"
+
+namespace carom::tools {
+namespace {
+
+const PageFile& page_file(const std::string& name) {
+    const std::vector<PageFile>& files = page_files();
+    const auto found =
+        std::find_if(files.begin(), files.end(), [&name](const PageFile& file) { return file.name == name; });
+    if (found == files.end()) throw std::logic_error("no page file is called " + name);
+    return *found;
+}
+
+/// Hexadecimal digits as Base64, which is how a policy writes a hash.
+std::string base64(const std::string& hex) {
+    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    for (std::size_t at = 0; at < hex.size(); at += 6) {
+        // Three bytes are six digits and four letters; what is missing at the end is 0 and shown as "=".
+        std::string six = hex.substr(at, 6);
+        const std::size_t letters = six.size() / 2 + 1;
+        six.resize(6, '0');
+        const auto bits = static_cast<std::uint32_t>(std::stoul(six, nullptr, 16));
+        for (std::size_t i = 0; i < 4; ++i) out += i < letters ? kDigits[(bits >> (18 - 6 * i)) & 63U] : '=';
+    }
+    return out;
+}
+
+std::string policy_hash(const PageFile& file) {
+    return fmt::format(" 'sha256-{}'", base64(file.sha256));
+}
+
+std::string as_html(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '&')
+            out += "&amp;";
+        else if (c == '<')
+            out += "&lt;";
+        else
+            out += c;
+    }
+    return out;
+}
+
+/// JSON in which no text can end the element: "<" stands in strings only, and there it may be written as an escape.
+std::string inlined(const std::string& json) {
+    std::string out;
+    for (const char c : json) {
+        if (c == '<')
+            out += "\\u003c";
+        else
+            out += c;
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string page_html(const std::string& title, const std::vector<std::string>& scripts,
+                      const std::vector<PageData>& data) {
+    const PageFile& style = page_file("style.css");
+    std::string policy = "default-src 'none'; base-uri 'none'; form-action 'none'; style-src" +
+                         policy_hash(style) + "; script-src";
+    for (const std::string& name : scripts) policy += policy_hash(page_file(name));
+    std::string html =
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"" +
+        policy +
+        "\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
+        as_html(title) + "</title>\n<style>" + style.text +
+        "</style>\n</head>\n<body>\n<noscript>This page is drawn by its script.</noscript>\n";
+    for (const PageData& item : data)
+        html +=
+            "<script type=\"application/json\" id=\"" + item.id + "\">" + inlined(item.json) + "</script>\n";
+    for (const std::string& name : scripts) {
+        const PageFile& file = page_file(name);
+        html += std::string("<script>") + file.text + "</script>\n";
+    }
+    return html + "</body>\n</html>\n";
+}
+
+void check_page_path(const std::string& option, const std::string& path) {
+    if (!path.empty() && !path.ends_with(".html") && !path.ends_with(".htm"))
+        throw UsageError(option + " " + path + ": a page is an HTML file; give it a name that ends in .html");
+}
+
+}  // namespace carom::tools

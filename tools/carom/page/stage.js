@@ -1,0 +1,177 @@
+// A table with the balls of a record on it, on two canvases: the table below, which is painted once for a size, and what moves.
+"use strict";
+
+const TRAIL_COLOURS = {sliding: "#ff9e2e", rolling: "#f0f0e6", airborne: "#ff6bd0"};
+const SINK_TIME = 0.15;  // [s] how long a ball that was pocketed is seen to sink, as in rendered frames
+const CONTACT_SHADOW = 0.55, LAMP_SHADOW = 0.55;
+
+const isGone = (state) => state === "pocketed" || state === "out";
+
+class TableView {
+  /** `shape` and `styles`: the table's outlines, and {color, pattern, number} of each ball. */
+  constructor(record, shape, styles, label) {
+    Object.assign(this, {record, shape, styles, width: 0});
+    this.under = make("canvas", {"aria-hidden": "true"});
+    this.over = make("canvas", {role: "img", "aria-label": label});
+    this.element = make("div", {class: "table"}, this.under, this.over);
+    this.pictures = styles.map((style) => new BallPicture(style));
+    this.orientation = orientations(record);
+    const cube = (x) => x * x * x;
+    this.contact = shadowPicture(2.5, (d) => CONTACT_SHADOW * cube(Math.max(0, 1 - d * d / 6.25)));
+    this.lamp = shadowPicture(1.85, (d) => LAMP_SHADOW * Math.max(0, 1 - d * d / 3.4) ** 2);
+    this.cushions = pathOf(shape.cushion);
+    const box = shape.bounds, sides = [box.high[0] - box.low[0], box.high[1] - box.low[1]];
+    this.eye = 0.6 * Math.max(...sides);  // [m] how high whoever looks is: a ball in the air is drawn larger
+    this.ratio = clamp(Math.min(...sides) / Math.max(...sides), 0.4, 1);
+  }
+
+  /** Fits into a width and a height [CSS px]; what is upright on a narrow screen lies on a wide one. */
+  fit(width, height) {
+    const lying = Math.min(width, height / this.ratio) >= Math.min(height, width / this.ratio);
+    const w = Math.floor(lying ? Math.min(width, height / this.ratio) : Math.min(width, height * this.ratio));
+    const h = Math.floor(lying ? w * this.ratio : w / this.ratio), dense = Math.min(window.devicePixelRatio || 1, 2);
+    if (w === this.width && h === this.height && dense === this.dense) return;
+    Object.assign(this, {width: w, height: h, dense});
+    for (const canvas of [this.under, this.over]) {
+      canvas.width = Math.round(w * dense);
+      canvas.height = Math.round(h * dense);
+      canvas.style.width = `${w}px`;
+      canvas.style.height = `${h}px`;
+    }
+    this.element.style.width = `${w}px`;
+    this.element.style.height = `${h}px`;
+    this.projection = new Projection(this.shape.bounds, this.under.width, this.under.height, 0);
+    paintTable(this.under, this.projection, this.shape);
+  }
+
+  /** Where a state is drawn: {x, y, r} in pixels of the canvas, and its place in m; null where nothing is seen of it. */
+  placed(ball, s, t) {
+    if (s.state === "out" && s.r[2] < 0) return null;
+    const R = radiusOf(this.record, ball);
+    let p = s.r;
+    if (s.state === "pocketed") {
+      const since = this.record.tracks[ball].segments.at(-1).start, age = t - since;
+      if (since > 0 && age < SINK_TIME) {
+        const before = stateAt(this.record, ball, since - 1e-9).r, left = (1 - age / SINK_TIME) ** 2;
+        p = s.r.map((x, k) => x + left * (before[k] - x));
+      }
+    }
+    const [x, y] = this.projection.at(p[0], p[1]), nearer = this.eye / Math.max(this.eye - Math.max(p[2] - R, 0), 0.3 * this.eye);
+    return {x, y, r: Math.max(R * this.projection.scale * nearer, 2), p, R};
+  }
+
+  /** All balls at t that can be seen, the lowest first. */
+  balls(record, t) {
+    const list = [];
+    for (let i = 0; i < record.tracks.length; ++i) {
+      const state = stateAt(record, i, t), place = this.placed(i, state, t);
+      if (place !== null) list.push({i, state, ...place, since: state.state === "pocketed" ? record.tracks[i].segments.at(-1).start : 0});
+    }
+    return list.sort((a, b) => a.p[2] - b.p[2] || a.since - b.since);
+  }
+
+  draw(t, {trails = "off", ghost = null, marked = -1} = {}) {
+    const context = this.over.getContext("2d");
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.clearRect(0, 0, this.over.width, this.over.height);
+    if (ghost !== null && trails !== "off") this.trails(context, ghost, t, trails, true);
+    if (trails !== "off") this.trails(context, this.record, t, trails, false);
+    this.seen = this.balls(this.record, t);
+    this.shadows(context);
+    for (const ball of this.seen)
+      this.pictures[ball.i].draw(context, this.projection, this.shape.lamp, ball.x, ball.y, ball.r, ball.p, ball.R, this.orientation(ball.i, t));
+    if (ghost !== null) this.ghosts(context, ghost, t);
+    for (const ball of this.seen) {
+      if (ball.i !== marked) continue;
+      context.lineWidth = 2 * this.dense;
+      context.strokeStyle = "#fff";
+      context.beginPath();
+      context.arc(ball.x, ball.y, ball.r + 4 * this.dense, 0, 7);
+      context.stroke();
+    }
+  }
+
+  shadows(context) {
+    context.save();
+    context.setTransform(...this.projection.matrix);
+    // The cloth without the cushions: the even-odd rule cuts them out of everything.
+    const cloth = new Path2D();
+    cloth.rect(-1e4, -1e4, 2e4, 2e4);
+    cloth.addPath(this.cushions);
+    context.clip(cloth, "evenodd");
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    const {lamp} = this.shape, down = this.projection.lying ? [0, 1, 1, 0] : [1, 0, 0, -1];
+    for (const {state, x, y, p, R} of this.seen) {
+      const lift = Math.max(p[2] / R, 1), faint = clamp(p[2] / R, 0, 1), scale = R * this.projection.scale * lift;
+      if (isGone(state.state) || faint === 0) continue;
+      let dx = lamp.endless ? 0 : (p[0] - lamp.center[0]) / (lamp.center[2] - p[2]), dy = lamp.endless ? 0 : (p[1] - lamp.center[1]) / (lamp.center[2] - p[2]);
+      const far = Math.max(1, Math.hypot(dx, dy) / 0.65);
+      [dx, dy] = [(down[0] * dx + down[1] * dy) / far, (down[2] * dx + down[3] * dy) / far];
+      const put = (picture, ox, oy, alpha) => {
+        const reach = picture.reach * scale;
+        context.globalAlpha = alpha;
+        context.drawImage(picture.canvas, x + ox * scale - reach, y + oy * scale - reach, 2 * reach, 2 * reach);
+      };
+      put(this.contact, 0, 0, faint / (lift * lift));
+      put(this.lamp, dx, dy, faint / lift);
+    }
+    context.restore();
+  }
+
+  /** Outlines of the balls of another record, on this table. */
+  ghosts(context, record, t) {
+    for (const {i, state, x, y, r} of this.balls(record, t)) {
+      if (isGone(state.state)) continue;
+      context.beginPath();
+      context.arc(x, y, r, 0, 7);
+      context.globalAlpha = 0.45;
+      context.fillStyle = cssColour(this.styles[i % this.styles.length].color);
+      context.fill();
+      context.globalAlpha = 0.95;
+      context.lineWidth = 1.5 * this.dense;
+      context.strokeStyle = "#fff";
+      context.setLineDash([3 * this.dense, 2 * this.dense]);
+      context.stroke();
+      context.setLineDash([]);
+      context.globalAlpha = 1;
+    }
+  }
+
+  /** The ways of all balls up to t. A piece of motion is a parabola, and so is a quadratic curve of a canvas: nothing is sampled. */
+  trails(context, record, t, kind, dashed) {
+    context.save();
+    context.setTransform(...this.projection.matrix);
+    context.lineWidth = 1.6 * this.dense / this.projection.scale;
+    context.lineCap = dashed ? "butt" : "round";
+    context.globalAlpha = dashed ? 0.55 : 0.85;
+    if (dashed) context.setLineDash([5, 4].map((x) => x * this.dense / this.projection.scale));
+    record.tracks.forEach((track, ball) => {
+      for (let i = 0; i < track.segments.length; ++i) {
+        const s = track.segments[i], next = track.segments[i + 1];
+        if (s.start >= t || isGone(s.state)) break;
+        const tau = Math.min((next ? Math.min(next.start, t) : Math.min(t, record.duration)) - s.start, s.duration ?? Infinity);
+        if (!(tau > 0) || (s.v[0] === 0 && s.v[1] === 0 && s.a[0] === 0 && s.a[1] === 0)) continue;
+        context.strokeStyle = kind === "ball" ? cssColour(this.styles[ball % this.styles.length].color) : TRAIL_COLOURS[s.state] || "#8cbfff";
+        context.beginPath();
+        context.moveTo(s.r[0], s.r[1]);
+        context.quadraticCurveTo(s.r[0] + 0.5 * tau * s.v[0], s.r[1] + 0.5 * tau * s.v[1],
+          s.r[0] + tau * (s.v[0] + 0.5 * tau * s.a[0]), s.r[1] + tau * (s.v[1] + 0.5 * tau * s.a[1]));
+        context.stroke();
+      }
+    });
+    context.restore();
+  }
+
+  /** The ball under a place of the window, or -1. */
+  ballAt(event) {
+    const box = this.over.getBoundingClientRect(), x = (event.clientX - box.left) * this.dense, y = (event.clientY - box.top) * this.dense;
+    let best = -1, nearest = 12 * this.dense;
+    for (const ball of this.seen || []) {
+      const away = Math.hypot(ball.x - x, ball.y - y) - ball.r;
+      if (away < nearest && !isGone(ball.state.state)) [best, nearest] = [ball.i, away];
+    }
+    return best;
+  }
+}
+
+const cssColour = (color) => `rgb(${color.map((c) => Math.round(255 * c)).join()})`;

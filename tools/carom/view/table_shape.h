@@ -1,0 +1,20 @@
+// The table as flat outlines seen from above, for a page that draws it without triangles.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "carom/render/table_mesh.h"
+
+namespace carom::tools {
+
+/// Outlines in m of the table's frame, each a list of numbers x, y, x, y, ... that closes by itself; to be filled by the
+/// non-zero rule. An object of
+/// - bounds {low, high}, inner {low, high}: what to show, and the box inside the wooden frame
+/// - lamp {center, half, endless}, wood_top
+/// - cloth, cushion, trim, inlay, chalk: lists of outlines
+/// - wood: a list of boards {loops, grain}; the six numbers of grain make u = g0 x + g1 y + g2 along it and
+///   v = g3 x + g4 y + g5 across it
+/// - holes: a list of {center, radius}
+nlohmann::ordered_json table_shape(const render::TableMesh& mesh);
+
+}  // namespace carom::tools
