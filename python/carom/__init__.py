@@ -7,7 +7,7 @@ names end in `_deg` are degrees. The table's frame has x along the short side, y
 Long calls run without the GIL, and Ctrl-C ends them. Results have the same bits on every machine and with any number of threads.
 """
 
-from carom import kernel, sweep
+from carom import kernel, plot, sweep
 from carom._carom import VERSION as __version__
 from carom._errors import SceneError, SimulationError
 from carom._program import accuracy, margin
@@ -29,6 +29,7 @@ __all__ = [
     "accuracy",
     "kernel",
     "margin",
+    "plot",
     "render",
     "simulate",
     "simulate_many",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from carom import _carom
 if TYPE_CHECKING:
     from typing import Self
 
+    import pandas
     from numpy.typing import ArrayLike, NDArray
 
     from carom._scene import Scene
@@ -98,6 +99,11 @@ class Record:
         return np.array([self._native.mass(i) for i in range(self._native.balls)])
 
     @property
+    def colors(self) -> NDArray[np.float64]:
+        """The colour that pictures give every ball, sRGB from 0 to 1: (balls, 3)."""
+        return np.array([self._native.color(i) for i in range(self._native.balls)])
+
+    @property
     def table(self) -> TablePlan:
         """The table, for drawing."""
         return TablePlan(**self._native.table)
@@ -176,6 +182,30 @@ class Record:
         native = self._native.scene_after(None if scene is None else scene._native)
         after = Scene._of(native)
         return after if cue is None else after.replace(cue=_section(cue, "preset"))
+
+    def to_pandas(self, what: Literal["events", "segments"] = "events") -> pandas.DataFrame:
+        """The events, or the motion segments of all balls, as a DataFrame; a copy. Needs pandas (extra [notebook]).
+
+        "events": time [s], type, a and b (ids; "" for nothing), detail
+        "segments": ball, and what `segments` has, vectors as columns: rx, ry, rz, vx, ..., ax, ay, dwx, dwy
+
+        Raises ValueError for anything else.
+        """
+        from carom import _tables
+
+        if what not in ("events", "segments"):
+            raise ValueError(f"what={what!r}: expected events or segments")
+        return _tables.events(self) if what == "events" else _tables.segments(self)
+
+    def _repr_html_(self) -> str:
+        from carom import _show
+
+        return _show.page(self)
+
+    def _repr_png_(self) -> bytes | None:
+        from carom import _show
+
+        return _show.picture(self)
 
     def hash(self) -> str:
         """64 bits of all bits of segments and events, as 16 hexadecimal digits: equal on every machine."""

@@ -15,6 +15,7 @@
 
 #include "carom/engine/batch.h"
 #include "carom/engine/simulate.h"
+#include "carom/render/draw_list.h"
 #include "native.h"
 
 namespace carom::python {
@@ -126,6 +127,13 @@ nb::typed<nb::dict, nb::str, nb::any> table_of(const NativeRecord& r) {
     return all;
 }
 
+/// Red, green and blue of a ball in pictures.
+std::tuple<double, double, double> color(const NativeRecord& r, int ball) {
+    const std::string& id = r.record->tracks.at(static_cast<std::size_t>(ball)).id;
+    const auto [red, green, blue] = render::ball_style(id, r.record->table.preset, ball).color;
+    return {red, green, blue};
+}
+
 std::vector<std::string> track_ids(const NativeRecord& r) {
     std::vector<std::string> list;
     for (const BallTrack& track : r.record->tracks) list.push_back(track.id);
@@ -164,6 +172,7 @@ void add_records(nb::module_& m) {
         .def_prop_ro("clusters", [](const NativeRecord& r) { return r.record->clusters; })
         .def("radius", [](const NativeRecord& r, int ball) { return r.record->size(ball).R; })
         .def("mass", [](const NativeRecord& r, int ball) { return r.record->size(ball).m; })
+        .def("color", color)
         .def("event_list", event_list)
         .def("hash", [](const NativeRecord& r) { return r.record->hash(); })
         .def("states", states, nb::arg("times"), nb::arg("rvw").noconvert(), nb::arg("kinds").noconvert())

@@ -10,6 +10,8 @@ import subprocess
 
 import pytest
 
+# Pictures without a display, and without the backend of whoever runs the tests.
+os.environ["MPLBACKEND"] = "Agg"
 SOURCE = pathlib.Path(os.environ.get("CAROM_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
 SCENES = sorted((SOURCE / "scenes").glob("*.toml"))
 #: Whether tests that take minutes run, too: CAROM_SLOW_TESTS=1.

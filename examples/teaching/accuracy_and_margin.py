@@ -1,0 +1,107 @@
+# %% [markdown]
+# # What accuracy costs, and what a margin is
+#
+# A simulator solves equations with an error. Three questions decide whether that matters:
+#
+# 1. How does the error of one impact fall with the effort? We expect Euler's method, the published way to solve the equation of two balls
+#    (Mathavan, Jackson, Parkin, Sports Engineering 17, 2014), to be of first order: ten times the steps, a tenth of the error. A method
+#    with a tolerance has to keep it.
+# 2. What does a shot make of a small error? We expect it to grow in proportion, by a factor that is the *gain* of the shot.
+# 3. Is it fast enough? A film has 1/60 s for a picture. What is left of it is the *margin*.
+
+# %%
+import carom
+import matplotlib.pyplot as plt
+import numpy as np
+
+# %% [markdown]
+# ## 1. One impact
+# `carom.accuracy()` solves a thousand random impacts in every way, and compares with a converged result. Times are of your machine.
+
+# %%
+report = carom.accuracy(runs=1)
+plt.figure(figsize=(8, 4.5), layout="constrained")
+for method in ("march", "tolerance"):
+    rows = [row for row in report["rows"] if row["method"] == method and row["kind"] == "single"]
+    plt.loglog([row["ns"] for row in rows], [row["error_median"] for row in rows], "o-", label=method)
+plt.xlabel("time of one impact [ns]")
+plt.ylabel("error of the velocities [of the approach speed]")
+plt.title("What accuracy costs")
+plt.legend()
+plt.show()
+
+# %%
+march = {int(row["setting"][2:]): row["error_median"] for row in report["rows"] if row["method"] == "march" and row["kind"] == "single"}
+steps = np.array(sorted(march))
+order = -np.polyfit(np.log(steps), np.log([march[n] for n in steps]), 1)[0]
+assert abs(order - 1) < 0.1  # first order
+for row in report["rows"]:
+    if row["method"] == "tolerance":
+        # What it is compared with is known to report["agreement"], some 1e-12.
+        assert row["error_max"] <= float(row["setting"]) + report["agreement"]
+print(f"the error of the march falls with the power {order:.2f} of its steps")
+
+# %% [markdown]
+# ## 2. One shot
+# Put the cue ball a hair beside its place, and look where the balls end. A cut has one impact; in a break errors meet balls again and
+# again, and each impact multiplies them by about the free way over the radius.
+
+# %%
+shots = {
+    "a cut": carom.Scene(
+        ball=[{"id": "cue", "position": [0.635, 0.6]}, {"id": "1", "position": [0.66, 1.4]}], cue={"speed": 2, "aim_deg": 90, "offset": [0, 0]}
+    ),
+    "eight-ball break": carom.Scene(
+        ball=[{"id": "cue", "position": [0.6, 0.5]}], rack={"game": "eight_ball"}, cue={"speed": 8, "aim_deg": 90.1}
+    ),
+}
+hairs = np.logspace(-13, -8, 21)  # m
+plt.figure(figsize=(8, 4.5), layout="constrained")
+slopes, gains = {}, {}
+for name, scene in shots.items():
+    places = np.repeat(scene.positions[None], len(hairs) + 1, axis=0)
+    places[1:, 0, 0] += hairs
+    ends = carom.simulate_many(scene, xy=places).xy
+    off = np.linalg.norm(ends[1:] - ends[0], axis=-1).max(axis=-1)
+    # Larger hairs change which balls meet; up to there the answer is a straight line.
+    straight = off < 1e-3
+    slopes[name] = np.polyfit(np.log(hairs[straight]), np.log(off[straight]), 1)[0]
+    gains[name] = float(np.median(off[straight] / hairs[straight]))
+    plt.loglog(hairs, off, "o-", label=f"{name}: gain {gains[name]:.1e}")
+plt.xlabel("cue ball beside its place [m]")
+plt.ylabel("farthest ball off at the end [m]")
+plt.title("The gain of a shot")
+plt.legend()
+plt.show()
+
+# %%
+assert abs(slopes["a cut"] - 1) < 0.02  # in proportion
+assert gains["eight-ball break"] > 100 * gains["a cut"]
+advice = carom.accuracy(shots["a cut"], runs=1, target=1e-3)
+assert advice["recommended_tolerance"] * advice["gain"] <= 1e-3
+print(f"the cut: gain {gains['a cut']:.0f}; for a millimetre a tolerance of {advice['recommended_tolerance']:g} suffices")
+
+# %% [markdown]
+# ## 3. The margin
+# `carom.margin` measures every picture of a film: here only what the simulation takes. The slack is what is left of 1/60 s.
+
+# %%
+margin = carom.margin(shots["eight-ball break"], runs=3, render=False)
+frames = margin["table"]
+plt.figure(figsize=(8, 4), layout="constrained")
+plt.bar(frames["time"], frames["simulate_ms"], width=1 / margin["fps"], label="simulation")
+plt.axhline(margin["budget_ms"], color="tab:red", label="1/60 s")
+plt.yscale("log")
+plt.ylim(1e-4, 50)
+plt.xlim(0, 3)
+plt.xlabel("time in the shot [s]")
+plt.ylabel("time for the picture [ms]")
+plt.title(f"Least slack: {margin['slack_percent']['least']:.1f} %")
+plt.legend()
+plt.show()
+
+# %%
+assert abs(margin["budget_ms"] - 1000 / 60) < 1e-9
+assert np.allclose(frames["slack_percent"], 100 * (1 - frames["total_ms"] / margin["budget_ms"]), atol=1e-3)
+assert margin["frames"] == len(frames["frame"])
+print(f"{margin['missed']} of {margin['frames']} pictures missed")

@@ -1,0 +1,39 @@
+"""How a record shows itself in a notebook. The page of a shot will stand here in place of the picture."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from carom._record import Record
+
+
+def picture(record: Record) -> bytes | None:
+    """The plan of the table with trails as PNG; None where there is no matplotlib."""
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        return None
+    from carom import plot
+
+    # Not a figure of pyplot's, which the notebook would show a second time.
+    figure = Figure(figsize=(8.0, 4.6), dpi=100, layout="constrained")
+    FigureCanvasAgg(figure)
+    plot.table(record, ax=figure.add_subplot())
+    out = io.BytesIO()
+    figure.savefig(out, format="png", metadata={"Software": None})
+    return out.getvalue()
+
+
+def page(record: Record) -> str:
+    """The picture with what it shows, as HTML without a reference to anything outside."""
+    text = html.escape(repr(record)[len("<carom.") : -1])
+    drawn = picture(record)
+    if drawn is None:
+        return f"<p>{text} (a picture needs matplotlib: <code>pip install 'carom-billiards[notebook]'</code>)</p>"
+    data = base64.b64encode(drawn).decode("ascii")
+    return f'<figure style="margin:0"><img alt="{text}" src="data:image/png;base64,{data}"><figcaption>{text}</figcaption></figure>'

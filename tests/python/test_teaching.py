@@ -1,0 +1,73 @@
+"""The scripts for teachers run, draw, and check what they expect; and their checks can fail.
+
+CAROM_PICTURES=FOLDER keeps the pictures there.
+"""
+
+from __future__ import annotations
+
+import os
+import pathlib
+
+import numpy as np
+import pytest
+from conftest import SOURCE
+
+SCRIPTS = sorted((SOURCE / "examples/teaching").glob("*.py"))
+# What breaks the physics of each script: a check has to notice.
+WRONG = {
+    "accuracy_and_margin": ("abs(order - 1)", "abs(order - 2)"),
+    "cushions": ("(1 + E_C) * v[:, 0] * cosine", "(1 + E_C) * v[:, 0]"),
+    "draw_and_follow": ("(1 - E_B) / 2 * v, rw", "(1 + E_B) / 2 * v, rw"),
+    "thirty_degrees": ("+ 2 / 7", "+ 2 / 5"),
+    "throw": ("2 / (1 + E_B) / 7", "1 / 7"),
+}
+
+
+def run(name, source, folder):
+    """Runs a script as a notebook does, cell after cell; the sizes of its pictures and how many colours each has."""
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    pictures = []
+
+    def show():
+        for number in pyplot.get_fignums():
+            figure = pyplot.figure(number)
+            figure.savefig(folder / f"teaching_{name}_{len(pictures) + 1}.png", dpi=60, metadata={"Software": None})
+            figure.canvas.draw()
+            pictures.append(len(np.unique(np.asarray(figure.canvas.buffer_rgba()).reshape(-1, 4), axis=0)))
+        pyplot.close("all")
+
+    kept, pyplot.show = pyplot.show, show
+    names: dict[str, object] = {"__name__": "__main__"}
+    try:
+        exec(compile(source, f"{name}.py", "exec"), names)
+        assert pyplot.get_fignums() == [], "a picture was not shown"
+    finally:
+        pyplot.show = kept
+        pyplot.close("all")
+    return pictures
+
+
+def test_there_are_five():
+    assert [path.stem for path in SCRIPTS] == sorted(WRONG)
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda p: p.stem)
+def test_a_script_finds_what_it_expects(path, tmp_path, capsys):
+    folder = pathlib.Path(os.environ.get("CAROM_PICTURES", tmp_path))
+    source = path.read_text()
+    pictures = run(path.stem, source, folder)
+    assert len(pictures) == source.count("plt.show()") >= 2 and min(pictures) > 50
+    assert capsys.readouterr().out.strip()
+    assert source.startswith("# %% [markdown]\n# # ")
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda p: p.stem)
+def test_a_wrong_formula_is_noticed(path, tmp_path):
+    right, wrong = WRONG[path.stem]
+    source = path.read_text()
+    assert source.count(right) == 1
+    with pytest.raises(AssertionError):
+        run(path.stem, source.replace(right, wrong), tmp_path)
