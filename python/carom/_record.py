@@ -53,7 +53,8 @@ class TablePlan(NamedTuple):
 class Record:
     """What happened in a shot: motion segments in closed form, and events. Immutable.
 
-    Arrays that are views share the record's memory, are read-only, and keep it alive. Balls are in the order of `ids`.
+    Arrays that are views share the record's memory, are read-only, and keep it alive. Balls are in the order of `ids`. A record
+    pickles as what `save` writes, with its scene.
     """
 
     __slots__ = ("_native", "__weakref__")
@@ -228,7 +229,13 @@ class Record:
         return cls._of(_carom.load_record(os.fspath(path)))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        raise TypeError("a Record does not pickle: send its scene and play it again, which gives the same bits; or save it")
+        return _again, (self._native.text(), self._scene())
+
+    def _scene(self) -> Scene | None:
+        """The scene that was played; None for a record from a file."""
+        from carom._scene import Scene
+
+        return None if self._native.scene is None else Scene._of(self._native.scene)
 
     def __repr__(self) -> str:
         return f"<carom.Record: {self._native.balls} balls, {len(self.events)} events, {self.duration:.3f} s, {self.stopped}>"
@@ -239,6 +246,11 @@ class Record:
         if np.isnan(times).any():
             raise ValueError("a time is not a number")
         return np.ascontiguousarray(times).reshape(-1), times.shape
+
+
+def _again(text: str, scene: Scene | None) -> Record:
+    """A record that was pickled."""
+    return Record._of(_carom.parse_record(text, None if scene is None else scene._native))
 
 
 def _output(out: NDArray[np.float64] | None, shape: tuple[int, ...]) -> NDArray[np.float64]:

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -178,6 +179,16 @@ void add_records(nb::module_& m) {
         .def("states", states, nb::arg("times"), nb::arg("rvw").noconvert(), nb::arg("kinds").noconvert())
         .def("orientations", orientations, nb::arg("times"), nb::arg("out").noconvert())
         .def("scene_after", scene_after_record, nb::arg("scene").none())
+        .def("text",
+             [](const NativeRecord& r) {
+                 const nb::gil_scoped_release no_gil;
+                 return record_json(*r.record);
+             })
+        .def_prop_ro("scene",
+                     [](const NativeRecord& r) -> std::optional<NativeScene> {
+                         if (r.scene == nullptr) return std::nullopt;
+                         return NativeScene{r.scene, scene_text(*r.scene)};
+                     })
         .def("save", [](const NativeRecord& r, const std::string& path) { write_record(*r.record, path); });
     // Functions, because only they get the object itself, which the views keep alive.
     m.def("events_of", [](nb::handle_t<NativeRecord> r) {
@@ -191,6 +202,14 @@ void add_records(nb::module_& m) {
         const nb::gil_scoped_release no_gil;
         return NativeRecord{std::make_shared<const Record>(read_record(path)), nullptr};
     });
+    m.def(
+        "parse_record",
+        [](const std::string& text, const NativeScene* scene) {
+            const nb::gil_scoped_release no_gil;
+            return NativeRecord{std::make_shared<const Record>(parse_record(text, "record")),
+                                scene == nullptr ? nullptr : scene->scene};
+        },
+        nb::arg("text"), nb::arg("scene").none());
     m.attr("EVENT_SIZE") = sizeof(Event);
     m.attr("SEGMENT_SIZE") = sizeof(Segment);
     m.def("event_members", event_members);

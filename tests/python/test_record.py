@@ -113,10 +113,23 @@ def test_a_record_saves_and_loads(break_scene, tmp_path):
     (tmp_path / "bad.json").write_text("{}")
     with pytest.raises(carom.SceneError):
         carom.Record.load(tmp_path / "bad.json")
-    with pytest.raises(TypeError, match="does not pickle"):
-        pickle.dumps(record)
     with pytest.raises(TypeError, match="simulate"):
         carom.Record()
+
+
+def test_a_record_pickles_with_its_scene(break_scene, tmp_path):
+    record = carom.simulate(break_scene)
+    again = pickle.loads(pickle.dumps(record))
+    assert again.hash() == record.hash() and again.event_list() == record.event_list() and again.stopped == record.stopped
+    assert again.final_scene() == record.final_scene()
+    assert carom.simulate(again.final_scene(cue={"speed": 1})).hash() == carom.simulate(record.final_scene(cue={"speed": 1})).hash()
+    record.save(tmp_path / "r.json")
+    loaded = pickle.loads(pickle.dumps(carom.Record.load(tmp_path / "r.json")))
+    assert loaded.hash() == record.hash()
+    with pytest.raises(ValueError, match="has no physics"):
+        loaded.final_scene()
+    again.save(tmp_path / "again.json")
+    assert (tmp_path / "again.json").read_bytes() == (tmp_path / "r.json").read_bytes()
 
 
 def test_the_final_scene_is_the_next_shot(break_scene):

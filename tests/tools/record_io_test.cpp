@@ -149,7 +149,7 @@ TEST(RecordFile, LeavesNoTemporaryFile) {
     folder.write("a.json", "old");
     write_record(sample_record(), folder.file("a.json"));
     EXPECT_EQ(folder.names(), std::vector<std::string>{"a.json"});
-    EXPECT_EQ(test::read_file(folder.file("a.json")).substr(0, 10), "{\"format\":");
+    EXPECT_EQ(test::read_file(folder.file("a.json")), record_json(sample_record()));
 }
 
 TEST(RecordFile, AFailureNamesTheFileAndKeepsTheOldOne) {
@@ -158,6 +158,7 @@ TEST(RecordFile, AFailureNamesTheFileAndKeepsTheOldOne) {
     broken.costs.pop_back();
     folder.write("a.json", "old");
     EXPECT_THROW(write_record(broken, folder.file("a.json")), std::runtime_error);
+    EXPECT_THROW(record_json(broken), std::runtime_error);
     EXPECT_EQ(test::read_file(folder.file("a.json")), "old");
     try {
         write_record(sample_record(), folder.file("none/a.json"));

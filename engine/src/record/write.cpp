@@ -1,10 +1,11 @@
-// write_record: a record as JSON, one segment or event per line. The reader is read.cpp.
+// write_record and record_json: a record as JSON, one segment or event per line. The reader is read.cpp.
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -90,9 +91,15 @@ OrderedJson event_json(const Record& record, const Event& event, const EventCost
     return out;
 }
 
+/// What is written to: an OutputFile, or this.
+struct Text {
+    std::string all{};
+    void write(std::string_view text) { all += text; }
+};
+
 /// Writes a list with one item per line; `write_item(item)` writes an item.
-template <class Item, class Write>
-void write_lines(OutputFile& file, const std::vector<Item>& list, const char* indent, Write&& write_item) {
+template <class Sink, class Item, class Write>
+void write_lines(Sink& file, const std::vector<Item>& list, const char* indent, Write&& write_item) {
     const char* separator = "[\n";
     file.write(list.empty() ? "[" : "");
     for (const Item& item : list) {
@@ -107,7 +114,8 @@ std::string dump(const OrderedJson& json) {
     return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
-void write_track(const BallTrack& track, OutputFile& file) {
+template <class Sink>
+void write_track(const BallTrack& track, Sink& file) {
     file.write("{\"id\": " + dump(track.id) + ", \"pocket\": " + std::to_string(track.pocket));
     if (track.own) file.write(", \"radius\": " + dump(track.own->R) + ", \"mass\": " + dump(track.own->m));
     file.write(", \"segments\": ");
@@ -115,14 +123,8 @@ void write_track(const BallTrack& track, OutputFile& file) {
     file.write("}");
 }
 
-}  // namespace
-
-void write_record(const Record& record, const std::string& path) {
-    if (!record.costs.empty() && record.costs.size() != record.events.size()) {
-        throw std::runtime_error(path + ": the record has costs for " + std::to_string(record.costs.size()) +
-                                 " of " + std::to_string(record.events.size()) + " events");
-    }
-    OutputFile file(path);
+template <class Sink>
+void write_all(const Record& record, Sink& file) {
     file.write("{\"format\": \"" + std::string(kRecordFormat) +
                "\", \"version\": " + std::to_string(kRecordVersion));
     file.write(",\n\"duration\": " + dump(record.duration) + ", \"stopped\": " + dump(name(record.stopped)) +
@@ -140,7 +142,30 @@ void write_record(const Record& record, const std::string& path) {
         file.write(dump(event_json(record, event, cost)));
     });
     file.write("}\n");
+}
+
+/// @param name  what the message begins with
+void check_costs(const Record& record, const std::string& name) {
+    if (!record.costs.empty() && record.costs.size() != record.events.size()) {
+        throw std::runtime_error(name + ": the record has costs for " + std::to_string(record.costs.size()) +
+                                 " of " + std::to_string(record.events.size()) + " events");
+    }
+}
+
+}  // namespace
+
+void write_record(const Record& record, const std::string& path) {
+    check_costs(record, path);
+    OutputFile file(path);
+    write_all(record, file);
     file.commit();
+}
+
+std::string record_json(const Record& record) {
+    check_costs(record, "record");
+    Text text;
+    write_all(record, text);
+    return std::move(text.all);
 }
 
 }  // namespace carom

@@ -264,6 +264,9 @@ Scene scene_after(const Scene& scene, const Record& record);
 /// @throws std::runtime_error naming the file
 void write_record(const Record& record, const std::string& path);
 
+/// What write_record writes. @throws std::runtime_error where it would, except for the file
+std::string record_json(const Record& record);
+
 /// Reads what write_record wrote, now or in version 1 (docs/reference/record_format.md). What the file lacks,
 /// or has beyond what this version knows, is said in `notes`, a sentence each. @throws SceneError
 Record read_record(const std::string& path, std::vector<std::string>* notes = nullptr);

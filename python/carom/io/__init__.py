@@ -1,0 +1,1 @@
+"""Shots of other programs: `carom.io.pooltool`."""
