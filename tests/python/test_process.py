@@ -109,6 +109,7 @@ def test_processes_play_scenes_that_were_sent(draw_scene, method):
     context = multiprocessing.get_context(method)
     with concurrent.futures.ProcessPoolExecutor(2, mp_context=context) as pool:
         assert list(pool.map(_hash, scenes)) == [_hash(s) for s in scenes]
+        assert [record.hash() for record in pool.map(carom.simulate, scenes)] == [_hash(s) for s in scenes]
 
 
 def test_a_forked_child_plays_after_threads_have_run(draw_scene):
