@@ -1,6 +1,8 @@
 // What the tests of the command line share.
 #pragma once
 
+#include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -66,6 +68,15 @@ position = [0.6, 1.06]
 [stop]
 time = 1
 )";
+
+/// The scenes that come with carom.
+inline std::vector<std::string> shipped_scenes() {
+    std::vector<std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(CAROM_SOURCE_DIR "/scenes"))
+        files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end());
+    return files;
+}
 
 inline std::vector<std::string> lines_of(const std::string& text) {
     std::vector<std::string> lines;

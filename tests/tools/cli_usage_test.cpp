@@ -18,7 +18,8 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "a command is missing: simulate, render, view, margin, accuracy, sweep, validate, check, impact, "
+         "a command is missing: simulate, render, view, export, margin, accuracy, sweep, validate, check, "
+         "impact, "
          "bench or "
          "describe; see carom --help"},
         {{"bench"}, "a command is missing: kernel, render or shot; see carom bench --help"},

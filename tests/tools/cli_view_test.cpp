@@ -31,14 +31,6 @@ bool has(const char* program) {
     return run_process({program, "--version"}).status == 0;
 }
 
-std::vector<std::string> scene_files() {
-    std::vector<std::string> files;
-    for (const auto& entry : std::filesystem::directory_iterator(CAROM_SOURCE_DIR "/scenes"))
-        files.push_back(entry.path().string());
-    std::sort(files.begin(), files.end());
-    return files;
-}
-
 std::string stem(const std::string& path) {
     return std::filesystem::path(path).stem().string();
 }
@@ -106,7 +98,7 @@ MadePage make_page(const TemporaryFolder& folder, const std::string& scene,
 TEST(View, ThePagesStatesAreTheEnginesToTheBit) {
     if (!has("node")) GTEST_SKIP() << "node is not installed";
     const TemporaryFolder folder;
-    std::vector<std::string> scenes = scene_files();
+    std::vector<std::string> scenes = shipped_scenes();
     scenes.push_back(hostile_record(folder));
     EXPECT_GE(scenes.size(), 20u);
     double most_turned = 0.0;
@@ -157,12 +149,24 @@ Json manifest_page(const std::string& name, const MadePage& page) {
         {"states", states}};
 }
 
+/// Lets the browser look at all pages of a manifest. For a person: CAROM_VIEW_PICTURES names a folder for what it shows.
+void expect_no_fault(const TemporaryFolder& folder, const Json& manifest) {
+    const char* const pictures = std::getenv("CAROM_VIEW_PICTURES");
+    const ProcessResult seen =
+        run_process({"node", kView + std::string("browser.mjs"),
+                     folder.write("manifest.json", manifest.dump()), pictures != nullptr ? pictures : ""});
+    EXPECT_EQ(seen.status, 0) << seen.out << seen.err;
+    const std::size_t pages = manifest.at("pages").size() + manifest.at("reports").size();
+    EXPECT_TRUE(contains(seen.out, fmt::format("{} pages, 0 faults", pages))) << seen.out;
+    std::fputs(seen.out.c_str(), stdout);
+}
+
 TEST(View, ABrowserShowsEveryScene) {
     if (!has("node")) GTEST_SKIP() << "node is not installed";
     if (!has("chromium")) GTEST_SKIP() << "chromium is not installed";
     const TemporaryFolder folder;
     Json pages = Json::array();
-    std::vector<std::string> scenes = scene_files();
+    std::vector<std::string> scenes = shipped_scenes();
     scenes.push_back(hostile_record(folder));
     for (const std::string& scene : scenes) {
         const bool timed = stem(scene) == "eight_ball_break";
@@ -176,15 +180,35 @@ TEST(View, ABrowserShowsEveryScene) {
     const Json manifest = {{"chromium", "chromium"},
                            {"profile", folder.file("profile")},
                            {"timed", "eight_ball_break"},
-                           {"pages", pages}};
-    // For a person: CAROM_VIEW_PICTURES names a folder, and what the browser shows goes there.
-    const char* const pictures = std::getenv("CAROM_VIEW_PICTURES");
-    const ProcessResult seen =
-        run_process({"node", kView + std::string("browser.mjs"),
-                     folder.write("manifest.json", manifest.dump()), pictures != nullptr ? pictures : ""});
-    EXPECT_EQ(seen.status, 0) << seen.out << seen.err;
-    EXPECT_TRUE(contains(seen.out, fmt::format("{} pages, 0 faults", scenes.size()))) << seen.out;
-    std::fputs(seen.out.c_str(), stdout);
+                           {"pages", pages},
+                           {"reports", Json::array()}};
+    expect_no_fault(folder, manifest);
+}
+
+TEST(View, ABrowserShowsReports) {
+    if (!has("node")) GTEST_SKIP() << "node is not installed";
+    if (!has("chromium")) GTEST_SKIP() << "chromium is not installed";
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("small.toml", kSmallScene);
+    Json reports = Json::array();
+    // `column`: one with numbers, of the last table.
+    const auto make = [&](const std::string& name, int column, std::vector<std::string> command) {
+        const std::string file = folder.file(name + ".html");
+        command.insert(command.end(), {"--html", file});
+        const ProcessResult made = carom(command);
+        EXPECT_EQ(made.status, 0) << made.err;
+        reports.push_back(
+            {{"name", name}, {"file", file}, {"column", column}, {"command", "carom " + command.front()}});
+    };
+    make("margin", 3, {"margin", scene, "--no-render"});
+    make("margin_sweep", 5, {"margin", scene, "--no-render", "--sweep"});
+    make("accuracy", 2, {"accuracy", scene, "--repeat", "1", "--march", "10,30", "--tolerance", "1e-3,1e-6"});
+    make("accuracy_kernel", 3,
+         {"accuracy", "kernel", "--count", "20", "--repeat", "1", "--most-substeps", "100"});
+    expect_no_fault(folder, {{"chromium", "chromium"},
+                             {"profile", folder.file("profile")},
+                             {"pages", Json::array()},
+                             {"reports", reports}});
 }
 
 TEST(View, APageHoldsItsRecordAndItsPolicy) {
@@ -254,6 +278,12 @@ TEST(View, RefusesWhatItCannotDoBeforeItBegins) {
         EXPECT_TRUE(contains(result.err, message)) << result.err;
     };
     refused({"-o", folder.file("shot.htm5")}, "a page is an HTML file; give it a name that ends in .html");
+    for (const char* command : {"margin", "accuracy"}) {
+        const ProcessResult html = carom({command, scene, "--html", folder.file("a.png")});
+        EXPECT_EQ(html.status, 2);
+        EXPECT_TRUE(contains(html.err, "--html " + folder.file("a.png") + ": a page is an HTML file"))
+            << html.err;
+    }
     refused({folder.file("none.json"), "-o", folder.file("a.html")}, "none.json");
     EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});
 }

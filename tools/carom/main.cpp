@@ -13,6 +13,7 @@ namespace carom::tools {
 void add_simulate(Options& program);
 void add_render(Options& program);
 void add_view(Options& program);
+void add_export(Options& program);
 void add_margin(Options& program);
 void add_accuracy(Options& program);
 void add_sweep(Options& program);
@@ -37,6 +38,7 @@ int run(int argc, char** argv) {
     add_simulate(program);
     add_render(program);
     add_view(program);
+    add_export(program);
     add_margin(program);
     add_accuracy(program);
     add_sweep(program);

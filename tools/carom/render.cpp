@@ -252,10 +252,9 @@ void add_render(Options& program) {
         "render", "Numbered PNG frames of a scene or a record; frame k shows from + k/fps", run);
     command.argument("SCENE", args.input, "Scene file (TOML), or a record (.json) of carom simulate -o")
         .required = true;
-    command.option(
-        "-o,--output", &args.pattern, "PATTERN",
-        "Files to write, with one %d or %05d for the number of the frame; or a film, which ffmpeg makes: "
-        "a name that ends in .mp4, .webm, .gif or .webp");
+    command.option("-o,--output", &args.pattern, "PATTERN",
+                   "Files, with one %d or %05d for the frame's number; or a film (.mp4, .webm, .gif, .webp), "
+                   "which ffmpeg makes");
     add_picture(command, args.fps, args.size);
     command.option("--from", &args.from, "S", "First instant in s");
     command.option("--to", &args.to, "S", "Last instant in s (default: the end of the shot)");
@@ -275,8 +274,7 @@ void add_render(Options& program) {
                    "spin, ghost, clock, margin, or all (default: none)");
     command.flag("--trails", args.trails, "The same as --overlay trails (default: off)");
     command.option("--sheet", &args.sheet, "CxR",
-                   "One contact sheet of columns x rows pictures instead of frames; it is as wide as --size, "
-                   "and its pictures have that shape (default: off)");
+                   "One contact sheet of columns x rows pictures, as wide as --size (default: off)");
     command.option("--jobs", &args.jobs, "N", "Threads that encode and write; 0: one per core").in(0, 256);
     command.flag("--resume", args.resume, "Leave out frames whose finished file is there (default: off)");
     command.flag("--raw", args.raw,

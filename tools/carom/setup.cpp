@@ -51,6 +51,10 @@ void add_reports(Options& command, std::string& csv, std::string& plot, bool& js
     command.flag("--json", json, "Print JSON (default: off)");
 }
 
+void add_html(Options& command, std::string& html) {
+    command.option("--html", &html, "FILE.html", "The report as a page (default: not written)");
+}
+
 kernel::Isa chosen_isa() {
     const auto [isa, problem] = kernel::isa_from_environment();
     if (*problem != '\0') throw UsageError(problem);

@@ -22,6 +22,7 @@ void add_picture(Options& command, std::optional<double>& fps, std::string& size
 void add_repeat(Options& command, int& rounds, std::string description);
 void add_cloth_slip(Options& command, std::string& name, std::string description);
 void add_reports(Options& command, std::string& csv, std::string& plot, bool& json);
+void add_html(Options& command, std::string& html);
 
 /// The instruction set that CAROM_ISA names, or else the widest available one.
 /// @throws UsageError for an unknown or unavailable name

@@ -1,6 +1,6 @@
 // node browser.mjs MANIFEST.json [PICTURES]: opens pages in headless Chromium, drives them by its DevTools protocol, and prints a line for
 // everything that is not as the manifest says; exit status 1 then. The manifest: {chromium, profile, pages: [{name, file, bounds, times,
-// states}]}, where states[k] is the list of {id, x, y, z, state, radius} at times[k]. With PICTURES, screenshots go to that folder.
+// states}], reports: [{name, file, column, command}]}, where states[k] is the list of {id, x, y, z, state, radius} at times[k]. With PICTURES, screenshots go to that folder.
 import {spawn} from "node:child_process";
 import {readFileSync, writeFileSync} from "node:fs";
 import {pathToFileURL} from "node:url";
@@ -231,6 +231,39 @@ async function checkCalm(browser, page) {
   await browser.media("light");
 }
 
+/** A report: the readouts follow pointer and keys, tables sort, nothing is said or asked for. */
+async function checkReport(browser, report) {
+  const url = pathToFileURL(report.file).href, messages = [];
+  browser.listeners = [({method, params}) => {
+    if (method === "Runtime.consoleAPICalled" || method === "Runtime.exceptionThrown" || method === "Log.entryAdded") messages.push(JSON.stringify(params));
+    if (method === "Network.requestWillBeSent" && params.request.url !== url) messages.push(`asks for ${params.request.url}`);
+  }];
+  await browser.size(1300, 1000);
+  await browser.send("Page.navigate", {url});
+  await browser.until(`document.body && document.body.dataset.ready === "true" && document.querySelector(".plot svg path")`);
+  await browser.value(settled);
+  const [x, y, before] = await browser.value(`(() => { const p = document.querySelector(".plot"); p.scrollIntoView({block: "center"}); const b = p.getBoundingClientRect();
+    return [b.left + b.width / 2, b.top + b.height / 2, document.querySelector(".readout").textContent]; })()`);
+  await browser.send("Input.dispatchMouseEvent", {type: "mouseMoved", x, y});
+  const hovered = await browser.value(`document.querySelector(".readout").textContent`);
+  if (hovered === before || !/[0-9]/.test(hovered)) fault(report.name, `hovering reads ${hovered}`);
+  await browser.value(`document.querySelector(".plot").focus()`);
+  await browser.key("ArrowRight");
+  await browser.key("ArrowRight");
+  if (!/[0-9]/.test(await browser.value(`document.querySelector(".readout").textContent`))) fault(report.name, "arrow keys read nothing");
+  const column = report.column, cells = `[...document.querySelectorAll("table")].at(-1).querySelectorAll("tbody tr td:nth-child(${column + 1})")`;
+  const values = `[...${cells}].map((td) => Number(td.textContent)).filter(Number.isFinite)`;
+  for (const direction of [1, -1]) {
+    await browser.value(`[...document.querySelectorAll("table")].at(-1).querySelectorAll("th button")[${column}].click()`);
+    const list = await browser.value(values);
+    if (list.length < 3 || list.some((v, i) => i > 0 && direction * (v - list[i - 1]) < 0)) fault(report.name, `is not sorted: ${list.slice(0, 9)}`);
+  }
+  const made = await browser.value(`document.querySelector("footer").textContent`);
+  if (!made.includes(report.command)) fault(report.name, `says it was made by ${made}`);
+  await browser.picture(report.name);
+  for (const text of messages) fault(report.name, text);
+}
+
 /** How long a frame of the page takes, for the report: nothing is asserted. */
 async function frameTimes(browser, page) {
   await browser.size(1400, 1000);
@@ -248,9 +281,10 @@ try {
   await browser.open();
   await browser.media("light");
   for (const page of manifest.pages) await checkPage(browser, page).catch((error) => fault(page.name, error.message));
-  await checkCalm(browser, manifest.pages[0]).catch((error) => fault("less motion", error.message));
+  if (manifest.pages.length > 0) await checkCalm(browser, manifest.pages[0]).catch((error) => fault("less motion", error.message));
+  for (const report of manifest.reports) await checkReport(browser, report).catch((error) => fault(report.name, error.message));
   if (manifest.timed) console.log(await frameTimes(browser, manifest.pages.find((page) => page.name === manifest.timed)));
-  console.log(`${manifest.pages.length} pages, ${faults} faults`);
+  console.log(`${manifest.pages.length + manifest.reports.length} pages, ${faults} faults`);
   await browser.send("Browser.close", {}, undefined).catch(() => {});
 } finally {
   browser.process.kill();

@@ -15,6 +15,7 @@
 #include "carom/kernel/closed_forms.h"
 #include "carom/kernel/tolerance.h"
 #include "console.h"
+#include "page/page.h"
 #include "reference/batch_arrays.h"
 #include "reference/solver.h"
 #include "report/plot.h"
@@ -295,9 +296,11 @@ namespace {
 
 int run(const AccuracyKernelArgs& args) {
     check_plot_path(args.plot);
+    check_page_path("--html", args.html);
     const KernelAccuracy result = measure_kernel_accuracy(args);
     write_report(args.csv, kernel_accuracy_csv(result));
-    if (!args.plot.empty()) plot_kernel_accuracy(result, args.plot);
+    if (!args.plot.empty()) write_plot(kernel_accuracy_plot(result), args.plot);
+    if (!args.html.empty()) write_html_report(kernel_accuracy_report(result), args.html);
     print(args.json ? kernel_accuracy_json(result) : kernel_accuracy_text(result));
     return kOk;
 }
@@ -312,6 +315,7 @@ void add_accuracy_kernel(Options& accuracy) {
     add_repeat(command, args.repeat, "Interleaved rounds; minimum, median and maximum are over them");
     command.option("--most-substeps", &args.most_substeps, "N", "Largest N of the march").in(10, 100000);
     add_reports(command, args.csv, args.plot, args.json);
+    add_html(command, args.html);
     command.footer = "Errors are shares of the approach speed, from a solution on which two methods agree.";
 }
 

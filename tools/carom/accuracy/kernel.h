@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "options.h"
+#include "report/html.h"
+#include "report/plot.h"
 
 namespace carom::tools {
 
@@ -15,7 +17,7 @@ struct AccuracyKernelArgs {
     int repeat = 9;               ///< interleaved rounds
     long most_substeps = 100000;  ///< largest N of the march
     bool json = false;
-    std::string csv, plot;  ///< file names; empty: not asked for
+    std::string csv, plot, html;  ///< file names; empty: not asked for
 };
 
 /// One method at one setting. Times are per impact [ns], processor time of the thread; errors are the largest
@@ -60,7 +62,8 @@ double log_slope(const std::vector<double>& x, const std::vector<double>& y);
 std::string kernel_accuracy_text(const KernelAccuracy& result);
 std::string kernel_accuracy_json(const KernelAccuracy& result);
 std::string kernel_accuracy_csv(const KernelAccuracy& result);
-void plot_kernel_accuracy(const KernelAccuracy& result, const std::string& path);
+Plot kernel_accuracy_plot(const KernelAccuracy& result);
+Report kernel_accuracy_report(const KernelAccuracy& result);
 
 /// Adds `carom accuracy kernel`.
 void add_accuracy_kernel(Options& accuracy);

@@ -56,22 +56,27 @@ Table reach_by_method(const KernelAccuracy& result) {
     return table;
 }
 
-}  // namespace
-
-std::string kernel_accuracy_text(const KernelAccuracy& result) {
+std::string judged_sentence(const KernelAccuracy& result) {
     std::string text = fmt::format(
         "{} random impacts, {}. Two converged methods (power series in extended precision, "
         "collocation at 1e-13)\nagree on them within {:.1e} of the approach speed",
         result.count, result.isa, result.worst_agreement);
     if (result.disagreeing > 0)
         text += fmt::format("; on {} more they do not, and nothing is said about those", result.disagreeing);
-    return text + ".\n\n" + table_text(rows_of(result)) +
+    return text + ".";
+}
+
+std::string slope_sentence(const KernelAccuracy& result) {
+    return fmt::format("The march's median error falls with N to the power {:.2f}.", result.slope);
+}
+
+}  // namespace
+
+std::string kernel_accuracy_text(const KernelAccuracy& result) {
+    return judged_sentence(result) + "\n\n" + table_text(rows_of(result)) +
            "\nns to reach an error, for half of the impacts / for all of them\n" +
-           table_text(reach_by_method(result)) +
-           fmt::format(
-               "- means that no setting measured here reaches it. The march's median error falls with "
-               "N to the power {:.2f}.\n",
-               result.slope);
+           table_text(reach_by_method(result)) + "- means that no setting measured here reaches it. " +
+           slope_sentence(result) + "\n";
 }
 
 std::string kernel_accuracy_json(const KernelAccuracy& result) {
@@ -89,7 +94,7 @@ std::string kernel_accuracy_csv(const KernelAccuracy& result) {
     return table_csv(rows_of(result));
 }
 
-void plot_kernel_accuracy(const KernelAccuracy& result, const std::string& path) {
+Plot kernel_accuracy_plot(const KernelAccuracy& result) {
     Plot plot;
     plot.title = "What the accuracy of one impact costs";
     plot.notes = {fmt::format("{} random impacts, {}; full lines: median error; dashed: worst", result.count,
@@ -112,7 +117,20 @@ void plot_kernel_accuracy(const KernelAccuracy& result, const std::string& path)
         plot.series.push_back(worst);
         ++colour;
     }
-    write_plot(plot, path);
+    return plot;
+}
+
+Report kernel_accuracy_report(const KernelAccuracy& result) {
+    Plot plot = kernel_accuracy_plot(result);
+    std::string judged = judged_sentence(result);
+    return {plot.title,
+            "",
+            {std::move(judged), slope_sentence(result)},
+            {chart_json(plot, true).dump()},
+            {sorted_table_json("Methods and settings", rows_of(result)).dump(),
+             sorted_table_json("ns to reach an error, for half of the impacts and for all of them",
+                               reach_of(result))
+                 .dump()}};
 }
 
 }  // namespace carom::tools

@@ -14,6 +14,7 @@
 #include "carom/engine/simulate.h"
 #include "console.h"
 #include "options.h"
+#include "page/page.h"
 #include "report/plot.h"
 #include "report/table.h"
 #include "setup.h"
@@ -227,6 +228,7 @@ int run(const AccuracySceneArgs& args) {
     if (args.scene.empty())
         throw UsageError("accuracy: a scene file or the word kernel is required; see carom accuracy --help");
     check_plot_path(args.plot);
+    check_page_path("--html", args.html);
     if (!(args.target > 0.0 && std::isfinite(args.target)))
         throw UsageError(fmt::format("--target {}: expected a number of metres greater than 0", args.target));
     const Plan plan = plan_scene(args.scene);
@@ -237,7 +239,8 @@ int run(const AccuracySceneArgs& args) {
                         args.scene, name(plan.scene.physics.ball_ball)));
     const SceneAccuracy result = measure_scene_accuracy(plan.scene, args);
     write_report(args.csv, scene_accuracy_csv(result));
-    if (!args.plot.empty()) plot_scene_accuracy(result, args.scene, args.plot);
+    if (!args.plot.empty()) write_plot(scene_accuracy_plot(result, args.scene), args.plot);
+    if (!args.html.empty()) write_html_report(scene_accuracy_report(result, args.scene), args.html);
     print(args.json ? scene_accuracy_json(result) : scene_accuracy_text(result, args.scene));
     return kOk;
 }
@@ -257,6 +260,7 @@ void add_accuracy(Options& program) {
     command.flag("--box2d", args.box2d,
                  "Also the same shot in a Box2D world stepped at 60 Hz to 10 kHz (default: off)");
     add_reports(command, args.csv, args.plot, args.json);
+    add_html(command, args.html);
     add_accuracy_kernel(command);
 }
 

@@ -7,6 +7,8 @@
 
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
+#include "report/html.h"
+#include "report/plot.h"
 
 namespace carom::tools {
 
@@ -18,7 +20,7 @@ struct AccuracySceneArgs {
     int repeat = 5;  ///< interleaved rounds
     bool box2d = false;
     bool json = false;
-    std::string csv, plot;  ///< file names; empty: not asked for
+    std::string csv, plot, html;  ///< file names; empty: not asked for
 };
 
 /// What happened in a shot: all contacts in order, the first ball hit, and which ball fell into which pocket.
@@ -85,6 +87,7 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
 std::string scene_accuracy_text(const SceneAccuracy& result, const std::string& scene);
 std::string scene_accuracy_json(const SceneAccuracy& result);
 std::string scene_accuracy_csv(const SceneAccuracy& result);
-void plot_scene_accuracy(const SceneAccuracy& result, const std::string& scene, const std::string& path);
+Plot scene_accuracy_plot(const SceneAccuracy& result, const std::string& scene);
+Report scene_accuracy_report(const SceneAccuracy& result, const std::string& scene);
 
 }  // namespace carom::tools

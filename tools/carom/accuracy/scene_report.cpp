@@ -46,15 +46,22 @@ Table rows_of(const SceneAccuracy& result) {
     return table;
 }
 
+std::string gain_sentence(const SceneAccuracy& result) {
+    return fmt::format("{}. Gain {:.2e}: a ball put 1e-12 m beside its place ends up to {:.1e} m off.",
+                       counted(result.contacts, "contact"), result.gain, result.gain * kTwinStep);
+}
+
+std::string converged_sentence(const SceneAccuracy& result) {
+    return fmt::format(
+        "Two converged methods (collocation at 1e-13, power series in extended precision) end {:.1e} m "
+        "apart, outcome {}.",
+        result.agreement, result.outcome_agrees ? "the same" : "not the same");
+}
+
 }  // namespace
 
 std::string scene_accuracy_text(const SceneAccuracy& result, const std::string& scene) {
-    return fmt::format(
-               "{}: {}. Gain {:.2e}: a ball put 1e-12 m beside its place ends up to {:.1e} m "
-               "off.\nTwo converged methods (collocation at 1e-13, power series in extended precision) "
-               "end {:.1e} m apart, outcome {}.\n\n",
-               scene, counted(result.contacts, "contact"), result.gain, result.gain * kTwinStep,
-               result.agreement, result.outcome_agrees ? "the same" : "not the same") +
+    return fmt::format("{}: {}\n{}\n\n", scene, gain_sentence(result), converged_sentence(result)) +
            table_text(rows_of(result)) + "\n" + result.sentence + "\n";
 }
 
@@ -82,7 +89,7 @@ std::string scene_accuracy_csv(const SceneAccuracy& result) {
     return table_csv(rows_of(result));
 }
 
-void plot_scene_accuracy(const SceneAccuracy& result, const std::string& scene, const std::string& path) {
+Plot scene_accuracy_plot(const SceneAccuracy& result, const std::string& scene) {
     Plot plot;
     plot.title = "What accuracy costs: " + scene;
     plot.notes = {result.converged ? fmt::format("gain {:.1e}; converged runs agree within {:.1e} m",
@@ -99,7 +106,15 @@ void plot_scene_accuracy(const SceneAccuracy& result, const std::string& scene, 
         if (!series.points.empty()) plot.series.push_back(series);
     }
     plot.levels = {{fmt::format("target {:g} m", result.target), result.target}};
-    write_plot(plot, path);
+    return plot;
+}
+
+Report scene_accuracy_report(const SceneAccuracy& result, const std::string& scene) {
+    return {"Accuracy of " + scene,
+            "",
+            {scene + ": " + gain_sentence(result), converged_sentence(result), result.sentence},
+            {chart_json(scene_accuracy_plot(result, scene), true).dump()},
+            {sorted_table_json("Settings", rows_of(result)).dump()}};
 }
 
 }  // namespace carom::tools

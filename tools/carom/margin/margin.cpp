@@ -12,6 +12,7 @@
 #include "bench/rounds.h"
 #include "console.h"
 #include "options.h"
+#include "page/page.h"
 #include "report/plot.h"
 #include "report/table.h"
 #include "setup.h"
@@ -202,6 +203,7 @@ namespace {
 int run(const MarginArgs& args) {
     if (!args.size.empty()) parse_size(args.size);
     check_plot_path(args.plot);
+    check_page_path("--html", args.html);
     if (args.sweep && !args.trace.empty())
         throw UsageError("--trace is of one setting: it cannot be combined with --sweep");
     if (args.sweep && args.fps)
@@ -220,6 +222,7 @@ int run(const MarginArgs& args) {
     margin.timing = cost_of_timing(plan);
     write_report(args.csv, margin_csv(margin, last));
     if (!args.plot.empty()) write_plot(margin_plot(margin, last, args.scene), args.plot);
+    if (!args.html.empty()) write_html_report(margin_report(margin, last, args.scene), args.html);
     if (!args.trace.empty()) write_report(args.trace, margin_trace(last, fps));
     print(args.json ? margin_json(margin, last) : margin_text(margin, last, args.scene));
     return kOk;
@@ -239,13 +242,12 @@ void add_margin(Options& program) {
                  "(default: off)");
     add_gl(command, args.gl);
     command.option("--trace", &args.trace, "FILE.json",
-                   "Write the frames as Chrome trace events, for chrome://tracing or Perfetto (default: not "
-                   "written)");
+                   "Write the frames as Chrome trace events (default: not written)");
     add_reports(command, args.csv, args.plot, args.json);
+    add_html(command, args.html);
     command.footer =
         "simulate = detect + resolve + kernel + cluster. A frame costs simulate + draw + readback + encode + "
-        "write,\nmeasured one after the other on one thread; frames go to a temporary folder and are "
-        "removed.";
+        "write.";
 }
 
 }  // namespace carom::tools

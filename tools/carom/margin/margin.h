@@ -11,6 +11,7 @@
 #include "carom/engine/record.h"
 #include "carom/render/sequence.h"
 #include "margin/frame_costs.h"
+#include "report/html.h"
 #include "report/plot.h"
 
 namespace carom::tools {
@@ -23,7 +24,7 @@ struct MarginArgs {
     bool no_render = false;
     bool sweep = false;  ///< accuracy x frame rate
     std::string gl = "osmesa";
-    std::string csv, plot, trace;  ///< file names; empty: not asked for
+    std::string csv, plot, trace, html;  ///< file names; empty: not asked for
     bool json = false;
 };
 
@@ -111,6 +112,7 @@ Margin combine(const std::vector<MarginRun>& runs, double fps, bool rendered);
 std::string margin_json(const Margin& margin, const MarginRun& last);
 std::string margin_text(const Margin& margin, const MarginRun& last, const std::string& scene);
 std::string margin_csv(const Margin& margin, const MarginRun& last);
+Report margin_report(const Margin& margin, const MarginRun& last, const std::string& scene);
 Plot margin_plot(const Margin& margin, const MarginRun& last, const std::string& scene);
 /// The same for a page, which marks the worst frame.
 nlohmann::ordered_json margin_chart(const Margin& margin, const MarginRun& last, const std::string& scene);

@@ -5,6 +5,7 @@
 #include <array>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,94 @@ std::vector<double> slacks(const Margin& margin) {
     for (std::size_t k = 0; k < margin.total.size(); ++k) list.push_back(margin.slack(k));
     std::sort(list.begin(), list.end());
     return list;
+}
+
+std::string margin_lead(const Margin& margin) {
+    return fmt::format("{} of {:.3f} ms ({} fps{}), {} missed", counted(margin.total.size(), "frame"),
+                       margin.budget_ms, margin.fps,
+                       margin.rendered ? fmt::format(", {}x{}", margin.size.width, margin.size.height)
+                                       : std::string(", simulation only"),
+                       margin.missed);
+}
+
+/// Percentiles of every stage that was measured, and of whole frames.
+Table stages_table(const Margin& margin) {
+    Table stages(Column("stage", "", "<14"), Column("p50", "p50", ">10.4f"), Column("p95", "p95", ">10.4f"),
+                 Column("p99", "p99", ">10.4f"), Column("max", "max", ">10.4f"),
+                 Column("", "   ms per frame", "<"));
+    const auto add = [&stages](const std::string& title, const std::vector<double>& values) {
+        const Spread v = spread(values);
+        stages.add({"  " + title, v.p50, v.p95, v.p99, v.max});
+    };
+    for (std::size_t s = 0; s < kMarginStages; ++s) {
+        const std::string title = name(static_cast<MarginStage>(s));
+        if (margin.has(s)) add(is_part_of_simulate(s) ? "  " + title : title, margin.stage[s]);
+    }
+    add("all", margin.total);
+    return stages;
+}
+
+/// What the report says below its table, a line each.
+std::string margin_sentences(const Margin& margin, const MarginRun& last) {
+    fmt::memory_buffer out;
+    const auto line = std::back_inserter(out);
+    const double p99 = spread(margin.total).p99;
+    const std::vector<double> slack = slacks(margin);
+    fmt::format_to(line,
+                   "At p99 a frame takes {:.1f} % of its time: margin {:.3f} ms. Slack: median {:.1f} %, "
+                   "least {:.1f} %.\n",
+                   100.0 * p99 / margin.budget_ms, margin.budget_ms - p99, median(slack), slack.front());
+    if (margin.rendered)
+        fmt::format_to(line,
+                       "Without encoding and writing, {} would be missed. Of a picture {:.1f} % were encoded "
+                       "anew (median; p99 "
+                       "{:.1f} %).\n",
+                       counted(static_cast<std::size_t>(margin.missed_shown), "frame"),
+                       100.0 * spread(margin.encoded_share).p50, 100.0 * spread(margin.encoded_share).p99);
+    if (margin.runs > 1)
+        fmt::format_to(
+            line,
+            "Medians of {} runs; from run to run p50 {:.3f} to {:.3f} ms, p99 {:.3f} to {:.3f} ms, "
+            "missed {:.0f} to {:.0f}; a frame varies by {:.0f} % (median).\n",
+            margin.runs, margin.p50_runs.low, margin.p50_runs.high, margin.p99_runs.low, margin.p99_runs.high,
+            margin.missed_runs.low, margin.missed_runs.high, 100.0 * margin.frame_spread);
+    fmt::format_to(line, "The parts add up to {:.1f} % of the {:.1f} ms on the wall, one after the other.\n",
+                   100.0 * margin.accounting.share(), margin.accounting.wall_ms);
+    fmt::format_to(
+        line,
+        "Timing itself: simulating takes {:.3f} ms with it, {:.3f} ms without ({:+.1f} %; a look at "
+        "the clock is {:.0f} ns). Off, it is not in the loop.\n",
+        margin.timing.profiled_ms, margin.timing.plain_ms, 100.0 * margin.timing.share(),
+        margin.timing.clock_ns);
+    const std::vector<std::size_t>& events = last.frames[margin.worst].events;
+    fmt::format_to(line, "worst frame: {} at {:.4f} s, {:.3f} ms, {}\n", margin.worst,
+                   time_of(margin, margin.worst), margin.total[margin.worst],
+                   counted(events.size(), "event"));
+    for (const std::size_t i : events) {
+        const Event& event = last.record.events[i];
+        fmt::format_to(line, "  {:.6f} s  {:<21} {} {}\n", event.time, name(event.type),
+                       last.record.tracks.at(event.a).id, last.record.partner_id(event));
+    }
+    return fmt::to_string(out);
+}
+
+/// A row for each frame.
+Table frames_table(const Margin& margin, const MarginRun& last) {
+    Table table(Column("frame"), Column("time"), Column("events"));
+    for (std::size_t s = 0; s < kMarginStages; ++s)
+        if (margin.has(s))
+            table.columns.emplace_back(fmt::format("{}_ms", name(static_cast<MarginStage>(s))));
+    for (const char* key : {"total_ms", "slack_percent", "missed"}) table.columns.emplace_back(key);
+    for (std::size_t k = 0; k < margin.total.size(); ++k) {
+        std::vector<Cell> cells = {k, time_of(margin, k), last.frames[k].events.size()};
+        for (std::size_t s = 0; s < kMarginStages; ++s)
+            if (margin.has(s)) cells.emplace_back(margin.stage[s][k]);
+        for (const Cell& cell :
+             {Cell(margin.total[k]), Cell(margin.slack(k)), Cell(margin.total[k] > margin.budget_ms)})
+            cells.push_back(cell);
+        table.add(std::move(cells));
+    }
+    return table;
 }
 
 }  // namespace
@@ -92,82 +181,22 @@ std::string margin_json(const Margin& margin, const MarginRun& last) {
 }
 
 std::string margin_text(const Margin& margin, const MarginRun& last, const std::string& scene) {
-    fmt::memory_buffer out;
-    const auto line = std::back_inserter(out);
-    fmt::format_to(line, "{}: {} of {:.3f} ms ({} fps{}), {} missed\n\n", scene,
-                   counted(margin.total.size(), "frame"), margin.budget_ms, margin.fps,
-                   margin.rendered ? fmt::format(", {}x{}", margin.size.width, margin.size.height)
-                                   : std::string(", simulation only"),
-                   margin.missed);
-    Table stages(Column("", "", "<14"), Column("", "p50", ">10.4f"), Column("", "p95", ">10.4f"),
-                 Column("", "p99", ">10.4f"), Column("", "max", ">10.4f"),
-                 Column("", "   ms per frame", "<"));
-    const auto add = [&stages](const std::string& title, const std::vector<double>& values) {
-        const Spread v = spread(values);
-        stages.add({"  " + title, v.p50, v.p95, v.p99, v.max});
-    };
-    for (std::size_t s = 0; s < kMarginStages; ++s) {
-        const std::string title = name(static_cast<MarginStage>(s));
-        if (margin.has(s)) add(is_part_of_simulate(s) ? "  " + title : title, margin.stage[s]);
-    }
-    add("all", margin.total);
-    fmt::format_to(line, "{}", table_text(stages));
-    const double p99 = spread(margin.total).p99;
-    const std::vector<double> slack = slacks(margin);
-    fmt::format_to(line,
-                   "\nAt p99 a frame takes {:.1f} % of its time: margin {:.3f} ms. Slack: median {:.1f} %, "
-                   "least {:.1f} %.\n",
-                   100.0 * p99 / margin.budget_ms, margin.budget_ms - p99, median(slack), slack.front());
-    if (margin.rendered)
-        fmt::format_to(line,
-                       "Without encoding and writing, {} would be missed. Of a picture {:.1f} % were encoded "
-                       "anew (median; p99 "
-                       "{:.1f} %).\n",
-                       counted(static_cast<std::size_t>(margin.missed_shown), "frame"),
-                       100.0 * spread(margin.encoded_share).p50, 100.0 * spread(margin.encoded_share).p99);
-    if (margin.runs > 1)
-        fmt::format_to(
-            line,
-            "Medians of {} runs; from run to run p50 {:.3f} to {:.3f} ms, p99 {:.3f} to {:.3f} ms, "
-            "missed {:.0f} to {:.0f}; a frame varies by {:.0f} % (median).\n",
-            margin.runs, margin.p50_runs.low, margin.p50_runs.high, margin.p99_runs.low, margin.p99_runs.high,
-            margin.missed_runs.low, margin.missed_runs.high, 100.0 * margin.frame_spread);
-    fmt::format_to(line, "The parts add up to {:.1f} % of the {:.1f} ms on the wall, one after the other.\n",
-                   100.0 * margin.accounting.share(), margin.accounting.wall_ms);
-    fmt::format_to(
-        line,
-        "Timing itself: simulating takes {:.3f} ms with it, {:.3f} ms without ({:+.1f} %; a look at "
-        "the clock is {:.0f} ns). Off, it is not in the loop.\n",
-        margin.timing.profiled_ms, margin.timing.plain_ms, 100.0 * margin.timing.share(),
-        margin.timing.clock_ns);
-    const std::vector<std::size_t>& events = last.frames[margin.worst].events;
-    fmt::format_to(line, "worst frame: {} at {:.4f} s, {:.3f} ms, {}\n", margin.worst,
-                   time_of(margin, margin.worst), margin.total[margin.worst],
-                   counted(events.size(), "event"));
-    for (const std::size_t i : events) {
-        const Event& event = last.record.events[i];
-        fmt::format_to(line, "  {:.6f} s  {:<21} {} {}\n", event.time, name(event.type),
-                       last.record.tracks.at(event.a).id, last.record.partner_id(event));
-    }
-    return fmt::to_string(out);
+    return fmt::format("{}: {}\n\n{}\n{}", scene, margin_lead(margin), table_text(stages_table(margin)),
+                       margin_sentences(margin, last));
 }
 
 std::string margin_csv(const Margin& margin, const MarginRun& last) {
-    Table table(Column("frame"), Column("time"), Column("events"));
-    for (std::size_t s = 0; s < kMarginStages; ++s)
-        if (margin.has(s))
-            table.columns.emplace_back(fmt::format("{}_ms", name(static_cast<MarginStage>(s))));
-    for (const char* key : {"total_ms", "slack_percent", "missed"}) table.columns.emplace_back(key);
-    for (std::size_t k = 0; k < margin.total.size(); ++k) {
-        std::vector<Cell> cells = {k, time_of(margin, k), last.frames[k].events.size()};
-        for (std::size_t s = 0; s < kMarginStages; ++s)
-            if (margin.has(s)) cells.emplace_back(margin.stage[s][k]);
-        for (const Cell& cell :
-             {Cell(margin.total[k]), Cell(margin.slack(k)), Cell(margin.total[k] > margin.budget_ms)})
-            cells.push_back(cell);
-        table.add(std::move(cells));
-    }
-    return table_csv(table);
+    return table_csv(frames_table(margin, last));
+}
+
+Report margin_report(const Margin& margin, const MarginRun& last, const std::string& scene) {
+    Report report{"Margin of " + scene, margin_lead(margin), {}, {}, {}};
+    std::istringstream sentences(margin_sentences(margin, last));
+    for (std::string sentence; std::getline(sentences, sentence);) report.notes.push_back(sentence);
+    report.charts = {margin_chart(margin, last, scene).dump()};
+    report.tables = {sorted_table_json("Stages, ms per frame", stages_table(margin)).dump(),
+                     sorted_table_json("Frames", frames_table(margin, last)).dump()};
+    return report;
 }
 
 Plot margin_plot(const Margin& margin, const MarginRun& last, const std::string& scene) {

@@ -15,6 +15,7 @@
 #include "carom/engine/simulate.h"
 #include "console.h"
 #include "margin/margin.h"
+#include "report/html.h"
 #include "report/plot.h"
 #include "report/table.h"
 #include "setup.h"
@@ -180,7 +181,7 @@ std::string sweep_text(const std::vector<SettingRow>& rows, const MarginArgs& ar
     return text;
 }
 
-void plot_sweep(const std::vector<SettingRow>& rows, const MarginArgs& args) {
+Plot sweep_plot(const std::vector<SettingRow>& rows, const MarginArgs& args) {
     Plot plot;
     plot.title = "Where the scene stops being real time: " + args.scene;
     plot.notes = {args.no_render ? "worst frame of the shot, simulation only"
@@ -196,7 +197,7 @@ void plot_sweep(const std::vector<SettingRow>& rows, const MarginArgs& args) {
         for (const RateCost& c : row.costs) series.points.emplace_back(c.fps, c.worst_ms);
         plot.series.push_back(series);
     }
-    write_plot(plot, args.plot);
+    return plot;
 }
 
 }  // namespace
@@ -204,7 +205,16 @@ void plot_sweep(const std::vector<SettingRow>& rows, const MarginArgs& args) {
 int run_margin_sweep(const Plan& plan, const MarginArgs& args) {
     const std::vector<SettingRow> rows = sweep(plan, args);
     write_report(args.csv, table_csv(table_of(rows)));
-    if (!args.plot.empty()) plot_sweep(rows, args);
+    const Plot plot = sweep_plot(rows, args);
+    if (!args.plot.empty()) write_plot(plot, args.plot);
+    write_html_report(
+        {plot.title,
+         "",
+         plot.notes,
+         {chart_json(plot, true).dump()},
+         {sorted_table_json("The fastest rate without a missed frame", frontier_of(rows)).dump(),
+          sorted_table_json("Settings and rates", table_of(rows)).dump()}},
+        args.html);
     print(args.json ? sweep_json(rows) : sweep_text(rows, args));
     return kOk;
 }

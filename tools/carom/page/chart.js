@@ -50,7 +50,7 @@ function chart(spec, pick = null) {
   const figure = make("figure", {class: "card"}, make("figcaption", {}, make("h2", {}, spec.title),
     ...(spec.notes || []).map((note) => make("p", {}, note))), host, readout);
   const all = spec.series.flatMap((s) => s.points), colour = (s, i) => s.stroke || `var(--c${(s.colour >= 0 ? s.colour : i) % 8})`;
-  const height = spec.height || 230, left = 58, right = 12, top = 10, bottom = 42;
+  const height = spec.height || 230, left = 58, right = 12, top = 22, bottom = 42;
   let x, y, width = 0, line = null, held = null;
 
   function draw() {
@@ -67,10 +67,7 @@ function chart(spec, pick = null) {
       parts.push(make("line", {class: "grid", x1: left, x2: width - right, y1: py, y2: py}), text(left - 6, py + 4, "end", words));
     }
     parts.push(text((left + width - right) / 2, height - 6, "middle", spec.x.title, "axis"));
-    const middle = (top + height - bottom) / 2;
-    const title = text(0, 0, "middle", spec.y.title, "axis");
-    title.setAttribute("transform", `translate(13 ${middle}) rotate(-90)`);
-    parts.push(title);
+    parts.push(text(4, 12, "start", spec.y.title, "axis"));
     for (const ticks of spec.ticks || []) {
       const path = ticks.at.map((t) => `M${x.at(t).toFixed(1)} ${height - bottom}v-6`).join("");
       parts.push(make("path", {d: path, class: "tick"}, make("title", {}, ticks.name)));

@@ -26,7 +26,10 @@ function shown(x, digits = 3) {
   if (typeof x !== "number") return typeof x === "boolean" ? (x ? "yes" : "no") : String(x);
   if (x === 0) return "0";
   const size = Math.abs(x);
-  if (size >= 1e6 || size < 1e-4) return x.toExponential(digits - 1).replace("e+", "e");
+  if (size >= 1e9 || size < 1e-4) {
+    const [digit, power] = x.toExponential(digits - 1).split("e");
+    return `${Number(digit)}e${Number(power)}`;
+  }
   return String(Number(x.toPrecision(size >= 1000 ? Math.max(digits, 4) : digits)));
 }
 

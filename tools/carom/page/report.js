@@ -5,6 +5,6 @@
   const page = pageData("page");
   pageFrame(page,
     page.notes.length ? make("section", {class: "card"}, ...page.notes.map((note) => make("p", {}, note))) : null,
-    ...page.charts.map((spec) => chart(spec).element), ...page.tables.map(sortedTable));
+    ...page.charts.map((spec) => chart({...spec, height: 360}).element), ...page.tables.map(sortedTable));
   document.body.dataset.ready = "true";
 }

@@ -150,7 +150,7 @@ class TableView {
         const s = track.segments[i], next = track.segments[i + 1];
         if (s.start >= t || isGone(s.state)) break;
         const tau = Math.min((next ? Math.min(next.start, t) : Math.min(t, record.duration)) - s.start, s.duration ?? Infinity);
-        if (!(tau > 0) || (s.v[0] === 0 && s.v[1] === 0 && s.a[0] === 0 && s.a[1] === 0)) continue;
+        if (!(tau > 0) || s.state === "falling" || (s.v[0] === 0 && s.v[1] === 0 && s.a[0] === 0 && s.a[1] === 0)) continue;
         context.strokeStyle = kind === "ball" ? cssColour(this.styles[ball % this.styles.length].color) : TRAIL_COLOURS[s.state] || "#8cbfff";
         context.beginPath();
         context.moveTo(s.r[0], s.r[1]);

@@ -1,4 +1,4 @@
-// Tables that sort: {title, columns: [{title, unit}], rows: [[value, ...], ...], notes}.
+// Tables that sort: {title, columns: [{title}], rows: [[value, ...], ...]}; what a row has beyond its columns is a note.
 "use strict";
 
 function sortedTable(spec) {
@@ -16,7 +16,8 @@ function sortedTable(spec) {
     if (lacks(a) || lacks(b)) return Number(lacks(a)) - Number(lacks(b));
     return typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b), "en", {numeric: true});
   }
-  spec.columns.forEach((column, i) => heads.push(make("th", {scope: "col"}, make("button", {type: "button", onclick: () => {
+  const isNumber = (i) => spec.rows.some((row) => typeof row[i] === "number");
+  spec.columns.forEach((column, i) => heads.push(make("th", {scope: "col", class: isNumber(i) ? "number" : null}, make("button", {type: "button", onclick: () => {
     down = by === i && !down;
     by = i;
     fill();

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "bench/machine.h"
 #include "console.h"
@@ -83,8 +84,11 @@ void write_html_report(const Report& report, const std::string& path) {
     if (path.empty()) return;
     Json page = page_json(report.title, report.lead);
     page["notes"] = report.notes;
-    page["charts"] = report.charts;
-    page["tables"] = report.tables;
+    for (const auto& [key, list] :
+         {std::pair("charts", &report.charts), std::pair("tables", &report.tables)}) {
+        page[key] = Json::array();
+        for (const std::string& item : *list) page[key].push_back(Json::parse(item));
+    }
     write_report(path, page_html(report.title, {"dom.js", "chart.js", "table.js", "report.js"},
                                  {{"page", page.dump(-1, ' ', false, Json::error_handler_t::replace)}}));
 }

@@ -22,8 +22,8 @@ nlohmann::ordered_json page_json(const std::string& title, const std::string& le
 
 struct Report {
     std::string title, lead;
-    std::vector<std::string> notes;  ///< sentences
-    std::vector<nlohmann::ordered_json> charts, tables;
+    std::vector<std::string> notes;           ///< sentences
+    std::vector<std::string> charts, tables;  ///< JSON of chart_json() and sorted_table_json()
 };
 
 /// Written under a temporary name and renamed; nothing if the path is empty. @throws std::runtime_error naming the file

@@ -130,7 +130,7 @@ Json loops_json(const TableMesh& mesh, const std::vector<Triangle>& triangles) {
 }
 
 /// The triangles of a material that are seen from above.
-std::vector<Triangle> seen(const std::vector<MeshVertex>& vertices, Material material) {
+std::vector<Triangle> seen_from_above(const std::vector<MeshVertex>& vertices, Material material) {
     std::vector<Triangle> list;
     for (std::size_t i = 0; i + 2 < vertices.size(); i += 3)
         if (is(vertices[i], material) &&
@@ -139,7 +139,7 @@ std::vector<Triangle> seen(const std::vector<MeshVertex>& vertices, Material mat
     return list;
 }
 
-/// The pieces of marks between v = -1 and 1: the mesh reaches farther, so that a shader can smooth their edges.
+/// The pieces between v = -1 and 1, the edges of a mark.
 std::vector<Triangle> within_marks(const std::vector<Triangle>& triangles) {
     std::vector<Triangle> list;
     for (const Triangle& t : triangles) {
@@ -183,7 +183,7 @@ Json boards_json(const TableMesh& mesh) {
     };
     // A board is what has the same grain. Its bevels have that, too, and its largest triangle is its flat top.
     std::map<std::array<std::int64_t, 3>, Board> boards;
-    for (const Triangle& t : seen(mesh.solid, Material::kWood)) {
+    for (const Triangle& t : seen_from_above(mesh.solid, Material::kWood)) {
         const std::array<double, 3> u = gradient(t, &MeshVertex::u);
         Board& board =
             boards[{std::llround(50.0 * u[0]), std::llround(50.0 * u[1]), std::llround(50.0 * u[2])}];
@@ -207,8 +207,14 @@ Json boards_json(const TableMesh& mesh) {
 
 }  // namespace
 
+std::vector<std::array<MeshVertex, 3>> table_marks(const TableMesh& mesh) {
+    return within_marks(seen_from_above(mesh.blended, Material::kChalk));
+}
+
 Json table_shape(const TableMesh& mesh) {
-    const auto loops = [&mesh](Material material) { return loops_json(mesh, seen(mesh.solid, material)); };
+    const auto loops = [&mesh](Material material) {
+        return loops_json(mesh, seen_from_above(mesh.solid, material));
+    };
     Json holes = Json::array();
     for (const render::Hole& hole : mesh.holes)
         holes.push_back({{"center", place(hole.center)}, {"radius", metres(hole.radius)}});
@@ -224,7 +230,7 @@ Json table_shape(const TableMesh& mesh) {
             {"cushion", loops(Material::kCushion)},
             {"trim", loops(Material::kTrim)},
             {"inlay", loops(Material::kInlay)},
-            {"chalk", loops_json(mesh, within_marks(seen(mesh.blended, Material::kChalk)))},
+            {"chalk", loops_json(mesh, table_marks(mesh))},
             {"wood", boards_json(mesh)},
             {"holes", holes}};
 }

@@ -1,11 +1,16 @@
 // The table as flat outlines seen from above, for a page that draws it without triangles.
 #pragma once
 
+#include <array>
 #include <nlohmann/json_fwd.hpp>
+#include <vector>
 
 #include "carom/render/table_mesh.h"
 
 namespace carom::tools {
+
+/// The triangles of lines and spots on the cloth, up to their edges: those of the mesh reach farther, so that a shader can smooth them.
+std::vector<std::array<render::MeshVertex, 3>> table_marks(const render::TableMesh& mesh);
 
 /// Outlines in m of the table's frame, each a list of numbers x, y, x, y, ... that closes by itself; to be filled by the
 /// non-zero rule. An object of

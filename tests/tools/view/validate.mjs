@@ -1,0 +1,18 @@
+// node validate.mjs MODULES FILE.glb ...: what the Khronos validator of glTF, installed in the folder MODULES, says about each file; nothing, if
+// there is nothing to say. Exit status 1: it says something.
+import {readFileSync} from "node:fs";
+import {createRequire} from "node:module";
+import {resolve} from "node:path";
+
+const [, , modules, ...files] = process.argv;
+const validator = createRequire(resolve(modules, "index.js"))("gltf-validator");
+let said = 0;
+for (const file of files) {
+  const {issues} = await validator.validateBytes(new Uint8Array(readFileSync(file)), {maxIssues: 20});
+  for (const issue of issues.messages) {
+    ++said;
+    console.log(`${file}: ${issue.code} at ${issue.pointer ?? issue.offset}: ${issue.message}`);
+  }
+}
+console.log(`${files.length} files by validator ${validator.version()}, ${said} issues`);
+process.exit(said > 0 ? 1 : 0);
