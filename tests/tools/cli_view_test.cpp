@@ -177,6 +177,16 @@ TEST(View, ABrowserShowsEveryScene) {
         EXPECT_LT(bytes, 200000u) << "the page of a break";
         RecordProperty("bytes_of_the_page_of_a_break", std::to_string(bytes));
     }
+    // Two shots in one page, and how far their cue balls are apart at some instant.
+    const std::string other = CAROM_SOURCE_DIR "/scenes/follow.toml";
+    const TemporaryFolder more;
+    const MadePage two = make_page(more, CAROM_SOURCE_DIR "/scenes/draw.toml", {other, "--no-margin"});
+    pages.insert(pages.begin(), manifest_page("two", two));
+    constexpr double kInstant = 0.9;
+    const Vec3 apart = two.record.state_at(0, kInstant).position -
+                       make_page(more, other).record.state_at(0, kInstant).position;
+    EXPECT_GT(apart.norm(), 0.1);
+    pages[0]["second"] = {{"time", kInstant}, {"apart", 1000.0 * apart.norm()}};
     const Json manifest = {{"chromium", "chromium"},
                            {"profile", folder.file("profile")},
                            {"timed", "eight_ball_break"},

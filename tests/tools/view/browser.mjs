@@ -1,6 +1,6 @@
 // node browser.mjs MANIFEST.json [PICTURES]: opens pages in headless Chromium, drives them by its DevTools protocol, and prints a line for
 // everything that is not as the manifest says; exit status 1 then. The manifest: {chromium, profile, pages: [{name, file, bounds, times,
-// states}], reports: [{name, file, column, command}]}, where states[k] is the list of {id, x, y, z, state, radius} at times[k]. With PICTURES, screenshots go to that folder.
+// states, second: {time, apart} where there is a second shot}], reports: [{name, file, column, command}]}, where states[k] is the list of {id, x, y, z, state, radius} at times[k]. With PICTURES, screenshots go to that folder.
 import {spawn} from "node:child_process";
 import {readFileSync, writeFileSync} from "node:fs";
 import {pathToFileURL} from "node:url";
@@ -171,6 +171,30 @@ async function checkTexts(browser, page) {
   if (await browser.value(`document.querySelectorAll("body > script:not([type])").length`) !== 6) fault(page.name, "has scripts that it should not have");
 }
 
+/** Two shots: over, beside and off; and what the list says about how far apart balls are. */
+async function checkSecond(browser, page) {
+  const drawn = () => browser.value(`(() => { const canvas = document.querySelectorAll(".table canvas")[1], copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", {willReadFrequently: true});
+    copy.drawImage(canvas, 0, 0); let sum = 0; for (const x of copy.getImageData(0, 0, canvas.width, canvas.height).data) sum = (31 * sum + x) % 1000000007; return sum; })()`);
+  const choose = async (mode) => {
+    await browser.value(`(() => { const s = document.querySelector("select[aria-label='Second shot']"); s.value = "${mode}"; s.onchange(); })()`);
+    await browser.value(settled);
+  };
+  await browser.size(1400, 1000);
+  await browser.value(settled);
+  await browser.value(`carom.show(${page.second.time})`);
+  await choose("over");
+  const over = await drawn();
+  const apart = await browser.value(`Number(document.querySelector("tbody tr td:last-child").textContent)`);
+  if (!near(apart, page.second.apart, 0.051)) fault(page.name, `says the first ball is ${apart} mm from the other shot's, not ${page.second.apart}`);
+  await choose("off");
+  if (await drawn() === over) fault(page.name, "the second shot is not drawn over the first");
+  if (await browser.value(`document.querySelectorAll(".table")[1].clientWidth`) !== 0) fault(page.name, "the second table is there without being asked for");
+  await choose("beside");
+  const [first, second] = await browser.value(`[...document.querySelectorAll(".table")].map((t) => { const b = t.getBoundingClientRect(); return [b.left, b.right, b.top, b.width]; })`);
+  if (!(second[0] >= first[1] && second[2] === first[2] && second[3] === first[3] && first[3] > 300)) fault(page.name, `beside: ${first} and ${second}`);
+  await browser.picture(`${page.name}_beside`);
+}
+
 async function checkPolicy(browser, page) {
   const broken = await browser.value(`new Promise((done) => { document.addEventListener("securitypolicyviolation", (e) => done(e.effectiveDirective));
     const s = document.createElement("script"); s.textContent = "document.body.dataset.harmed = 1"; document.body.append(s); setTimeout(() => done("nothing"), 2000); })`);
@@ -201,6 +225,7 @@ async function checkPage(browser, page) {
   await checkScrubbing(browser, page, end);
   await checkLists(browser, page, events);
   await checkTexts(browser, page);
+  if (page.second) await checkSecond(browser, page);
   await browser.size(390, 844, true);
   await browser.value(settled);
   await checkInstants(browser, {...page, times: page.times.slice(0, 1)});
@@ -251,6 +276,8 @@ async function checkReport(browser, report) {
   await browser.key("ArrowRight");
   await browser.key("ArrowRight");
   if (!/[0-9]/.test(await browser.value(`document.querySelector(".readout").textContent`))) fault(report.name, "arrow keys read nothing");
+  const unmarked = await browser.value(`[...document.querySelectorAll(".plot svg")].filter((svg) => [...svg.querySelectorAll("text[text-anchor=middle]")].length < 3).length`);
+  if (unmarked > 0) fault(report.name, "an axis has fewer than two values");
   const column = report.column, cells = `[...document.querySelectorAll("table")].at(-1).querySelectorAll("tbody tr td:nth-child(${column + 1})")`;
   const values = `[...${cells}].map((td) => Number(td.textContent)).filter(Number.isFinite)`;
   for (const direction of [1, -1]) {

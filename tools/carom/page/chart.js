@@ -7,7 +7,8 @@ function roundValues(low, high, log, count) {
     const first = Math.ceil(low - 1e-9), last = Math.floor(high + 1e-9), list = [];
     if (last - first < 2) {
       for (let p = first - 1; p <= last + 1; ++p) for (const part of [1, 2, 5]) list.push(part * 10 ** p);
-      return list.filter((x) => Math.log10(x) >= low && Math.log10(x) <= high);
+      const inside = list.filter((x) => Math.log10(x) >= low && Math.log10(x) <= high);
+      return inside.length > 1 ? inside : roundValues(10 ** low, 10 ** high, false, count);
     }
     const every = Math.ceil((last - first + 1) / count);
     for (let p = first; p <= last; p += every) list.push(10 ** p);
@@ -114,7 +115,7 @@ function chart(spec, pick = null) {
     const named = spec.series.map((s, i) => [s, i]).filter(([s]) => s.name);
     if (point !== null) {
       const [s, i] = point.of;
-      readout.replaceChildren(key(s, i, `${s.name || spec.title}: ${shown(point.p[0])} ${spec.x.unit || ""}, ${shown(point.p[1])} ${spec.y.unit || ""}`));
+      readout.replaceChildren(key(s, i, `${s.name}: ${spec.x.title} ${shown(point.p[0])}; ${spec.y.title} ${shown(point.p[1])}`));
       return;
     }
     readout.replaceChildren(...(at === null || spec.byPoint ? named.map(([s, i]) => key(s, i, s.name))
