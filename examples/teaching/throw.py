@@ -56,33 +56,28 @@ def thrown(v: float, cut: Numbers, roll: float, side: Numbers, model: str) -> Nu
 
 
 # %% [markdown]
-# ## Throw by the cut
-# Stun shots: the cue ball has no spin when it hits. Lines are the formula; dots are the impact solved as a differential equation, with
-# the cloth under the balls (`mathavan`), which is what a simulation does by default.
+# ## Throw by the cut and by the english
+# Lines are the formula; dots are the impact solved as a differential equation, with the cloth under the balls (`mathavan`), which is
+# what a simulation does by default.
+#
+# On the left stun shots: the cue ball has no spin when it hits. On the right a cut of 30 degrees: inside english (left half) rubs more,
+# outside english less; at 1 the balls are geared, and beyond it they throw the other way.
 
 # %%
 cut = np.radians(np.linspace(1, 80, 80))
 none = np.zeros(1)
+side = np.linspace(-2, 3, 101)
+thirty = np.full_like(side, np.radians(30))
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.5), layout="constrained", sharey=True)
 for v, color in ((0.5, "tab:blue"), (1.5, "tab:orange"), (4.0, "tab:red")):
     left.plot(np.degrees(cut), formula(v, cut, 0.0, none), color=color, label=f"{v} m/s")
     left.plot(np.degrees(cut[::5]), thrown(v, cut[::5], 0.0, none, "mathavan"), "o", ms=4, color=color)
+    right.plot(side, formula(v, thirty, 0.0, side), color=color)
+    right.plot(side[::5], thrown(v, thirty[::5], 0.0, side[::5], "mathavan"), "o", ms=4, color=color)
 left.set_xlabel("cut angle [degrees]")
 left.set_ylabel("throw [degrees]")
 left.set_title("Stun shots")
 left.legend()
-
-# %% [markdown]
-# ## Throw by the english
-# A cut of 30 degrees. Inside english (left) rubs more, outside english less; at 1 the balls are geared, and beyond it they throw
-# the other way.
-
-# %%
-side = np.linspace(-2, 3, 101)
-thirty = np.full_like(side, np.radians(30))
-for v, color in ((0.5, "tab:blue"), (1.5, "tab:orange"), (4.0, "tab:red")):
-    right.plot(side, formula(v, thirty, 0.0, side), color=color)
-    right.plot(side[::5], thrown(v, thirty[::5], 0.0, side[::5], "mathavan"), "o", ms=4, color=color)
 right.axhline(0, color="0.7", lw=0.8)
 right.axvline(1, color="0.7", lw=0.8)
 right.set_xlabel("english: R w_z / (v sin(phi))")

@@ -42,8 +42,10 @@ def run(name, source, folder):
     kept, pyplot.show = pyplot.show, show
     names: dict[str, object] = {"__name__": "__main__"}
     try:
-        exec(compile(source, f"{name}.py", "exec"), names)
-        assert pyplot.get_fignums() == [], "a picture was not shown"
+        for cell in source.split("# %%"):
+            exec(compile(cell.removeprefix(" [markdown]"), f"{name}.py", "exec"), names)
+            # A notebook shows and drops what is open at the end of a cell.
+            assert pyplot.get_fignums() == [], f"a picture is not shown in its cell: {cell}"
     finally:
         pyplot.show = kept
         pyplot.close("all")
