@@ -1,9 +1,11 @@
 // carom sweep: one table, whatever the number of threads and parts, and whatever happened on the way.
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -132,6 +134,60 @@ TEST(CliSweep, AnInterruptLeavesWhatWasDone) {
         << again.err;
 }
 
+TEST(CliSweep, AStatusFileSaysHowFarItIs) {
+    const TemporaryFolder folder;
+    const std::string status = folder.file("status.json"), output = folder.file("a.csv");
+    expect_ok(carom(breaks(30, output, {"--shard", "2/3", "--status", status})));
+    const auto done = nlohmann::json::parse(read_file(status));
+    EXPECT_EQ(done["state"], "done");
+    EXPECT_EQ(done["output"], output);
+    EXPECT_EQ(done["first"], 10);
+    EXPECT_EQ(done["last"], 20);
+    EXPECT_EQ(done["rows"], 10);
+    EXPECT_EQ(done["played"], 10);
+    EXPECT_GT(done["shots_per_second"], 0.0);
+    EXPECT_EQ(done["outcomes"]["at_rest"], 10);
+    EXPECT_EQ(done["outcomes"]["failed"], 0);
+    EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.csv", "status.json"}));
+
+    const std::string nowhere = folder.file("no/status.json");
+    const ProcessResult refused = carom(breaks(30, output, {"--status", nowhere}));
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_NE(refused.err.find(nowhere), std::string::npos) << refused.err;
+}
+
+TEST(CliSweep, TheLastShardOfTheLargestSweepHasItsNumbers) {
+    const TemporaryFolder folder;
+    const std::string status = folder.file("status.json");
+    // 2^53 shots in 999 999 parts: no shard has a whole share, and the product of the two numbers has 73 bits.
+    std::vector<std::string> arguments =
+        breaks(1, folder.file("a.csv"), {"--shard", "999999/999999", "--status", status, "--jobs", "1"});
+    arguments.insert(arguments.begin(), CAROM_PROGRAM);
+    *(std::find(arguments.begin(), arguments.end(), "--count") + 1) = "9007199254740992";
+    Process process(arguments, {});
+    const std::string part = wait_for_rows(folder);
+    ASSERT_NE(part, "");
+    process.interrupt();
+    EXPECT_EQ(process.finish("").status, 130);
+    const auto stopped = nlohmann::json::parse(read_file(status));
+    EXPECT_EQ(stopped["state"], "stopped");
+    EXPECT_EQ(stopped["first"], 9007190247532730);  // floor(2^53 * 999998 / 999999)
+    EXPECT_EQ(stopped["last"], 9007199254740992);
+    EXPECT_EQ(read_file(part).find("9007190247532730,"), 0u);
+    const std::vector<std::string> rows = lines_of(read_file(part));
+    EXPECT_EQ(stopped["rows"], rows.size());
+    EXPECT_EQ(rows.back().find(std::to_string(9007190247532730 + rows.size() - 1) + ","), 0u) << rows.back();
+
+    // The same command goes on, and says which rows are there without having played them.
+    Process again(arguments, {});
+    for (int i = 0; i < 1000 && lines_of(read_file(part)).size() < rows.size() + 5; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    again.interrupt();
+    EXPECT_EQ(again.finish("").status, 130);
+    const auto later = nlohmann::json::parse(read_file(status));
+    EXPECT_EQ(later["rows"].get<std::uint64_t>() - later["played"].get<std::uint64_t>(), rows.size());
+}
+
 TEST(CliSweep, ShotsThatCannotBePlayedAreRowsToo) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", kSmallScene), output = folder.file("a.csv");
@@ -178,11 +234,16 @@ TEST(CliSweep, SaysWhatItNeeds) {
     };
     const std::string vary = "cue.speed=uniform(1,2)";
     EXPECT_EQ(error({"--count", "3"}), "carom: --vary is required; see carom sweep --help\n");
-    EXPECT_EQ(error({"--vary", vary, "--count", "0"}), "carom: --count: expected 1 to 1000000000 shots\n");
+    EXPECT_EQ(error({"--vary", vary, "--count", "0"}),
+              "carom: --count: expected 1 to 9007199254740992 shots\n");
     EXPECT_EQ(error({"--vary", vary, "--count", "3", "--shard", "3/2"}),
               "carom: --shard 3/2: expected I/N with 1 <= I <= N, as in 2/4\n");
     EXPECT_EQ(error({"--vary", "cue.speed=uniform(2,1)", "--count", "3"}),
               "carom: --vary: cue.speed=uniform(2,1): uniform(a,b) needs a <= b\n");
+    EXPECT_EQ(error({"--vary", vary, "--count", "9007199254740993"}),
+              "carom: --count: expected 1 to 9007199254740992 shots\n");
+    EXPECT_EQ(error({"--vary", vary, "--count", "3", "--status", output}),
+              "carom: --status and --output name the same file\n");
     EXPECT_NE(error({"--vary", vary, "--count", "3x"}).find("--count"), std::string::npos);
     EXPECT_EQ(folder.names(), std::vector<std::string>{"s.toml"});
     const ProcessResult folder_asked =

@@ -24,6 +24,7 @@
 #include "setup.h"
 #include "sweep/partial_file.h"
 #include "sweep/row.h"
+#include "sweep/status.h"
 
 namespace carom::tools {
 namespace {
@@ -36,11 +37,13 @@ struct SweepArgs {
     int jobs = 0;
     std::string shard;  ///< "2/4"; empty: all
     std::string output;
+    std::string status;  ///< a file; empty: none
 };
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t kMostShots = 1000000000;
+/// Doubles, and what reads tables as doubles, count to there.
+constexpr std::uint64_t kMostShots = std::uint64_t{1} << 53;
 constexpr std::uint64_t kMostShards = 1000000;
 /// A thread takes more shots at once as long as they last less than this, so that the queue costs nothing beside them.
 constexpr std::chrono::milliseconds kBlockTime(2);
@@ -59,12 +62,12 @@ ShotRange shard_range(const std::string& text, std::uint64_t count) {
     if (text.empty()) return {0, count, true};
     if (const auto part = numbers_in<std::uint64_t, 2>(text, '/')) {
         const auto [i, n] = *part;
-        if (i >= 1 && i <= n && n <= kMostShards) return {count * (i - 1) / n, count * i / n, i == 1};
+        // count * k / n, without the product of the two, which may be too large.
+        const auto begin = [count, n](std::uint64_t k) { return count / n * k + count % n * k / n; };
+        if (i >= 1 && i <= n && n <= kMostShards) return {begin(i - 1), begin(i), i == 1};
     }
     throw UsageError(fmt::format("--shard {}: expected I/N with 1 <= I <= N, as in 2/4", text));
 }
-
-using Outcomes = std::array<std::uint64_t, kShotStatuses>;
 
 /// Rows of consecutive shots.
 struct SweepRows {
@@ -209,7 +212,7 @@ std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRan
 
 /// Runs the shots from `from` on and writes their rows.
 Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& range, std::uint64_t from,
-                    unsigned jobs) {
+                    unsigned jobs, SweepStatus& status) {
     Outcomes outcomes{};
     Queue queue(from, range.last);
     ProgressLine line("sweep");
@@ -226,6 +229,7 @@ Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& rang
             file.flush();
             flushed = Clock::now();
         }
+        status.show(done, outcomes);
         line.show_bar(static_cast<long>(done - range.first), static_cast<long>(range.last - range.first));
     }
     return outcomes;
@@ -256,6 +260,7 @@ int run(const SweepArgs& args) {
     if (args.count < 1 || args.count > kMostShots)
         throw UsageError(fmt::format("--count: expected 1 to {} shots", kMostShots));
     const ShotRange range = shard_range(args.shard, args.count);
+    if (args.status == args.output) throw UsageError("--status and --output name the same file");
     const kernel::Isa isa = chosen_isa();
     const Variation variation = read_variation(args);
     for (const std::string& warning : make_plan(variation.base(), isa).warnings)
@@ -271,15 +276,18 @@ int run(const SweepArgs& args) {
         args.jobs > 0 ? static_cast<unsigned>(args.jobs) : std::max(1u, std::thread::hardware_concurrency());
     const Clock::time_point start = Clock::now();
     Outcomes outcomes{};
+    SweepStatus status(args.status, args.output, range.first, range.last, from);
     try {
-        outcomes = write_rows(file, sweep, range, from, jobs);
+        outcomes = write_rows(file, sweep, range, from, jobs, status);
     } catch (const Interrupted&) {
         file.flush();
+        status.end("stopped");
         if (file.can_be_taken_up())
             message(fmt::format("stopped; the same command goes on with {}", file.name()));
         throw;
     }
     file.commit();
+    status.end("done");
     print(summary(outcomes, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
     const std::uint64_t failed = outcomes[static_cast<std::size_t>(ShotStatus::kFailed)];
     if (failed == 0) return kOk;
@@ -306,6 +314,8 @@ void add_sweep(Options& program) {
     command.option("--shard", &args.shard, "I/N",
                    "Only the I-th of N parts; the files of all parts, one behind the other, are the whole "
                    "(default: all)");
+    command.option("--status", &args.status, "FILE",
+                   "While it runs, write every second how far it is: rows, shots a second, outcomes (JSON)");
     command.option("-o,--output", &args.output, "FILE.csv", "Table to write").required = true;
     command.footer =
         "A sweep that was stopped or killed goes on when the same command is given again "

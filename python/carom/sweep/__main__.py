@@ -1,0 +1,224 @@
+"""The command `python -m carom.sweep`."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import sys
+import time
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from carom._errors import SceneError
+from carom.sweep import _folder, _run, _slurm
+from carom.sweep._plan import Plan, SweepError, plan
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+_ABOUT = """Makes the shards of a sweep that are missing in its folder, on the threads of this machine, on a Dask cluster or as an array of Slurm. It may
+be killed at any time; the same command goes on. With --scene it writes the plan PLAN instead."""
+_END = "Exit status: 0, 1 where something went wrong, is missing or a shot failed, 2 for bad input, 130 or 143 after a signal."
+#: [s] Between two lines about the progress where there is no terminal.
+_EVERY = 10.0
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"carom.sweep: {message}; see python -m carom.sweep --help\n")
+
+
+def _arguments() -> argparse.ArgumentParser:
+    parser = _Parser(prog="python -m carom.sweep", description=_ABOUT, epilog=_END, allow_abbrev=False)
+    add = parser.add_argument
+    add("plan", metavar="PLAN", help="file of the plan (JSON)")
+    add("-o", "--output", metavar="FOLDER", help="folder of the shards; default: PLAN without .json, or where PLAN lies if it is called plan.json")
+    add("--threads", type=int, default=0, metavar="N", help="threads on this machine; 0: one for each core")
+    add("--dask", metavar="ADDRESS", help="play on a Dask cluster: tcp://HOST:PORT of its scheduler, or its scheduler file")
+    add("--slurm", action="store_true", help="submit an array of Slurm for what is missing, by sbatch")
+    add("--sbatch", default="", metavar="OPTIONS", help="what sbatch gets besides: --sbatch='--time=60 --cpus-per-task=16'")
+    add("--elements", type=int, default=1000, metavar="N", help="elements of an array at most; Slurm's MaxArraySize is its limit (default: 1000)")
+    add("--part", metavar="I/N", help="only the shards whose number leaves I when divided by N: what an element of an array does")
+    add("--status", action="store_true", help="say what is there")
+    add("--missing", action="store_true", help="print the numbers of the missing shards, as sbatch --array takes them")
+    add("--check", action="store_true", help="read all that is there and compare it with its hashes")
+    new = parser.add_argument_group("a new plan")
+    new.add_argument("--scene", metavar="SCENE", help="scene file (TOML)")
+    new.add_argument("--vary", action="append", default=[], metavar="KEY=DISTRIBUTION", help="as for carom sweep; once for every key")
+    new.add_argument("--shots", type=int, metavar="N", help="at most 2^53")
+    new.add_argument("--seed", type=int, default=1, metavar="S", help="of all draws (default: 1)")
+    new.add_argument("--shard", type=int, default=250_000, metavar="N", help="shots of a file (default: 250000)")
+    new.add_argument("--hashes", choices=("none", "digest", "column"), default="digest", help="of the records: none, one for each shard, or a column besides")
+    return parser
+
+
+def _usage(message: str) -> NoReturn:
+    raise SystemExit(_complain(message, 2))
+
+
+def _complain(message: object, code: int) -> int:
+    print(f"carom.sweep: {message}", file=sys.stderr)
+    return code
+
+
+def _new_plan(args: argparse.Namespace) -> int:
+    if not args.vary or args.shots is None:
+        _usage("--scene needs --vary and --shots")
+    try:
+        made = plan(args.scene, args.vary, args.shots, seed=args.seed, shard=args.shard, hashes=args.hashes)
+    except SceneError as error:
+        return _complain(error, 2)
+    except ValueError as error:
+        return _complain(error, 2)
+    made.save(args.plan)
+    print(f"{args.plan}: {made.shots} shots in {made.shards} shards")
+    return 0
+
+
+def numbers(shards: Sequence[int]) -> str:
+    """Ascending numbers as sbatch --array takes them: 0-3,7."""
+    runs: list[list[int]] = []
+    for shard in shards:
+        if runs and shard == runs[-1][1] + 1:
+            runs[-1][1] = shard
+        else:
+            runs.append([shard, shard])
+    return ",".join(str(first) if first == last else f"{first}-{last}" for first, last in runs)
+
+
+def _part(text: str, of: Plan) -> range:
+    number, _, count = text.partition("/")
+    if not (number.isdecimal() and count.isdecimal() and int(number) < int(count)):
+        _usage(f"--part {text}: expected I/N with 0 <= I < N, as in 3/100")
+    return range(int(number), of.shards, int(count))
+
+
+class _Line:
+    """The progress on standard error: one line that is renewed on a terminal, elsewhere a line now and then."""
+
+    def __init__(self) -> None:
+        self.terminal = sys.stderr.isatty()
+        self.next = 0.0
+        self.waiting: _run.Progress | None = None
+
+    def __call__(self, progress: _run.Progress) -> None:
+        self.waiting = progress
+        if time.monotonic() >= self.next:
+            self.show(progress)
+
+    def show(self, progress: _run.Progress) -> None:
+        self.waiting = None
+        self.next = time.monotonic() + (0.2 if self.terminal else _EVERY)
+        text = (
+            f"{progress.done} of {progress.shards} shards, {progress.shards - progress.done} left, {progress.rows} rows, "
+            f"{progress.rate:.0f} shots/s, {progress.failed} failed"
+        )
+        print(f"\r\x1b[K{text}" if self.terminal else text, end="" if self.terminal else "\n", file=sys.stderr, flush=True)
+
+    def end(self) -> None:
+        if self.waiting is not None:
+            self.show(self.waiting)
+        if self.terminal:
+            print(file=sys.stderr)
+
+
+def _play(args: argparse.Namespace, of: Plan, folder: str) -> int:
+    shards = _part(args.part, of) if args.part else None
+    line = _Line()
+    executor: Any = "threads"
+    if args.dask:
+        executor = _dask_client(args.dask)
+    try:
+        done = _run.run(of, folder, executor, threads=args.threads, shards=shards, progress=line)
+    finally:
+        line.end()
+        if args.dask:
+            executor.close(timeout=5)
+    kinds = ", ".join(f"{name} {count}" for name, count in done.outcomes.items())
+    print(f"{folder}: {done.rows} rows ({kinds}), {done.played} of them played in {done.seconds:.1f} s, {done.rate:.0f} a second")
+    return _complain(f"{done.failed} shots failed while running; their rows say why", 1) if done.failed else 0
+
+
+def _dask_client(address: str) -> Any:
+    from carom.sweep._shard import need
+
+    need("distributed")
+    import distributed
+
+    connect: Any = distributed.Client
+    client = connect(scheduler_file=address, timeout=30) if address.endswith(".json") else connect(address, timeout=30)
+    print(f"dashboard: {client.dashboard_link}", flush=True)
+    return client
+
+
+def _say_status(folder: str) -> int:
+    found = _folder.status(folder)
+    print(f"{folder}: {found.done} of {found.plan.shards} shards, {found.rows} of {found.plan.shots} rows")
+    if found.missing:
+        print(f"missing: {numbers(found.missing)}")
+    for name in found.unfinished:
+        print(f"unfinished: {name}")
+    for name in found.strangers:
+        print(f"none of the sweep's: {name}")
+    return 1 if found.missing or found.strangers else 0
+
+
+def _say_check(folder: str) -> int:
+    found = _folder.check(folder)
+    kinds = ", ".join(f"{name} {count}" for name, count in found.outcomes.items())
+    print(f"{folder}: {found.rows} of {found.plan.shots} rows are there and as they were written ({kinds})")
+    if found.missing:
+        print(f"missing: {numbers(found.missing)}")
+    for fault in found.faults.values():
+        _complain(fault, 1)
+    return 0 if found.whole else 1
+
+
+def _do(args: argparse.Namespace) -> int:
+    if args.scene:
+        return _new_plan(args)
+    try:
+        of = Plan.load(args.plan)
+    except SweepError as error:
+        return _complain(error, 2)
+    own = os.path.basename(args.plan) == _folder.PLAN
+    folder = args.output or (os.path.dirname(args.plan) or "." if own else os.path.splitext(args.plan)[0])
+    if args.threads < 0 or args.elements < 1:
+        _usage("--threads has to be at least 0, --elements at least 1")
+    if not args.output and folder == args.plan:
+        _usage(f"{args.plan}: name the folder of the shards with --output")
+    if args.status or args.missing or args.check:
+        os.makedirs(folder, exist_ok=True)
+        of.save(os.path.join(folder, _folder.PLAN))
+    if args.status:
+        return _say_status(folder)
+    if args.missing:
+        print(numbers(_folder.status(folder).missing))
+        return 0
+    if args.check:
+        return _say_check(folder)
+    if args.slurm:
+        print(_slurm.submit(of, folder, args.elements, args.sbatch, numbers))
+        return 0
+    return _play(args, of, folder)
+
+
+def _terminated(number: int, frame: FrameType | None) -> NoReturn:
+    raise SystemExit(128 + number)
+
+
+def main() -> int:
+    """Reads the command line and does what it says; the exit status."""
+    args = _arguments().parse_args()
+    signal.signal(signal.SIGTERM, _terminated)
+    try:
+        return _do(args)
+    except (SweepError, ImportError, OSError) as error:
+        return _complain(error, 1)
+    except KeyboardInterrupt:
+        return _complain("stopped; the same command goes on", 130)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

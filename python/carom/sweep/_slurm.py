@@ -1,0 +1,41 @@
+"""Sweeps as arrays of Slurm."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+from collections.abc import Callable, Sequence
+
+from carom.sweep._folder import PLAN, status
+from carom.sweep._plan import Plan, SweepError
+
+
+def command(plan: Plan, folder: str, elements: int) -> str:
+    """What an element of the array runs. Which shards are its own depends on its number alone: a requeued one has the same."""
+    words = [sys.executable, "-m", "carom.sweep", os.path.join(folder, PLAN), "-o", folder]
+    return f'{shlex.join(words)} --part "$SLURM_ARRAY_TASK_ID/{min(elements, plan.shards)}" --threads "${{SLURM_CPUS_PER_TASK:-1}}"'
+
+
+def submit(plan: Plan, folder: str, elements: int, options: str, numbers: Callable[[Sequence[int]], str]) -> str:
+    """Submits an array whose elements make what is missing; what was done, in words. Raises SweepError where sbatch fails."""
+    import subprocess
+
+    folder = os.path.abspath(folder)
+    os.makedirs(folder, exist_ok=True)
+    plan.save(os.path.join(folder, PLAN))
+    missing = status(folder).missing
+    if not missing:
+        return f"{folder}: nothing is missing"
+    count = min(elements, plan.shards)
+    array = numbers(sorted({shard % count for shard in missing}))
+    words = ["sbatch", "--parsable", "--job-name=carom-sweep", f"--array={array}", f"--output={folder}/slurm-%A_%a.out"]
+    words += [*shlex.split(options), f"--wrap={command(plan, folder, elements)}"]
+    try:
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+    except FileNotFoundError:
+        raise SweepError("sbatch: there is no such program; this is no machine of a Slurm cluster") from None
+    if done.returncode != 0:
+        raise SweepError(f"sbatch failed with the status {done.returncode}: {done.stderr.strip()}")
+    job = done.stdout.strip().partition(";")[0]
+    return f"job {job}: --array={array} for {len(missing)} of {plan.shards} shards; --status says how far they are"

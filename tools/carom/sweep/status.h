@@ -1,0 +1,39 @@
+// How far a sweep is, in a file that other programs read while it runs.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "carom/engine/batch.h"
+
+namespace carom::tools {
+
+using Outcomes = std::array<std::uint64_t, kShotStatuses>;
+
+/// A JSON object in a file that is replaced as a whole: whoever reads it finds a complete one. Its keys are those of
+/// docs/guide/clusters.md.
+class SweepStatus {
+  public:
+    /// @param path  empty: nothing is written
+    /// @param first, last, from  shots first to last - 1 are wanted, and those before `from` are there already
+    SweepStatus(std::string path, std::string output, std::uint64_t first, std::uint64_t last,
+                std::uint64_t from);
+
+    /// Writes the file if the last time is a second ago. @throws std::runtime_error
+    void show(std::uint64_t done, const Outcomes& outcomes);
+    /// Writes it for the last time. @param state  "done" or "stopped"
+    void end(const char* state);
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    void write(const char* state);
+
+    std::string path_, output_;
+    std::uint64_t first_, last_, from_, done_;
+    Outcomes outcomes_{};
+    Clock::time_point start_, written_;
+};
+
+}  // namespace carom::tools
