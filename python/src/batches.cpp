@@ -140,13 +140,14 @@ std::vector<std::string> read_list_draws(const std::vector<std::string>& texts, 
 std::pair<std::vector<Failure>, std::vector<std::vector<std::string>>> sweep_shots(
     const NativeSweep& sweep, std::uint64_t first, std::size_t shots, int threads, const ShotArrays& out,
     const std::vector<FloatDraws>& floats, const std::vector<WholeDraws>& wholes,
-    const std::vector<ListDraws>& lists) {
+    const std::vector<ListDraws>& lists, std::uint64_t hash_every) {
     const kernel::Isa isa = chosen_isa();
     const std::size_t keys = sweep.variation.keys().size();
     std::vector<std::vector<std::string>> names;
     std::vector<Failure> failures =
         played(out, sweep.variation.base().ball.size(), threads,
-               [&](const BatchOptions& options, const BatchArrays& into) {
+               [&](BatchOptions& options, const BatchArrays& into) {
+                   options.hash_every = std::max<std::uint64_t>(hash_every, 1);
                    std::vector<std::string> texts;
                    auto messages = simulate_many(sweep.variation, first, shots, isa, options, into, texts);
                    for (const auto& [key, draws] : floats) read_draws(texts, key, keys, draws.data());
@@ -187,7 +188,7 @@ void add_batches(nb::module_& m) {
         .def_prop_ro("fingerprint", [](const NativeSweep& s) { return s.variation.fingerprint(); })
         .def("unit", [](const NativeSweep& s, std::size_t key) { return s.variation.unit(key); })
         .def("play", sweep_shots, nb::arg("first"), nb::arg("shots"), nb::arg("threads"), nb::arg("out"),
-             nb::arg("floats"), nb::arg("wholes"), nb::arg("lists"));
+             nb::arg("floats"), nb::arg("wholes"), nb::arg("lists"), nb::arg("hash_every"));
     m.def("make_sweep", make_sweep);
     m.def("pocket_ids", pocket_ids);
 }

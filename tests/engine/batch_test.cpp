@@ -354,6 +354,25 @@ TEST(Batch, BallsThatAreLeftOutAreNotThere) {
     EXPECT_THROW(simulate_many(scene, 1, {}, kIsa, options), std::invalid_argument);
 }
 
+TEST(Batch, OnlyShotsWithTheseNumbersAreHashed) {
+    const Variation variation =
+        Variation::from_text(read_source("scenes/draw.toml"), "draw", {"cue.aim_deg=normal(2)"}, 5);
+    constexpr std::size_t kShots = 40, kFirst = 7;
+    std::vector<std::uint64_t> all(kShots), some(kShots, 1);
+    std::vector<std::string> values;
+    BatchArrays out;
+    out.hash = all.data();
+    simulate_many(variation, kFirst, kShots, kIsa, {}, out, values);
+    BatchOptions options;
+    options.hash_every = 4;
+    out.hash = some.data();
+    simulate_many(variation, kFirst, kShots, kIsa, options, out, values);
+    for (std::size_t i = 0; i < kShots; ++i) {
+        EXPECT_NE(all[i], 0u);
+        EXPECT_EQ(some[i], (kFirst + i) % 4 == 0 ? all[i] : 0u) << i;
+    }
+}
+
 TEST(Batch, ShotsOfAVariationAreThoseOfItsScenes) {
     const std::string text = read_source("scenes/draw.toml");
     // Of the second, not every value is a number of the scene.

@@ -31,6 +31,22 @@ def rows_of(path):
         return list(csv.reader(file))
 
 
+def not_printed(wanted, output):
+    """The first line of a page's text block that does not appear in its place in the output, or "". "..." stands for any lines, and at the end
+    of a line for the rest of it."""
+    lines = output.splitlines()
+    for line in wanted.splitlines():
+        if line == "...":
+            continue
+        start = line.removesuffix("...")
+        while lines and not (lines[0].startswith(start) if line.endswith("...") else lines[0] == line):
+            lines.pop(0)
+        if not lines:
+            return line or "(an empty line)"
+        lines.pop(0)
+    return ""
+
+
 @pytest.fixture
 def draw_scene():
     import carom

@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import SOURCE, carom_program, rows_of
+from conftest import SOURCE, carom_program, not_printed, rows_of
 
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 PAGES = [page for page in [SOURCE / "README.md", *sorted(SOURCE.glob("docs/**/*.md"))] if "```python\n" in page.read_text()]
@@ -28,7 +28,7 @@ def blocks(page):
 
 
 def test_there_are_pages():
-    assert [page.name for page in PAGES] == ["classroom.md", "python.md"]
+    assert [page.name for page in PAGES] == ["classroom.md", "clusters.md", "python.md"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
@@ -43,15 +43,7 @@ def test_blocks_print_what_the_page_says(page, tmp_path, monkeypatch):
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
             exec(compile(code, page.name, "exec"), names)
-        lines = printed.getvalue().splitlines()
-        for line in (wanted or "").splitlines():
-            if line == "...":
-                continue
-            start = line.removesuffix("...")
-            while lines and not (lines[0].startswith(start) if line.endswith("...") else lines[0] == line):
-                lines.pop(0)
-            assert lines, f"not printed: {line}\n{printed.getvalue()}"
-            lines.pop(0)
+        assert not not_printed(wanted or "", printed.getvalue()), printed.getvalue()
     pyplot.close("all")
 
 

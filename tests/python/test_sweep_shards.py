@@ -160,9 +160,13 @@ def test_a_file_says_where_it_comes_from(tmp_path):
     for row in table.to_pylist()[:3]:
         again = carom.simulate(scene.replace(**{key: row[key] for key in ("cue.aim_deg", "cue.speed")}))
         assert int(again.hash(), 16) == row["record_hash"]
-    assert said["carom.records"] == _plan.sha256(hashes.astype("<u8").tobytes())
-    digest = sweep.run_shard(draw_plan(20, 8), 1, tmp_path_of(tmp_path, "digest"))
-    assert digest["records"] == said["carom.records"]
+    digest = sweep.run_shard(draw_plan(40, 35, hashes="column"), 0, tmp_path_of(tmp_path, "all"))["records"]
+    all_hashes = parquet.read_table(tmp_path / "all/shard-0.parquet")["record_hash"].to_numpy()
+    assert (hashes == all_hashes[8:16]).all()
+    assert said["carom.records_every"] == "16" and digest == _plan.sha256(all_hashes[[0, 16, 32]].astype("<u8").tobytes())
+    assert sweep.run_shard(draw_plan(40, 35), 0, tmp_path_of(tmp_path, "digest"))["records"] == digest
+    late = sweep.run_shard(draw_plan(40, 10), 3, tmp_path_of(tmp_path, "late"))["records"]
+    assert late == _plan.sha256(all_hashes[[32]].astype("<u8").tobytes())
     assert sweep.run_shard(draw_plan(20, 8, hashes="none"), 1, tmp_path_of(tmp_path, "none"))["records"] == ""
 
 
@@ -391,12 +395,15 @@ except OSError as error:
     assert sweep.check(tmp_path).whole
 
 
-def _can_mount(folder):
-    return os.geteuid() == 0 and subprocess.run(["mount", "-t", "tmpfs", "-o", "size=300k", "none", folder], capture_output=True, check=False).returncode == 0
+def _mounted(folder):
+    """Whether a small disk could be put there."""
+    if os.geteuid() != 0 or shutil.which("mount") is None:
+        return False
+    return subprocess.run(["mount", "-t", "tmpfs", "-o", "size=300k", "none", folder], capture_output=True, check=False).returncode == 0
 
 
 def test_a_small_disk_that_fills_up(tmp_path):
-    if not _can_mount(tmp_path):
+    if not _mounted(tmp_path):
         pytest.skip("mounting a small disk takes root")
     try:
         plan = draw_plan(30_000, 3_000)
@@ -505,6 +512,11 @@ def test_duckdb_reads_the_files(tmp_path):
     query = f"SELECT count(*), sum(events), count(DISTINCT shot), sum((pocketed <> '')::int) FROM '{tmp_path}/*.parquet'"
     rows = table.to_pylist()
     assert duckdb.sql(query).fetchall()[0] == (60, sum(row["events"] for row in rows), 60, sum(row["pocketed"] != "" for row in rows))
+
+
+def test_the_plan_of_the_study_can_be_read():
+    plan = sweep.Plan.load(SOURCE / "docs/lab/2026-11-million_breaks.json")
+    assert (plan.shots, plan.shards) == (1_000_000, 20)
 
 
 def test_without_pyarrow_the_extra_is_named():

@@ -146,9 +146,11 @@ struct Work {
           options(how),
           simulate(how.simulate),
           out(arrays) {
-        simulate.hash = out.hash != nullptr;
+        simulate.hash = false;
         simulate.profile = false;
         simulate.progress = nullptr;
+        hashed = simulate;
+        hashed.hash = out.hash != nullptr;
     }
 
     const Scene& scene;
@@ -156,8 +158,9 @@ struct Work {
     PlayShot play;
     kernel::Isa isa;
     const BatchOptions& options;
-    SimulateOptions simulate;
+    SimulateOptions simulate, hashed;
     const BatchArrays& out;
+    std::uint64_t number = 0;  // of the first shot, where shots have numbers
     std::vector<Batch::Message> messages;
     std::atomic<std::size_t> next{0};
     std::atomic<bool> stopped{false};
@@ -176,7 +179,8 @@ struct Work {
 
     void play_one(Player& player, std::size_t shot) {
         const std::size_t balls = scene.ball.size();
-        const ShotStatus status = play(player, shot, simulate);
+        const bool hash = (number + shot) % options.hash_every == 0;
+        const ShotStatus status = play(player, shot, hash ? hashed : simulate);
         if (out.status != nullptr) out.status[shot] = status;
         const bool some = player.last != &player.whole;
         if (!has_result(status) || some)
@@ -244,7 +248,9 @@ std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint6
         std::move(drawn.begin(), drawn.end(), values.begin() + static_cast<std::ptrdiff_t>(shot * keys));
         return status;
     };
-    return Work(variation.base(), shots, play, isa, options, out).run();
+    Work work(variation.base(), shots, play, isa, options, out);
+    work.number = first;
+    return work.run();
 }
 
 Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const BatchColumn> columns,

@@ -102,15 +102,18 @@ class Player:
         balls = {f"{ball}.{name}": what for ball in self.ids for name, what in {"x": ("float64", "m"), "y": ("float64", "m"), "pocket": ("text", "")}.items()}
         return {"shot": ("int64", ""), **keys, **ends, **balls, "message": ("text", "")}
 
-    def play(self, first: int, last: int, threads: int, *, hashes: bool = False) -> tuple[dict[str, Column], Shots]:
-        """Shots first to last - 1: the columns of `carom sweep`, and the arrays that they come from."""
+    def play(self, first: int, last: int, threads: int, *, hash_every: int = 0) -> tuple[dict[str, Column], Shots]:
+        """Shots first to last - 1: the columns of `carom sweep`, and the arrays that they come from.
+
+        hash_every: hash the shots whose number is a multiple of it; 0: none
+        """
         n = last - first
-        shots = Shots.empty(n, len(self.ids), hashes=hashes)
+        shots = Shots.empty(n, len(self.ids), hashes=hash_every > 0)
         draws: list[NDArray[Any]] = [
             np.empty(n, np.int32 if drawn.kind == "list" else np.int64 if drawn.whole else np.float64) for drawn in self._drawn
         ]
         floats, wholes, lists = ([(k, array) for k, array in enumerate(draws) if array.dtype == kind] for kind in (np.float64, np.int64, np.int32))
-        failures, texts = self._sweep.play(first, n, threads, shots._native(), floats, wholes, lists)
+        failures, texts = self._sweep.play(first, n, threads, shots._native(), floats, wholes, lists, hash_every)
         shots = shots._replace(messages=dict(failures))
         names = dict(zip((k for k, _ in lists), texts))
         columns: dict[str, Column] = {"shot": np.arange(first, last, dtype=np.int64)}

@@ -15,8 +15,10 @@ FORMAT = "carom sweep plan 1"
 #: The first shots, whose records every worker compares with the plan's before it plays others.
 _PROBE = 8
 _MOST_SHARDS = 10_000_000
-#: Whether records are hashed: not at all, for the digest of a shard, or for a column as well.
+#: Whether records are hashed: none, some for the digest of a shard, or all for a column.
 _HASHES = ("none", "digest", "column")
+#: The digest of a shard is of the records of shots whose number is a multiple of this: a hash takes a third of the time of a short shot.
+HASH_EVERY = 16
 
 
 class SweepError(RuntimeError):
@@ -152,7 +154,7 @@ def player_of(plan: Plan) -> Player:
 
 
 def _probe(player: Player, shots: int) -> str:
-    _, played = player.play(0, min(shots, _PROBE), 1, hashes=True)
+    _, played = player.play(0, min(shots, _PROBE), 1, hash_every=1)
     assert played.hash is not None
     return sha256(played.hash.astype("<u8").tobytes() + played.status.tobytes())
 
@@ -186,8 +188,8 @@ def plan(
     shots: at most 2**53
     seed: of all draws
     shard: shots of a file, which is also what is lost at most when a worker is killed; 10 to 60 s of work are a good size
-    hashes: "digest" keeps one hash of the records of every shard, with which a shard can be played again and compared; "column" also
-        keeps `int(record.hash(), 16)` of every shot in a column "record_hash"; "none" saves the time, which is much for short shots
+    hashes: "digest" keeps for every shard one hash of the records of every 16th shot, with which it can be played again and compared;
+        "column" also keeps `int(record.hash(), 16)` of every shot in a column "record_hash", which takes time where shots are short; or "none"
 
     Raises ValueError for a number out of its range and for a rule that cannot be read or that gives no valid scene, SceneError
     for the scene.

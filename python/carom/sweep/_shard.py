@@ -12,7 +12,7 @@ import numpy as np
 from carom import _carom
 from carom._simulate import Shots
 from carom.sweep._columns import OUTCOMES, Column, arrow, arrow_schema
-from carom.sweep._plan import Plan, SweepError, canonical, player_of, sha256, sync_folder, wrong_worker
+from carom.sweep._plan import HASH_EVERY, Plan, SweepError, canonical, player_of, sha256, sync_folder, wrong_worker
 
 if TYPE_CHECKING:
     import pyarrow
@@ -123,7 +123,11 @@ def _first_line(error: BaseException) -> str:
     return (str(error).strip() or type(error).__name__).splitlines()[0][:200]
 
 
-def _blocks(plan: Plan, shard: int, threads: int, stop: Callable[[], bool]) -> Iterator[tuple[dict[str, Column], Shots]]:
+def _hash_every(plan: Plan) -> int:
+    return {"none": 0, "digest": HASH_EVERY, "column": 1}[plan.hashes]
+
+
+def _blocks(plan: Plan, shard: int, threads: int, stop: Callable[[], bool]) -> Iterator[tuple[int, dict[str, Column], Shots]]:
     player = player_of(plan)
     at, last = plan.range(shard)
     most = 256
@@ -131,11 +135,11 @@ def _blocks(plan: Plan, shard: int, threads: int, stop: Callable[[], bool]) -> I
         if stop():
             raise Stopped
         end, start = min(at + most, last), time.perf_counter()
-        columns, shots = player.play(at, end, threads, hashes=plan.hashes != "none")
+        columns, shots = player.play(at, end, threads, hash_every=_hash_every(plan))
         if plan.hashes == "column":
             assert shots.hash is not None
             columns["record_hash"] = shots.hash
-        yield columns, shots
+        yield at, columns, shots
         if time.perf_counter() - start < _BLOCK_TIME and most < _MOST_AT_ONCE:
             most *= 2
         at = end
@@ -150,10 +154,10 @@ class Tally:
         self.counts = np.zeros(len(OUTCOMES), np.int64)
         self.records: Any = hashlib.sha256()
 
-    def add(self, shots: Shots) -> None:
+    def add(self, first: int, shots: Shots) -> None:
         self.counts += np.bincount(shots.status, minlength=len(OUTCOMES))
         if shots.hash is not None:
-            self.records.update(shots.hash.astype("<u8").data)
+            self.records.update(np.ascontiguousarray(shots.hash[-first % HASH_EVERY :: HASH_EVERY], "<u8").data)
 
     def outcomes(self) -> dict[str, int]:
         return {name: count for name, count in zip(OUTCOMES, self.counts.tolist()) if count > 0}
@@ -166,8 +170,8 @@ def tables(plan: Plan, shard: int, threads: int, stop: Callable[[], bool], tally
     schema = schema_of(plan, *plan.range(shard))
     waiting: list[pyarrow.Table] = []
     rows = 0
-    for columns, shots in _blocks(plan, shard, threads, stop):
-        tally.add(shots)
+    for first, columns, shots in _blocks(plan, shard, threads, stop):
+        tally.add(first, shots)
         waiting.append(arrow(columns, schema))
         rows += len(shots.status)
         while rows >= _ROW_GROUP:
@@ -180,6 +184,8 @@ def tables(plan: Plan, shard: int, threads: int, stop: Callable[[], bool], tally
 
 def _write(plan: Plan, shard: int, file: Any, threads: int, stop: Callable[[], bool]) -> dict[str, str]:
     """Writes a Parquet file; what its metadata say."""
+    import inspect
+
     import pyarrow
     import pyarrow.parquet
 
@@ -189,6 +195,9 @@ def _write(plan: Plan, shard: int, file: Any, threads: int, stop: Callable[[], b
     kinds = {name: kind for name, (kind, _) in types.items()}
     encoding = {"float64": "BYTE_STREAM_SPLIT", "int64": "DELTA_BINARY_PACKED", "uint64": "PLAIN"}
     content, tally = ContentHash(schema), Tally()
+    # One page for the column of a row group: zstd packs the bytes of numbers by their place the better, the longer the runs of one place are.
+    # What has no such option has no such limit.
+    pages = {"max_rows_per_page": _ROW_GROUP} if "max_rows_per_page" in inspect.signature(pyarrow.parquet.ParquetWriter).parameters else {}
     writer = pyarrow.parquet.ParquetWriter(
         file,
         schema,
@@ -198,6 +207,7 @@ def _write(plan: Plan, shard: int, file: Any, threads: int, stop: Callable[[], b
         # Pages have a check sum; least and greatest values would tell a reader what to skip without one.
         write_page_checksum=True,
         write_statistics=False,
+        **pages,
     )
     try:
         for table in tables(plan, shard, threads, stop, tally):
@@ -207,6 +217,7 @@ def _write(plan: Plan, shard: int, file: Any, threads: int, stop: Callable[[], b
             "carom.writer": f"pyarrow {pyarrow.__version__}",
             "carom.content": content.hexdigest(),
             "carom.records": "" if plan.hashes == "none" else tally.records.hexdigest(),
+            "carom.records_every": str(HASH_EVERY),
             "carom.outcomes": canonical(tally.outcomes()).decode(),
         }
         writer.add_key_value_metadata(about | {"carom.sha256": sha256(canonical(about))})

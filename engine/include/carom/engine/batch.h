@@ -79,14 +79,16 @@ struct BatchColumn {
 };
 
 struct BatchOptions {
-    int threads = 0;             ///< 0: one for each core. The results do not depend on it.
-    bool hash = false;           ///< fill Batch::hash
+    int threads = 0;    ///< 0: one for each core. The results do not depend on it.
+    bool hash = false;  ///< fill Batch::hash
     SimulateOptions simulate{};  ///< `progress` is not called, nothing is profiled
     /// Empty, or for every ball of every shot whether it is left out (not 0). Such a shot is that of the scene without these balls; they
     /// have no numbers (NaN) as x and y, no pocket and no cushion.
     std::span<const std::uint8_t> absent{};
     /// Called by each thread between shots; true ends the batch with an exception of type BatchStopped.
     std::function<bool()> stop{};
+    /// Only shots whose number is a multiple of it (not 0) are hashed, the others have 0: short shots take half as long again with a hash.
+    std::uint64_t hash_every = 1;
 };
 
 /// Where the outcomes of n shots of b balls go: arrays of n or of n x b, as in Batch, in memory of the caller's. Null: not wanted.
