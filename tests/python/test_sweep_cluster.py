@@ -42,8 +42,8 @@ def sweep_command(*arguments, **options):
 class Cluster:
     """A scheduler and workers, each a command of its own."""
 
-    def __init__(self, folder):
-        self.folder = folder
+    def __init__(self, folder, **scheduler):
+        self.folder, self.options = folder, scheduler
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             self.port = probe.getsockname()[1]
@@ -58,7 +58,7 @@ class Cluster:
         return process
 
     def begin_scheduler(self):
-        return self.start("scheduler", "--host", "127.0.0.1", "--port", str(self.port), "--dashboard-address", "127.0.0.1:0")
+        return self.start("scheduler", "--host", "127.0.0.1", "--port", str(self.port), "--dashboard-address", "127.0.0.1:0", **self.options)
 
     def worker(self, *arguments, **options):
         return self.start("worker", self.address, "--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1", "--death-timeout", "60", *arguments, **options)
@@ -153,6 +153,24 @@ def test_a_nanny_puts_another_worker_in_the_place_of_a_dead_one(tmp_path, cluste
     out, err = client.communicate(timeout=120)
     assert client.returncode == 0, err
     assert whole(tmp_path / "a", plan, files)
+
+
+@slow
+def test_a_shard_that_dask_gives_up_is_asked_for_again(tmp_path, once):
+    pytest.importorskip("distributed", reason="distributed is not installed: pip install distributed")
+    plan, file, files = once
+    (tmp_path / "dask").mkdir()
+    # The first death of a worker is one too many for what it had.
+    with Cluster(tmp_path / "dask", DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as cluster:
+        victim, _ = cluster.worker("--no-nanny"), cluster.worker("--no-nanny")
+        client = command("carom.sweep", file, "-o", tmp_path / "a", "--dask", cluster.address)
+        wait_for(lambda: of_process(tmp_path / "a", victim), 60)
+        victim.kill()
+        victim.wait()
+        out, err = client.communicate(timeout=120)
+        assert client.returncode == 0, err
+        assert "KilledWorker" in (tmp_path / "dask/dask-0.log").read_text() or "marked as failed" in (tmp_path / "dask/dask-0.log").read_text()
+        assert whole(tmp_path / "a", plan, files)
 
 
 @slow
@@ -303,7 +321,7 @@ def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path):
         assert sweep_command(*words) == (code, "", f"carom.sweep: {message}\n")
     folder = tmp_path / "p"
     code, out, err = sweep_command(file, "--part", "1/2")
-    assert code == 0 and re.search(r"^1 of 3 shards, 2 left, 20 rows, \d+ shots/s, 0 failed$", err, re.MULTILINE), err
+    assert code == 0 and re.search(r"^1 of 1 shards, 0 left, 20 rows, \d+ shots/s, 0 failed$", err, re.MULTILINE), err
     assert out.startswith(f"{folder}: 20 rows (at_rest 20), 20 of them played in ")
     assert sweep_command(file, "--status") == (1, f"{folder}: 1 of 3 shards, 20 of 60 rows\nmissing: 0,2\n", "")
     code, out, err = sweep_command(folder / "plan.json", "--threads", "2")

@@ -504,6 +504,32 @@ def test_a_dead_worker_of_a_pool_is_an_error_that_says_what_to_do(tmp_path):
     assert sweep.check(tmp_path).whole
 
 
+class _GivesUp(concurrent.futures.ThreadPoolExecutor):
+    """Gives the first tasks up, as Dask does whose workers die."""
+
+    def __init__(self, times):
+        super().__init__(1)
+        self.times = times
+
+    def submit(self, work, *arguments):
+        if self.times == 0:
+            return super().submit(work, *arguments)
+        self.times -= 1
+        given_up = concurrent.futures.Future()
+        given_up.set_exception(type("KilledWorker", (Exception,), {})("its workers died"))
+        return given_up
+
+
+def test_what_an_executor_gives_up_is_tried_again(tmp_path):
+    plan = draw_plan(30, 10)
+    with _GivesUp(2) as executor:
+        assert sweep.run(plan, tmp_path / "a", executor, retries=2).played == 30
+    with _GivesUp(2) as executor, pytest.raises(Exception, match="its workers died"):
+        sweep.run(plan, tmp_path / "b", executor, retries=1)
+    with _GivesUp(2) as executor:
+        assert sweep.reduce(plan, len, executor) == 30
+
+
 def test_duckdb_reads_the_files(tmp_path):
     duckdb = pytest.importorskip("duckdb", reason="duckdb is not installed: pip install duckdb")
     plan = sweep.plan(SOURCE / "scenes/eight_ball_break.toml", RULES["eight_ball_break"], 60, shard=25)

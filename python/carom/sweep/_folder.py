@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import os
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from carom.sweep._plan import Plan, SweepError
 from carom.sweep._shard import UNFINISHED, ContentHash, _first_line, footer, need, schema_of
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
     import pyarrow.dataset
 
 PLAN = "plan.json"
+_Result = TypeVar("_Result")
 
 
 class Status(NamedTuple):
@@ -59,6 +62,14 @@ def status(folder: str | os.PathLike[str]) -> Status:
     growing = os.path.join(name, UNFINISHED)
     unfinished = sorted(os.listdir(growing)) if os.path.isdir(growing) else []
     return Status(plan, plan.shards - len(missing), tuple(missing), rows, tuple(unfinished), tuple(sorted(there)))
+
+
+def in_parallel(work: Callable[[int], _Result], shards: Iterable[int], threads: int = 0) -> Iterator[_Result]:
+    """The results of `work` on shards, in their order, on threads; few of them at a time are in memory."""
+    todo = iter(shards)
+    with ThreadPoolExecutor(threads or len(os.sched_getaffinity(0))) as pool:
+        while some := list(itertools.islice(todo, 256)):
+            yield from pool.map(work, some)
 
 
 def _described(schema: pyarrow.Schema) -> tuple[object, ...]:
@@ -112,14 +123,13 @@ def check(folder: str | os.PathLike[str], *, threads: int = 0) -> Check:
         except SweepError as error:
             return error
 
-    with ThreadPoolExecutor(threads or len(os.sched_getaffinity(0))) as pool:
-        for shard, result in zip(shards, pool.map(look, shards)):
-            if isinstance(result, SweepError):
-                faults[found.plan.file(shard)] = str(result)
-                continue
-            rows += sum(result.values())
-            for outcome, count in result.items():
-                outcomes[outcome] = outcomes.get(outcome, 0) + count
+    for shard, result in zip(shards, in_parallel(look, shards, threads)):
+        if isinstance(result, SweepError):
+            faults[found.plan.file(shard)] = str(result)
+            continue
+        rows += sum(result.values())
+        for outcome, count in result.items():
+            outcomes[outcome] = outcomes.get(outcome, 0) + count
     return Check(found.plan, rows, outcomes, faults, found.missing)
 
 
@@ -149,8 +159,8 @@ def open(folder: str | os.PathLike[str], *, verify: bool = True, partial: bool =
         for fault in check(name).faults.values():
             raise SweepError(fault)
     else:
-        with ThreadPoolExecutor() as pool:
-            list(pool.map(footer, [plan] * len(shards), shards, paths))
+        for _ in in_parallel(lambda shard: footer(plan, shard, os.path.join(name, plan.file(shard))), shards):
+            pass
     pages = pyarrow.dataset.ParquetFileFormat(
         default_fragment_scan_options=pyarrow.dataset.ParquetFragmentScanOptions(page_checksum_verification=True)
     )

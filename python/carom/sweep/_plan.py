@@ -17,7 +17,8 @@ _PROBE = 8
 _MOST_SHARDS = 10_000_000
 #: Whether records are hashed: none, some for the digest of a shard, or all for a column.
 _HASHES = ("none", "digest", "column")
-#: The digest of a shard is of the records of shots whose number is a multiple of this: a hash takes a third of the time of a short shot.
+#: The digest of a shard is of the records of shots whose number is a multiple of this: with a hash,
+#: a short shot takes half as long again.
 HASH_EVERY = 16
 
 
@@ -126,7 +127,7 @@ def canonical(tree: Any) -> bytes:
 
 def write_whole(path: str, data: bytes) -> None:
     """The file appears complete or not at all, and stays after a power cut."""
-    temporary = f"{path}.{os.getpid()}.tmp"
+    temporary = f"{path}.{os.urandom(4).hex()}.tmp"
     try:
         with open(temporary, "wb") as file:
             file.write(data)

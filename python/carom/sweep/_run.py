@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from carom.sweep._folder import PLAN, status
+from carom.sweep._folder import PLAN, in_parallel, status
 from carom.sweep._plan import Plan, SweepError, wrong_worker
 from carom.sweep._shard import Stopped, Tally, footer, make_shard, need, run_shard, tables
 
@@ -26,7 +26,7 @@ _WINDOW_OF_RESULTS = 64
 class Progress(NamedTuple):
     """How far a run is."""
 
-    shards: int  # of the plan
+    shards: int  # that are wanted
     done: int  # of these are there
     rows: int  # in them
     played: int  # rows that this run has played
@@ -47,8 +47,8 @@ class Progress(NamedTuple):
 class _Count:
     """Makes Progress of the results of shards."""
 
-    def __init__(self, plan: Plan, tell: Callable[[Progress], None] | None) -> None:
-        self.plan, self.tell = plan, tell
+    def __init__(self, plan: Plan, wanted: int, tell: Callable[[Progress], None] | None) -> None:
+        self.plan, self.wanted, self.tell = plan, wanted, tell
         self.start = time.perf_counter()
         self.done = self.rows = self.played = 0
         self.outcomes: dict[str, int] = {}
@@ -62,7 +62,7 @@ class _Count:
             self.outcomes[name] = self.outcomes.get(name, 0) + count
 
     def progress(self) -> Progress:
-        return Progress(self.plan.shards, self.done, self.rows, self.played, time.perf_counter() - self.start, dict(self.outcomes))
+        return Progress(self.wanted, self.done, self.rows, self.played, time.perf_counter() - self.start, dict(self.outcomes))
 
     def show(self) -> None:
         if self.tell is not None:
@@ -225,7 +225,7 @@ def run(
     for shard in wanted if shards is not None else ():
         plan.range(shard)
     missing = set(status(name).missing)
-    count = _Count(plan, progress)
+    count = _Count(plan, len(wanted), progress)
     _count_what_is_there(count, name, (shard for shard in wanted if shard not in missing))
     count.show()
     todo = [shard for shard in wanted if shard in missing]
@@ -254,9 +254,8 @@ def _count_what_is_there(count: _Count, folder: str, shards: Iterable[int]) -> N
     import json
 
     plan = count.plan
-    with ThreadPoolExecutor() as pool:
-        for about in pool.map(lambda shard: footer(plan, shard, os.path.join(folder, plan.file(shard))), shards):
-            count.add(json.loads(about["carom.outcomes"]), played=False)
+    for about in in_parallel(lambda shard: footer(plan, shard, os.path.join(folder, plan.file(shard))), shards):
+        count.add(json.loads(about["carom.outcomes"]), played=False)
 
 
 def _reduced(plan: Plan, shard: int, fn: Callable[[pyarrow.Table], Any], stop: Callable[[], bool] = lambda: False) -> tuple[Any, dict[str, int]]:
@@ -301,7 +300,7 @@ def reduce(
     """
     need("pyarrow")
     _executor(executor)
-    count = _Count(plan, progress)
+    count = _Count(plan, plan.shards, progress)
 
     def merged(results: Iterator[tuple[Any, dict[str, int]]]) -> Any:
         whole: Any = None

@@ -231,10 +231,10 @@ def _write(plan: Plan, shard: int, file: Any, threads: int, stop: Callable[[], b
 def _forget_the_dead(folder: str, name: str) -> None:
     """Removes what processes of this machine left unfinished when they were killed."""
     for left in os.listdir(folder):
-        if not left.startswith(f"{name}.") or not left.endswith(".tmp"):
+        if not left.startswith(f"{name}.{_host()}.") or not left.endswith(".tmp"):
             continue
-        host, pid = left[len(name) + 1 : -len(".tmp")].rsplit(".", 2)[:2]
-        if host == _host() and not os.path.exists(f"/proc/{pid}"):
+        pid = left[len(f"{name}.{_host()}.") :].partition(".")[0]
+        if not os.path.exists(f"/proc/{pid}"):
             try:
                 os.unlink(os.path.join(folder, left))
             except FileNotFoundError:

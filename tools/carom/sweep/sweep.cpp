@@ -314,8 +314,7 @@ void add_sweep(Options& program) {
     command.option("--shard", &args.shard, "I/N",
                    "Only the I-th of N parts; the files of all parts, one behind the other, are the whole "
                    "(default: all)");
-    command.option("--status", &args.status, "FILE",
-                   "Says every second how far it is (JSON)");
+    command.option("--status", &args.status, "FILE", "Says every second how far it is (JSON)");
     command.option("-o,--output", &args.output, "FILE.csv", "Table to write").required = true;
     command.footer =
         "A sweep that was stopped or killed goes on when the same command is given again "

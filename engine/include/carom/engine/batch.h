@@ -79,8 +79,8 @@ struct BatchColumn {
 };
 
 struct BatchOptions {
-    int threads = 0;    ///< 0: one for each core. The results do not depend on it.
-    bool hash = false;  ///< fill Batch::hash
+    int threads = 0;             ///< 0: one for each core. The results do not depend on it.
+    bool hash = false;           ///< fill Batch::hash
     SimulateOptions simulate{};  ///< `progress` is not called, nothing is profiled
     /// Empty, or for every ball of every shot whether it is left out (not 0). Such a shot is that of the scene without these balls; they
     /// have no numbers (NaN) as x and y, no pocket and no cushion.
