@@ -160,13 +160,13 @@ def test_a_file_says_where_it_comes_from(tmp_path):
     for row in table.to_pylist()[:3]:
         again = carom.simulate(scene.replace(**{key: row[key] for key in ("cue.aim_deg", "cue.speed")}))
         assert int(again.hash(), 16) == row["record_hash"]
-    digest = sweep.run_shard(draw_plan(40, 35, hashes="column"), 0, tmp_path_of(tmp_path, "all"))["records"]
+    digest = sweep.run_shard(draw_plan(140, 130, hashes="column"), 0, tmp_path_of(tmp_path, "all"))["records"]
     all_hashes = parquet.read_table(tmp_path / "all/shard-0.parquet")["record_hash"].to_numpy()
     assert (hashes == all_hashes[8:16]).all()
-    assert said["carom.records_every"] == "16" and digest == _plan.sha256(all_hashes[[0, 16, 32]].astype("<u8").tobytes())
-    assert sweep.run_shard(draw_plan(40, 35), 0, tmp_path_of(tmp_path, "digest"))["records"] == digest
-    late = sweep.run_shard(draw_plan(40, 10), 3, tmp_path_of(tmp_path, "late"))["records"]
-    assert late == _plan.sha256(all_hashes[[32]].astype("<u8").tobytes())
+    assert said["carom.records_every"] == "64" and digest == _plan.sha256(all_hashes[[0, 64, 128]].astype("<u8").tobytes())
+    assert sweep.run_shard(draw_plan(140, 130), 0, tmp_path_of(tmp_path, "digest"))["records"] == digest
+    late = sweep.run_shard(draw_plan(140, 60), 1, tmp_path_of(tmp_path, "late"))["records"]
+    assert late == _plan.sha256(all_hashes[[64]].astype("<u8").tobytes())
     assert sweep.run_shard(draw_plan(20, 8, hashes="none"), 1, tmp_path_of(tmp_path, "none"))["records"] == ""
 
 

@@ -92,12 +92,13 @@ def rows(rounds):
 def memory():
     """In a process of its own: what planning and looking after a large sweep takes."""
     code = """
-import os, resource, sys, tempfile, time
+import os, sys, tempfile, time
 from carom import sweep
 import pyarrow.parquet
 
-def peak():
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+def peak():  # not ru_maxrss, which knows the process that began this one, too
+    with open("/proc/self/status") as file:
+        return next(int(line.split()[1]) for line in file if line.startswith("VmHWM")) / 1024
 
 shots, shard = int(sys.argv[1]), int(sys.argv[2])
 before = peak()

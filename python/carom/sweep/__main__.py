@@ -49,7 +49,7 @@ def _arguments() -> argparse.ArgumentParser:
     new.add_argument("--shots", type=int, metavar="N", help="at most 2^53")
     new.add_argument("--seed", type=int, default=1, metavar="S", help="of all draws (default: 1)")
     new.add_argument("--shard", type=int, default=250_000, metavar="N", help="shots of a file (default: 250000)")
-    new.add_argument("--hashes", choices=("none", "digest", "column"), default="digest", help="of the records: none, one for each shard (of every 16th shot), or a column besides")
+    new.add_argument("--hashes", choices=("none", "digest", "column"), default="digest", help="of the records: none, one for each shard (of every 64th shot), or a column besides")
     return parser
 
 

@@ -19,7 +19,7 @@ _MOST_SHARDS = 10_000_000
 _HASHES = ("none", "digest", "column")
 #: The digest of a shard is of the records of shots whose number is a multiple of this: with a hash,
 #: a short shot takes half as long again.
-HASH_EVERY = 16
+HASH_EVERY = 64
 
 
 class SweepError(RuntimeError):
@@ -189,7 +189,7 @@ def plan(
     shots: at most 2**53
     seed: of all draws
     shard: shots of a file, which is also what is lost at most when a worker is killed; 10 to 60 s of work are a good size
-    hashes: "digest" keeps for every shard one hash of the records of every 16th shot, with which it can be played again and compared;
+    hashes: "digest" keeps for every shard one hash of the records of every 64th shot, with which it can be played again and compared;
         "column" also keeps `int(record.hash(), 16)` of every shot in a column "record_hash", which takes time where shots are short; or "none"
 
     Raises ValueError for a number out of its range and for a rule that cannot be read or that gives no valid scene, SceneError

@@ -63,7 +63,7 @@ ShotRange shard_range(const std::string& text, std::uint64_t count) {
     if (const auto part = numbers_in<std::uint64_t, 2>(text, '/')) {
         const auto [i, n] = *part;
         // count * k / n, without the product of the two, which may be too large.
-        const auto begin = [count, n](std::uint64_t k) { return count / n * k + count % n * k / n; };
+        const auto begin = [count, n = n](std::uint64_t k) { return count / n * k + count % n * k / n; };
         if (i >= 1 && i <= n && n <= kMostShards) return {begin(i - 1), begin(i), i == 1};
     }
     throw UsageError(fmt::format("--shard {}: expected I/N with 1 <= I <= N, as in 2/4", text));
@@ -314,7 +314,8 @@ void add_sweep(Options& program) {
     command.option("--shard", &args.shard, "I/N",
                    "Only the I-th of N parts; the files of all parts, one behind the other, are the whole "
                    "(default: all)");
-    command.option("--status", &args.status, "FILE", "Says every second how far it is (JSON)");
+    command.option("--status", &args.status, "FILE",
+                   "File (JSON) that says how far it is, every second (default: not written)");
     command.option("-o,--output", &args.output, "FILE.csv", "Table to write").required = true;
     command.footer =
         "A sweep that was stopped or killed goes on when the same command is given again "
