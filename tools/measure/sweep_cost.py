@@ -22,7 +22,7 @@ from carom._simulate import Shots
 CASES = [
     ("draw", ["cue.aim_deg=normal(2)", "cue.speed=uniform(1,4)"], 250_000),
     ("three_cushion", ["cue.aim_deg=normal(2)", "cue.speed=uniform(3,6)"], 250_000),
-    ("eight_ball_break", ["cue.aim_deg=uniform(86.3,90.9)", "cue.speed=uniform(2,11)"], 2_000),
+    ("eight_ball_break", ["cue.aim_deg=uniform(86.3,90.9)", "cue.speed=uniform(2,11)"], 4_000),
 ]
 PROGRAM = os.environ.get("CAROM_PROGRAM", "build/release/carom")
 

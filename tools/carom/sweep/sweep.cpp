@@ -315,7 +315,7 @@ void add_sweep(Options& program) {
                    "Only the I-th of N parts; the files of all parts, one behind the other, are the whole "
                    "(default: all)");
     command.option("--status", &args.status, "FILE",
-                   "File (JSON) that says how far it is, every second (default: not written)");
+                   "How far it is, every second, as JSON (default: not written)");
     command.option("-o,--output", &args.output, "FILE.csv", "Table to write").required = true;
     command.footer =
         "A sweep that was stopped or killed goes on when the same command is given again "
