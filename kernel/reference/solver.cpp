@@ -7,6 +7,9 @@
 //     z' = -5 mu_b z |u| + 5/2 mu_s mu_b z b         b' = |s| |u| - 5/2 sigma mu_b z |u| - kappa mu_s mu_b z b
 //     p' = |s| |u|    v' = 2 p' - mu_s mu_b z b      W' = v p'    D' = mu_b |s| p' + mu_s mu_b z |u|^2
 //
+// With masses m_1 and m_2 impulses are over twice the reduced mass m_r, and what acts on the pressed ball a alone has the factor
+// f = 2 m_r/m_a: all of a' and b', and the terms with mu_s in x', z' and v'.
+//
 // and the friction impulses are integrals of their own: X' = mu_b x |u|, Z' = mu_b z |u|, A' = mu_s mu_b z a,
 // B' = mu_s mu_b z b.
 #include "reference/solver.h"
@@ -22,7 +25,7 @@ using Real = long double;
 enum Variable { kX, kZ, kA, kB, kP, kV, kW, kD, kXi, kZeta, kGa, kGb, kVariables };
 
 struct Constants {
-    Real mu_b, mu_s, kappa, sigma;
+    Real mu_b, mu_s, kappa, sigma, f;
 };
 
 struct Expansion {
@@ -58,12 +61,12 @@ void expand(const Constants& m, const Real (&state)[kVariables], Expansion& e) {
         const Real g = m.mu_s * m.mu_b;
         const Real g_a = g * product(e.c[kZ], e.c[kA], k), g_b = g * product(e.c[kZ], e.c[kB], k);
         Real rate[kVariables];
-        rate[kX] = -7 * xi + g_a;
-        rate[kZ] = -5 * zeta + Real(2.5) * g_b;
-        rate[kA] = xi - m.kappa * g_a;
-        rate[kB] = p1[k] - Real(2.5) * m.sigma * zeta - m.kappa * g_b;
+        rate[kX] = -7 * xi + m.f * g_a;
+        rate[kZ] = -5 * zeta + Real(2.5) * m.f * g_b;
+        rate[kA] = m.f * (xi - m.kappa * g_a);
+        rate[kB] = m.f * (p1[k] - Real(2.5) * m.sigma * zeta - m.kappa * g_b);
         rate[kP] = p1[k];
-        rate[kV] = 2 * p1[k] - g_b;
+        rate[kV] = 2 * p1[k] - m.f * g_b;
         rate[kW] = product(e.c[kV], p1, k);
         rate[kD] = m.mu_b * product(s, p1, k) + g * product(e.c[kZ], u2, k);
         rate[kXi] = xi;
@@ -208,7 +211,10 @@ ImpactTruth reference_impact(const kernel::Ball& ball1, const kernel::Ball& ball
     const bool second = c_z < 0;  // ball 2 is pressed on the cloth
     const Vector2 u = second ? Vector2{v2.x + side * R * w2.y, v2.y - side * R * w2.x}
                              : Vector2{-(v1.x + side * R * w1.y), -(v1.y - side * R * w1.x)};
-    const Constants m{params.mu_b, second ? params.mu_s2 : params.mu_s1, 1 - Real(2.5) * side, side};
+    // 2 m_r/m_i of either ball.
+    const Real f1 = 2 * Real(params.mass_ratio) / (1 + Real(params.mass_ratio)), f2 = 2 - f1;
+    const Constants m{params.mu_b, second ? params.mu_s2 : params.mu_s1, 1 - Real(2.5) * side, side,
+                      second ? f2 : f1};
     Real state[kVariables] = {};
     state[kX] = (v1.x - v2.x - R * (Real(ball1.w[2]) + ball2.w[2])) / n;
     state[kZ] = std::fabs(c_z) / n;
@@ -225,10 +231,11 @@ ImpactTruth reference_impact(const kernel::Ball& ball1, const kernel::Ball& ball
     const Real g_a = state[kGa] * n, g_b = state[kGb] * n, spin = Real(2.5) / R;
     const Vector2 on1 = second ? Vector2{0, 0} : Vector2{g_a, g_b};
     const Vector2 on2 = second ? Vector2{-g_a, -g_b} : Vector2{0, 0};
-    restore({-xi + on1.x, -p + on1.y}, yx, yy, ball1.v, 0, result.v1);
-    restore({xi + on2.x, p + on2.y}, yx, yy, ball2.v, 0, result.v2);
-    restore({spin * (zeta + on1.y), -spin * on1.x}, yx, yy, ball1.w, spin * xi, result.w1);
-    restore({spin * (zeta + on2.y), -spin * on2.x}, yx, yy, ball2.w, spin * xi, result.w2);
+    restore({f1 * (-xi + on1.x), f1 * (-p + on1.y)}, yx, yy, ball1.v, 0, result.v1);
+    restore({f2 * (xi + on2.x), f2 * (p + on2.y)}, yx, yy, ball2.v, 0, result.v2);
+    const Real spin1 = f1 * spin, spin2 = f2 * spin;
+    restore({spin1 * (zeta + on1.y), -spin1 * on1.x}, yx, yy, ball1.w, spin1 * xi, result.w1);
+    restore({spin2 * (zeta + on2.y), -spin2 * on2.x}, yx, yy, ball2.w, spin2 * xi, result.w2);
     return result;
 }
 

@@ -56,18 +56,20 @@ inline void copy_input(const Ball& b1, const Ball& b2, ImpactStatus status, Impa
     out.method = ToleranceMethod::kNone;
 }
 
+template <bool kAnyMasses>
 inline bool in_range(const ImpactParams& p) {
     return finite(p.R) && p.R > 0.0 && finite(p.m) && p.m > 0.0 && finite(p.mu_s1) && p.mu_s1 >= 0.0 &&
            finite(p.mu_s2) && p.mu_s2 >= 0.0 && finite(p.mu_b) && p.mu_b >= 0.0 && p.e_b >= 0.0 &&
-           p.e_b <= 1.0;
+           p.e_b <= 1.0 && (kAnyMasses || p.mass_ratio == 1.0);
 }
 
 // Checks the input and projects it into the contact frame. Any status but kOk means that there is nothing to compute;
 // `out` then holds the input.
+template <bool kAnyMasses = false>
 inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactParams& p, Frame& f,
                                 FrameState& s, ImpactResult& out) {
     ImpactStatus status = ImpactStatus::kOk;
-    if (!in_range(p)) status = ImpactStatus::kBadParameter;
+    if (!in_range<kAnyMasses>(p)) status = ImpactStatus::kBadParameter;
     if (status == ImpactStatus::kOk && !(finite(b1) && finite(b2))) status = ImpactStatus::kBadState;
     if (status == ImpactStatus::kOk) {
         const double dx = b2.r[0] - b1.r[0], dy = b2.r[1] - b1.r[1], dz = b2.r[2] - b1.r[2];

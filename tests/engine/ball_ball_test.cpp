@@ -202,7 +202,7 @@ TEST(Unequal, RandomScenesKeepEveryLaw) {
         Scene scene = empty_scene();
         scene.table = box(1.0, 1.6, 0.03);
         scene.physics.clusters = ClusterModel::kSequential;
-        scene.physics.ball_ball = i % 2 ? ball_ball_model("inelastic") : ball_ball_model("elastic");
+        scene.physics.ball_ball = i % 2 ? (i % 4 == 1 ? &kMathavan : ball_ball_model("inelastic")) : ball_ball_model("elastic");
         const bool radii = i % 4 == 0;
         if (radii) scene.balls.mu_b = 0.0;
         scene.stop.events = 40;
@@ -245,10 +245,16 @@ TEST(Unequal, ModelsWithoutAFormulaAreErrorsAtTheBall) {
         "s.toml:4:1: balls \"a\" and \"b\" differ in size: friction between balls of different radius acts "
         "on a tilted line of centres, for which this model has no formula; use physics.ball_ball = "
         "\"two_step\" or set balls.mu_b = 0");
-    EXPECT_EQ(
-        error_of(heavy),
-        "s.toml:4:1: balls \"a\" and \"b\" differ in size: the model mathavan takes balls of one mass; use "
-        "physics.ball_ball = \"inelastic\" or set balls.mu_b = 0");
+    const auto refused = [](const std::string& why) {
+        return "s.toml:4:1: balls \"a\" and \"b\" differ in size: the model mathavan " + why +
+               "; use physics.ball_ball = \"inelastic\" or set balls.mu_b = 0";
+    };
+    EXPECT_EQ(error_of(heavy), "");
+    EXPECT_EQ(error_of(heavy + "[physics]\nsubsteps = 1000\n"),
+              refused("marched in substeps takes balls of one mass"));
+    EXPECT_EQ(error_of(heavy + "[balls]\nmass = 0.01\n"), refused("takes masses of a ratio up to 10"));
+    EXPECT_EQ(error_of(heavy + "[balls]\nmass = 0.1\nmu_s = 0.8\n"),
+              refused("takes balls.mu_s up to 0.75 with these masses"));
     EXPECT_EQ(error_of(heavy + "[physics]\nball_ball = \"inelastic\"\n"), "");
     EXPECT_EQ(error_of(heavy + "[balls]\nmu_b = 0\n"), "");
     EXPECT_EQ(error_of(big + "[balls]\nmu_b = 0\n"), "");

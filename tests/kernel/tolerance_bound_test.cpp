@@ -80,5 +80,11 @@ TEST(ToleranceBound, ImpactsBuiltToBeHard) {
     expect_bound(impacts, {1e-2, 1e-3, 1e-6, 1e-10});
 }
 
+TEST(ToleranceBound, MassesThatDiffer) {
+    for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
+        expect_bound(impacts_of_masses_that_differ(46, 3000, slip), {1e-2, 1e-3, 1e-6, 1e-10, 1e-12});
+    }
+}
+
 }  // namespace
 }  // namespace carom::test

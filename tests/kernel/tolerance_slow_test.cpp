@@ -32,5 +32,9 @@ TEST(ToleranceSlow, HardConsistent) {
     expect_bound(impacts, {1e-3, 1e-6, 1e-10});
 }
 
+TEST(ToleranceSlow, MassesThatDiffer) {
+    expect_bound(impacts_of_masses_that_differ(2029, 40000, ClothSlip::kConsistent), {1e-3, 1e-6, 1e-10});
+}
+
 }  // namespace
 }  // namespace carom::test

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <initializer_list>
 #include <numbers>
@@ -71,11 +72,13 @@ inline double approach_speed(const Impact& i) {
 
 /// Impacts around everything that is singular: slip that ends, cloth slip that passes or starts next to zero, both,
 /// over many decades; e_b and the frictions up to `mu_b` and `mu_s`, their limits included. Approach speed 1.
-inline Impact hard_random_impact(Generator& rng, double mu_b, double mu_s, kernel::ClothSlip slip) {
+inline Impact hard_random_impact(Generator& rng, double mu_b, double mu_s, kernel::ClothSlip slip,
+                                 double mass_ratio = 1.0) {
     const auto decades = [&rng](double lo, double hi) { return lo * std::pow(hi / lo, rng.uniform()); };
     const auto sign = [&rng] { return rng.next() % 2 == 0 ? 1.0 : -1.0; };
     Impact i{};
     i.params = {0.028575, 0.17, rng.uniform(0.0, mu_s), rng.uniform(0.0, mu_s), 0.0, rng.uniform(), slip};
+    i.params.mass_ratio = mass_ratio;
     i.params.mu_b = rng.next() % 2 == 0 ? decades(0.01 * mu_b, mu_b) : rng.uniform(0.0, mu_b);
     if (rng.next() % 8 == 0) i.params.e_b = rng.next() % 2 == 0 ? 0.0 : 1.0;
     if (rng.next() % 8 == 0) i.params.mu_s1 = i.params.mu_s2 = 0.0;
@@ -88,6 +91,10 @@ inline Impact hard_random_impact(Generator& rng, double mu_b, double mu_s, kerne
     if (rng.next() % 3 == 0) b = sign() * decades(1e-12, 3.0);
     if (rng.next() % 8 == 0) a = 0.0;
     if (rng.next() % 16 == 0) a = b = 0.0;
+    // The forces change the slip of the pressed ball by this factor.
+    const double f = 2.0 / (1.0 + (z < 0.0 ? mass_ratio : 1.0 / mass_ratio));
+    a *= f;
+    b *= f;
     i.ball2.r[1] = 2.0 * R;
     i.ball1.v[1] = 1.0;
     i.ball1.v[0] = x;
@@ -101,6 +108,21 @@ inline Impact hard_random_impact(Generator& rng, double mu_b, double mu_s, kerne
         i.ball2.w[0] = z / R - i.ball1.w[0];
     }
     return i;
+}
+
+/// Random impacts and as many built to be hard, of balls whose masses have a ratio of 1/10 to 10, the ends included.
+inline std::vector<Impact> impacts_of_masses_that_differ(std::uint64_t seed, int count, kernel::ClothSlip slip) {
+    Generator rng(seed);
+    std::vector<Impact> impacts;
+    for (int n = 0; n < count; ++n) {
+        double ratio = std::pow(10.0, rng.uniform(-1.0, 1.0));
+        if (n % 16 == 0) ratio = n % 32 == 0 ? kernel::kLargestMassRatio : 1.0 / kernel::kLargestMassRatio;
+        impacts.push_back(reference::random_impact(rng));
+        impacts.back().params.cloth_slip = slip;
+        impacts.back().params.mass_ratio = ratio;
+        impacts.push_back(hard_random_impact(rng, 0.12, 0.4, slip, ratio));
+    }
+    return impacts;
 }
 
 /// Structure of arrays around impacts (all of one sign of the cloth slip), with room for the results.

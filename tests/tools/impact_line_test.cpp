@@ -50,6 +50,30 @@ Json cushion_line() {
             {"w", {0.0, 2.0, 3.0}}};
 }
 
+TEST(ImpactLine, MassesThatDiffer) {
+    ImpactSettings by_tolerance = settings();
+    by_tolerance.substeps.reset();
+    by_tolerance.tolerance = 1e-9;
+    Json line = ball_ball_line();
+    line["params"]["m2"] = 0.34;
+    const ImpactAnswer answer = answer_impact(line.dump(), by_tolerance);
+    ASSERT_TRUE(answer.ok) << answer.json;
+    const Json out = Json::parse(answer.json);
+    // Along the line of centres the cloth takes little: (m1 - e m2)/(m1 + m2) of the approach speed is left.
+    EXPECT_NEAR(out["v1"][0].get<double>(), (1.0 - 2.0 * 0.95) / 3.0, 5e-3);
+    EXPECT_NEAR(out["v2"][0].get<double>(), 1.95 / 3.0, 5e-3);
+    const auto error_of = [](const Json& wrong, const ImpactSettings& with) {
+        const ImpactAnswer refused = answer_impact(wrong.dump(), with);
+        EXPECT_FALSE(refused.ok);
+        return refused.json;
+    };
+    const std::string only = "\"m2\": masses that differ are solved by tolerance only; leave it out";
+    EXPECT_EQ(error_of(line, settings()), only);
+    EXPECT_EQ(error_of(line, settings(ImpactSettings::Method::kInelastic)), only);
+    line["params"]["m2"] = 1.71;
+    EXPECT_EQ(error_of(line, by_tolerance), "\"m2\": expected m times or over 10 at most");
+}
+
 TEST(ImpactLine, BallBallIsTheKernelsResult) {
     const ImpactAnswer answer = answer_impact(ball_ball_line().dump(), settings());
     ASSERT_TRUE(answer.ok) << answer.json;

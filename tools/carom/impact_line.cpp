@@ -158,10 +158,17 @@ Json ball_ball(const Json& line, const ImpactSettings& settings) {
     if (is_airborne(line)) return free_balls(line);
     refuse_unknown(line, {"kind", "id", "airborne", "params", "r1", "v1", "w1", "r2", "v2", "w2"});
     const Json& params = params_of(line);
-    refuse_unknown(params, {"R", "m", "mu_s1", "mu_s2", "mu_b", "e_b"});
+    refuse_unknown(params, {"R", "m", "m2", "mu_s1", "mu_s2", "mu_b", "e_b"});
     kernel::ImpactParams p{};
     p.R = parameter(params, "R", 0.0, kUnbounded, true);
     p.m = parameter(params, "m", 0.0, kUnbounded, true);
+    if (params.contains("m2")) {
+        p.mass_ratio = parameter(params, "m2", 0.0, kUnbounded, true) / p.m;
+        if (settings.method != ImpactSettings::Method::kMathavan || settings.substeps)
+            throw LineError("\"m2\": masses that differ are solved by tolerance only; leave it out");
+        if (!(p.mass_ratio <= kernel::kLargestMassRatio && p.mass_ratio >= 1.0 / kernel::kLargestMassRatio))
+            throw LineError(fmt::format("\"m2\": expected m times or over {} at most", kernel::kLargestMassRatio));
+    }
     p.mu_s1 = parameter(params, "mu_s1", 0.0, kUnbounded);
     p.mu_s2 = parameter(params, "mu_s2", 0.0, kUnbounded);
     p.mu_b = parameter(params, "mu_b", 0.0, kUnbounded);

@@ -108,7 +108,7 @@ kernel::ImpactResult Resolver::collide(int one, int two, const kernel::Ball& b1,
     const BallSize &size1 = plan_.sizes[one], &size2 = plan_.sizes[two];
     const BallBallModelInfo& model = *plan_.ball_ball;
     const double mu_s = plan_.in_force(Effect::kClothInImpact) ? p.mu_s : 0.0;
-    const kernel::ImpactParams params{
+    kernel::ImpactParams params{
         .R = size1.R,
         .m = size1.m,
         .mu_s1 = mu_s,
@@ -120,15 +120,16 @@ kernel::ImpactResult Resolver::collide(int one, int two, const kernel::Ball& b1,
                           : kernel::ClothSlip::kConsistent};
     kernel::ImpactResult result;
     const bool equal = size1 == size2;
+    const bool integrated = model.reads_tolerance && (equal || params.mu_b != 0.0);
+    if (!equal && integrated) params.mass_ratio = size2.m / size1.m;
     {
         const Stopwatch watch(kernel_ns_);
-        if (equal)
+        if (equal || integrated)
             model.collide(plan_.impact, b1, b2, params, result);
         else
             collide_unequal(size1, size2, b1, b2, params, result);
     }
     if (cost_ != nullptr) {
-        const bool integrated = equal && model.reads_tolerance;
         cost_->steps = result.steps;
         cost_->method = !integrated                     ? model.name
                         : plan_.impact.march != nullptr ? "march"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <unordered_map>
 
@@ -115,6 +116,21 @@ void check_cloth(const Section& top, const Scene& scene) {
              p.mu_r, p.mu_s);
 }
 
+/// Why the impact that is integrated cannot take the masses of the scene; "" where it can.
+std::string masses_refused(const Scene& scene) {
+    if (scene.physics.substeps) return "marched in substeps takes balls of one mass";
+    double light = std::numeric_limits<double>::infinity(), heavy = 0.0;
+    for (const BallStart& ball : scene.ball) {
+        light = std::min(light, scene.size_of(ball).m);
+        heavy = std::max(heavy, scene.size_of(ball).m);
+    }
+    if (heavy / light > kernel::kLargestMassRatio)
+        return fmt::format("takes masses of a ratio up to {}", kernel::kLargestMassRatio);
+    const double mu_s = kernel::kLargestFriction / kernel::impulse_share(light, heavy);
+    if (scene.balls.mu_s > mu_s) return fmt::format("takes balls.mu_s up to {:.3g} with these masses", mu_s);
+    return "";
+}
+
 /// Refuses balls of different size where the models of the scene have no formula for them.
 void check_sizes(const Section& top, const Scene& scene) {
     if (scene.alike()) return;
@@ -137,11 +153,11 @@ void check_sizes(const Section& top, const Scene& scene) {
                 "friction between balls of different radius acts on a tilted line of centres, for which this "
                 "model "
                 "has no formula; use physics.ball_ball = \"two_step\" or set balls.mu_b = 0");
-        if (rough && !model.rough_masses)
-            refuse(
-                fmt::format("the model {} takes balls of one mass; use physics.ball_ball = \"inelastic\" or "
-                            "set balls.mu_b = 0",
-                            model.name));
+        if (rough && model.reads_tolerance) {
+            if (const std::string why = masses_refused(scene); !why.empty())
+                refuse(fmt::format("the model {} {}; use physics.ball_ball = \"inelastic\" or set balls.mu_b = 0",
+                                   model.name, why));
+        }
         if (scene.ball.size() > 2 && scene.physics.clusters != ClusterModel::kSequential && !model.free)
             refuse(
                 fmt::format("clusters = \"{}\" takes balls that are alike; set physics.clusters = "

@@ -18,7 +18,7 @@ struct BallBallSettings {
     double tolerance = 0.0;  ///< relative to the approach speed
 };
 
-/// Velocities after the impact of two balls of one radius and mass; both centres are at one height, and v_z
+/// Velocities after the impact of two balls of one radius, and of one mass but for a model that reads the tolerance; both centres are at one height, and v_z
 /// stays as it is. `result.status` says where nothing was computed (the velocities are then as they came).
 using BallBallFunction = void (*)(const BallBallSettings& settings, const kernel::Ball& ball1,
                                   const kernel::Ball& ball2, const kernel::ImpactParams& params,
@@ -36,7 +36,6 @@ struct BallBallModelInfo {
     bool reads_tolerance = false;    ///< the settings matter: an integration, no closed form
     bool free =
         false;  ///< balls on the cloth meet as free ones, and the cloth answers next: they may leave it
-    bool rough_masses = false;  ///< with friction, takes balls of different mass; without it every model does
 };
 
 /// All models; equations and sources in docs/reference/physics.md, "Ball-ball impact".

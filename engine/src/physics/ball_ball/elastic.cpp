@@ -9,7 +9,6 @@ extern constinit const BallBallModelInfo kElastic = {
     .collide = [](const BallBallSettings&, const kernel::Ball& ball1, const kernel::Ball& ball2,
                   const kernel::ImpactParams& params,
                   kernel::ImpactResult& result) { kernel::collide_elastic(ball1, ball2, params, result); },
-    .rough_masses = true,
 };
 
 }  // namespace carom

@@ -11,7 +11,6 @@ extern constinit const BallBallModelInfo kInelastic = {
                   kernel::ImpactResult& result) { kernel::collide_inelastic(ball1, ball2, params, result); },
     .reads_friction = true,
     .reads_restitution = true,
-    .rough_masses = true,
 };
 
 }  // namespace carom

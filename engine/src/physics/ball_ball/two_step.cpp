@@ -13,7 +13,6 @@ extern constinit const BallBallModelInfo kTwoStep = {
     .reads_friction = true,
     .reads_restitution = true,
     .free = true,
-    .rough_masses = true,
 };
 
 }  // namespace carom

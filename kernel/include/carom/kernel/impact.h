@@ -19,16 +19,19 @@ enum class ClothSlip : unsigned char {
     kAsPublished,  ///< u = (v_x + R w_y, v_y - R w_x): the published code; feeds energy in; for parity only
 };
 
-/// Parameters of one impact between balls of equal radius and mass.
+/// Parameters of one impact between balls of equal radius.
 struct ImpactParams {
     double R;      ///< radius of both balls [m], > 0
-    double m;      ///< mass of both balls [kg], > 0
+    double m;      ///< mass of ball 1 [kg], > 0
     double mu_s1;  ///< sliding friction of ball 1 on the cloth, >= 0
     double mu_s2;  ///< sliding friction of ball 2 on the cloth, >= 0
     double mu_b;   ///< friction between the balls, >= 0
     /// Coefficient of restitution, 0..1 (mathavan: energetic, W_restitution = e_b^2 W_compression)
     double e_b;
     ClothSlip cloth_slip = ClothSlip::kConsistent;
+    /// Mass of ball 2 over that of ball 1. ToleranceFunction takes 1/kLargestMassRatio to kLargestMassRatio
+    /// (tolerance.h); to every other kernel one that is not 1 is kBadParameter.
+    double mass_ratio = 1.0;
 };
 
 enum class ImpactStatus : unsigned char {

@@ -18,7 +18,17 @@ inline constexpr double kLoosestTolerance = 1e-1;
 /// impact, as the equations that are solved assume.
 inline constexpr double kLargestFriction = 1.0;
 
-/// Solves one impact between equal balls.
+/// The mass of one ball may be this multiple of the other's: so far the bound on the error is tested.
+inline constexpr double kLargestMassRatio = 10.0;
+
+/// [-] What an impulse does to a ball of mass m, as a share of what it does to one of two equal balls with the reduced
+/// mass that m and `other` have: 2 other/(m + other), from 0 to 2. The friction of the pressed ball on the cloth acts
+/// with it: its product with mu_s may be kLargestFriction at most.
+constexpr double impulse_share(double m, double other) {
+    return 2.0 / (1.0 + m / other);
+}
+
+/// Solves one impact between balls of one radius; the masses may differ (docs/reference/physics.md, equation 12).
 ///
 /// @param tolerance  largest error of any component of v and of R w after the impact, as a share of the approach speed;
 /// a tolerance looser than 1e-3 is solved as 1e-3. Rounding adds a few units in the last place of the largest speed
