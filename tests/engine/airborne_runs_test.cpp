@@ -32,6 +32,35 @@ void add_high_ball(Scene& scene, const std::string& id, double x, double y, doub
     scene.ball.back().height = height;
 }
 
+/// Three to six balls that touch or nearly do, and one or two that come down on them; those that have no room are left out.
+void add_pile(Scene& scene, Generator& random) {
+    const double R = scene.balls.R, apart = 2.0 * R + (random.next() % 3) * random.uniform(0.0, 2e-4);
+    const double x = random.uniform(0.2, scene.table.width - 0.2), y = random.uniform(0.2, scene.table.length - 0.2);
+    const auto add = [&](const std::string& id, double right, double up, double height, const Vec3& v) {
+        BallStart ball;
+        ball.id = id;
+        ball.height = height;
+        ball.position = {x + right, y + up, R + height};
+        ball.velocity = v;
+        scene.ball.push_back(ball);
+        try {
+            validate(scene);
+        } catch (const SceneError&) {
+            scene.ball.pop_back();
+        }
+    };
+    const int rows = 2 + static_cast<int>(random.next() % 2);
+    for (int row = 0; row < rows; ++row)
+        for (int k = 0; k <= row; ++k)
+            add("pile" + std::to_string(10 * row + k), (k - 0.5 * row) * apart, 0.5 * std::sqrt(3.0) * row * apart,
+                0.0, Vec3::Zero());
+    const int falling = 1 + static_cast<int>(random.next() % 2);
+    for (int n = 0; n < falling; ++n)
+        add("onto" + std::to_string(n), random.uniform(-R, R), random.uniform(0.0, 2.0 * R),
+            random.uniform(1.5 * R, 0.2) + 2.2 * R * n,
+            {random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-2.0, 1.0)});
+}
+
 /// A random scene with balls in the air: thrown, dropped, struck by a raised cue, unlike, between jaws.
 Scene flying_scene(std::uint64_t seed) {
     Generator random(seed);
@@ -49,7 +78,6 @@ Scene flying_scene(std::uint64_t seed) {
     const bool two_step = chance(0.4), unlike = two_step && chance(0.5);
     if (two_step) scene.physics.ball_ball = ball_ball_model("two_step");
     scene.physics.clusters = chance(0.5) ? ClusterModel::kCompliant : ClusterModel::kSequential;
-    if (unlike) scene.physics.clusters = ClusterModel::kSequential;
     const int balls = 1 + static_cast<int>(random.uniform(0.0, 8.0));
     const double width = scene.table.width, length_of_table = scene.table.length;
     for (int tries = 0; static_cast<int>(scene.ball.size()) < balls && tries < 200; ++tries) {
@@ -85,6 +113,7 @@ Scene flying_scene(std::uint64_t seed) {
         top.position.x() += random.uniform(-0.01, 0.01);
         scene.ball.push_back(top);
     }
+    if (chance(0.3)) add_pile(scene, random);
     return scene;
 }
 

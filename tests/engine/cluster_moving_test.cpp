@@ -29,7 +29,7 @@ MovingBall state(const Record& record, int ball, double time, bool after) {
     while (k + 1 < list.size() && (after ? list[k + 1].start <= time : list[k + 1].start < time)) ++k;
     const double t = time - list[k].start;
     const Vec3 r = position_at(list[k], t), v = velocity_at(list[k], t), w = spin_at(list[k], t, kR);
-    return {{r.x(), r.y()}, {v.x(), v.y()}, {w.x(), w.y(), w.z()}};
+    return {{r.x(), r.y(), r.z()}, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()}};
 }
 
 MovingLaw law_of(const BallParams& p) {

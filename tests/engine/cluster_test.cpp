@@ -54,7 +54,7 @@ std::vector<ClusterContact> contacts_of(const std::vector<ClusterBall>& balls) {
             const double distance = apart.norm(), gap = distance - 2.0 * kR;
             if (gap < 1e-3)
                 contacts.push_back({static_cast<int>(i), static_cast<int>(j),
-                                    Vec2(apart.x(), apart.y()) / distance, gap < 1e-14 ? 0.0 : gap});
+                                    apart / distance, gap < 1e-14 ? 0.0 : gap});
         }
     }
     return contacts;
@@ -178,7 +178,7 @@ TEST(Cluster, ThreeBalls) {  // H2
         // Rigid: the same by symmetry, momentum and restitution, to rounding.
         ClusterMap map;
         std::vector<ClusterBall> rigid = balls;
-        map.rigid(rigid, contacts_of(rigid), e[k]);
+        map.rigid(rigid, contacts_of(rigid), e[k], kR);
         EXPECT_NEAR(rigid[0].v.y(), 1.0 - 0.6 * (1.0 + e[k]), 1e-12) << e[k];
         EXPECT_NEAR(rigid[2].v.norm(), 0.2 * std::sqrt(3.0) * (1.0 + e[k]), 1e-12) << e[k];
         EXPECT_NEAR(rigid[1].v.x(), -rigid[2].v.x(), 1e-12) << e[k];

@@ -12,7 +12,7 @@
 namespace carom::test {
 
 struct MovingBall {
-    std::array<double, 2> x, v;  ///< [m], [m/s]
+    std::array<double, 3> x, v;  ///< [m], [m/s]
     std::array<double, 3> w;     ///< [rad/s]
 };
 
@@ -23,6 +23,7 @@ struct MovingLaw {
     double slip = 1e-4;                       ///< [V] regularisation of the friction
     double step = 5e-4;                       ///< [L/V]
     double look_ahead = 2.0;  ///< [L/V] it ends when all are open and none touches within this time
+    bool cloth = true;        ///< holds every ball, with friction under those pressed down; else they move in space
 };
 
 class MovingContacts {
@@ -71,7 +72,7 @@ class MovingContacts {
     };
 
     static double distance(const MovingBall& a, const MovingBall& b) {
-        return std::hypot(b.x[0] - a.x[0], b.x[1] - a.x[1]);
+        return std::hypot(b.x[0] - a.x[0], b.x[1] - a.x[1], b.x[2] - a.x[2]);
     }
 
     double overlap(const std::vector<MovingBall>& at, const Pair& p) const {
@@ -87,30 +88,44 @@ class MovingContacts {
     std::vector<MovingBall> slope(const std::vector<MovingBall>& at) const {
         std::vector<MovingBall> s(at.size());
         std::vector<double> up(at.size(), 0.0);
-        for (std::size_t b = 0; b < at.size(); ++b) s[b] = {at[b].v, {0.0, 0.0}, {0.0, 0.0, 0.0}};
+        for (std::size_t b = 0; b < at.size(); ++b) s[b] = {at[b].v, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
         const double R = law_.R;
         for (const Pair& p : pairs_) {
             const double d = overlap(at, p);
             if (d <= 0.0) continue;
             const MovingBall &a = at[p.i], &b = at[p.j];
             const double length = distance(a, b);
-            const double n[2] = {(b.x[0] - a.x[0]) / length, (b.x[1] - a.x[1]) / length};
-            const double t[2] = {n[1], -n[0]};
+            std::array<double, 3> n{}, slip{}, spins{};
+            double closing = 0.0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                n[k] = (b.x[k] - a.x[k]) / length;
+                closing += (a.v[k] - b.v[k]) * n[k];
+                spins[k] = R * (a.w[k] + b.w[k]);
+            }
             const double F = force(d, p.most);
-            const double along = (a.v[0] - b.v[0]) * t[0] + (a.v[1] - b.v[1]) * t[1] - R * (a.w[2] + b.w[2]);
-            const double upward = R * ((a.w[0] + b.w[0]) * t[0] + (a.w[1] + b.w[1]) * t[1]);
-            const double size = std::sqrt(along * along + upward * upward + slip_ * slip_);
+            double size = slip_ * slip_;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+                slip[k] = a.v[k] - b.v[k] - closing * n[k] + spins[l] * n[m] - spins[m] * n[l];
+                size += slip[k] * slip[k];
+            }
+            size = std::sqrt(size);
             const double mu = law_.mu_b + law_.mu_b_more * std::exp(-law_.mu_b_fall * size);
-            const double f_t = -mu * F * along / size, f_z = -mu * F * upward / size;
-            for (std::size_t k = 0; k < 2; ++k) {
-                const double push = -F * n[k] + f_t * t[k];
+            std::array<double, 3> f{};
+            for (std::size_t k = 0; k < 3; ++k) f[k] = -mu * F * slip[k] / size;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+                const double push = f[k] - F * n[k], twist = 2.5 / R * (n[l] * f[m] - n[m] * f[l]);
                 s[p.i].v[k] += push;
                 s[p.j].v[k] -= push;
-                for (const std::size_t ball : {p.i, p.j}) s[ball].w[k] += 2.5 / R * f_z * t[k];
+                s[p.i].w[k] += twist;
+                s[p.j].w[k] += twist;
             }
-            for (const std::size_t ball : {p.i, p.j}) s[ball].w[2] -= 2.5 / R * f_t;
-            up[p.i] += f_z;
-            up[p.j] -= f_z;
+        }
+        if (!law_.cloth) return s;
+        for (std::size_t b = 0; b < at.size(); ++b) {
+            up[b] = s[b].v[2];
+            s[b].v[2] = 0.0;
         }
         for (std::size_t b = 0; b < at.size(); ++b) {
             if (up[b] >= 0.0) continue;
@@ -127,11 +142,11 @@ class MovingContacts {
 
     static void add(std::vector<MovingBall>& to, const std::vector<MovingBall>& slope, double h) {
         for (std::size_t b = 0; b < to.size(); ++b) {
-            for (std::size_t k = 0; k < 2; ++k) {
+            for (std::size_t k = 0; k < 3; ++k) {
                 to[b].x[k] += h * slope[b].x[k];
                 to[b].v[k] += h * slope[b].v[k];
+                to[b].w[k] += h * slope[b].w[k];
             }
-            for (std::size_t k = 0; k < 3; ++k) to[b].w[k] += h * slope[b].w[k];
         }
     }
 
@@ -164,9 +179,13 @@ class MovingContacts {
     bool finished() const {
         for (const Pair& p : pairs_) {
             const MovingBall &a = balls_[p.i], &b = balls_[p.j];
-            const double x[2] = {b.x[0] - a.x[0], b.x[1] - a.x[1]}, v[2] = {b.v[0] - a.v[0], b.v[1] - a.v[1]};
-            const double speed2 = v[0] * v[0] + v[1] * v[1], approach = -(x[0] * v[0] + x[1] * v[1]);
-            const double apart2 = x[0] * x[0] + x[1] * x[1] - 4.0 * law_.R * law_.R;
+            double speed2 = 0.0, approach = 0.0, apart2 = -4.0 * law_.R * law_.R;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double x = b.x[k] - a.x[k], v = b.v[k] - a.v[k];
+                speed2 += v * v;
+                approach -= x * v;
+                apart2 += x * x;
+            }
             const double root2 = approach * approach - speed2 * apart2;
             if (approach > 0.0 && root2 > 0.0 &&
                 apart2 < law_.look_ahead * unit_ * (approach + std::sqrt(root2)))

@@ -16,16 +16,16 @@ constexpr double kNearShare = 0.5;
 /// Gap [m] of two balls, the speed [m/s] at which it closes, and the unit vector from the first to the second.
 struct Gap {
     double gap, closing;
-    Vec2 n;
+    Vec3 n;
 };
 
 Gap gap_of(const ClusterBall& p, const ClusterBall& q, double R) {
-    const Vec2 apart = planar(q.r) - planar(p.r);
-    const double distance = length(apart);
+    const Vec3 apart = q.r - p.r;
+    const double distance = apart.z() == 0.0 ? length(planar(apart)) : length3(apart);
     Gap near{distance - 2.0 * R, 0.0, apart / distance};
     // Whether balls touch is decided only here: a gap within the rounding of the positions counts as touching.
     if (near.gap <= kTouchUlp * R) near.gap = 0.0;
-    near.closing = dot(near.n, planar(p.v) - planar(q.v));
+    near.closing = dot3(near.n, p.v - q.v);
     return near;
 }
 
@@ -44,6 +44,10 @@ Clusters::Clusters(const Plan& plan, const Balls& balls, const Detector& detecto
     : Borrowed(memory), plan_(plan), balls_(balls), detector_(detector) {}
 
 ClusterBall Clusters::member(int ball) const {
+    if (flies(balls_.segment(ball).state)) {
+        const Placed at = balls_.placed(ball);
+        return {ball, at.position, at.velocity, balls_.spin(ball)};
+    }
     return {ball, balls_.position(ball), balls_.velocity(ball), balls_.spin(ball)};
 }
 
@@ -57,7 +61,7 @@ double Clusters::collect(int a, int b, double v_n) {
         double fastest = v_n;
         for (const ClusterContact& c : contacts_) {
             const ClusterBall &p = members_[c.i], &q = members_[c.j];
-            fastest = std::max(fastest, c.turn * dot(c.n, planar(p.v) - planar(q.v)));
+            fastest = std::max(fastest, c.turn * dot3(c.n, p.v - q.v));
         }
         if (members_.size() < 3 || !(fastest > kClusterFaster * v_n)) break;
         v_n = fastest;
@@ -85,21 +89,27 @@ void Clusters::collect_at(int a, int b, double v_n) {
     members_.push_back(member(b));
     for (std::size_t k = 0; k < members_.size(); ++k) {
         const ClusterBall here = members_[k];
-        const double most = time * (length(planar(here.v)) + detector_.fastest() + v_n);
+        const double speed = here.v.z() == 0.0 ? length(planar(here.v)) : length3(here.v);
+        const double most = time * (speed + detector_.fastest() + v_n);
         // The order is arbitrary: the members of the cluster do not depend on it, and they are sorted below.
         detector_.balls_near(near_box(here, most), [&](int q) {
             const bool known = std::any_of(members_.begin(), members_.end(),
                                            [q](const ClusterBall& m) { return m.ball == q; });
-            if (known || flies(balls_.segment(q).state)) return;
+            if (known || !(plan_.sizes[q] == plan_.sizes[a])) return;
             ++looks_;
             const ClusterBall candidate = member(q);
             const Gap near = gap_of(here, candidate, R);
             if (near.gap <= reach(near)) members_.push_back(candidate);
         });
     }
+    in_space_ = plan_.in_force(Effect::kAirborne) &&
+                (plan_.ball_ball->free ||
+                 std::any_of(members_.begin(), members_.end(),
+                             [this](const ClusterBall& m) { return flies(balls_.segment(m.ball).state); }));
     if (members_.size() < 3) return;
     std::sort(members_.begin(), members_.end(), [](const ClusterBall& p, const ClusterBall& q) {
-        return before_place(planar(p.r), planar(q.r));
+        const Vec2 here = planar(p.r), there = planar(q.r);
+        return here == there ? p.r.z() < q.r.z() : before_place(here, there);
     });
     for (std::size_t i = 0; i < members_.size(); ++i) {
         for (std::size_t j = i + 1; j < members_.size(); ++j) {
@@ -145,9 +155,10 @@ void Clusters::share_turning() {
 long Clusters::resolve(double v_n, bool friction) {
     const BallParams& p = plan_.balls;
     const double e_b = plan_.ball_ball->reads_friction ? p.e_b : 1.0;
-    if (plan_.clusters == ClusterModel::kRigid) return map_.rigid(members_, contacts_, p.e_b);
+    const double R = balls_.radius(members_.front().ball);  // equal for all members
+    if (plan_.clusters == ClusterModel::kRigid) return map_.rigid(members_, contacts_, p.e_b, R);
     const ClusterSettings settings{
-        .R = balls_.radius(members_.front().ball),  // equal for all members
+        .R = R,
         .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
         .mu_b = friction ? p.mu_b : 0.0,
         .e_b = e_b,
@@ -157,9 +168,10 @@ long Clusters::resolve(double v_n, bool friction) {
         .integrate = plan_.contact_phase,
         .mu_b_more = friction ? p.mu_b_more : 0.0,
         .mu_b_fall = p.mu_b_fall};
-    const long steps = map_.compliant(members_, contacts_, settings, v_n);
+    const long steps = in_space_ ? map_.compliant_in_space(members_, contacts_, settings, v_n)
+                                 : map_.compliant(members_, contacts_, settings, v_n);
     // Friction and a wedge can press balls together without end: the cluster is then resolved as rigid.
-    return steps < 0 ? map_.rigid(members_, contacts_, p.e_b) : steps;
+    return steps < 0 ? map_.rigid(members_, contacts_, p.e_b, R) : steps;
 }
 
 }  // namespace carom

@@ -29,6 +29,9 @@ class Clusters : private Borrowed<ClustersMemory> {
     const std::vector<ClusterBall>& balls() const { return members_; }
     const std::vector<ClusterContact>& contacts() const { return contacts_; }
 
+    /// Whether the last collect() found a ball that flies, or one that may leave the cloth by the model of the impact.
+    bool in_space() const { return in_space_; }
+
     /// Replaces the velocities and spins of balls() by those after the impact.
     /// @param v_n   [m/s] the fastest approach
     /// @param friction  whether there is friction between the balls
@@ -48,6 +51,7 @@ class Clusters : private Borrowed<ClustersMemory> {
     const Balls& balls_;
     const Detector& detector_;
     std::int64_t looks_ = 0;
+    bool in_space_ = false;
 };
 
 }  // namespace carom

@@ -160,10 +160,15 @@ bool Resolver::hold_in_cluster(Pressed when) {
 
 // @return true if a cluster was resolved, or one of its contacts became a resting contact; false: use the pair kernel
 bool Resolver::cluster(int a, int b, double v_n) {
+    const double e_b = plan_.ball_ball->reads_restitution ? plan_.balls.e_b : 1.0;
+    const bool parts_slowly = e_b * v_n < parting_speed(balls_.radius(a), plan_.gravity);
     v_n = clusters_.collect(a, b, v_n);
     if (clusters_.balls().size() < 3) return false;
+    const bool in_space = clusters_.in_space();
+    // Slow contacts of balls in the air part pair by pair, however fast others are: the cloth would press them together again and again.
+    if (in_space && parts_slowly) return false;
     // Whether the balls close so slowly that friction alone could end the rebound within the Hertz contact time.
-    const bool slow = holds(v_n, 2.0 * plan_.motion.front().slide, plan_.balls.e_b);
+    const bool slow = !in_space && holds(v_n, 2.0 * plan_.motion.front().slide, plan_.balls.e_b);
     if (slow && hold_in_cluster(Pressed::kBefore)) return true;
     log_.note_long_round();
     const bool compliant = plan_.clusters == ClusterModel::kCompliant;
@@ -180,8 +185,13 @@ bool Resolver::cluster(int a, int b, double v_n) {
     if (slow && hold_in_cluster(Pressed::kAfter)) return true;
     const std::vector<ClusterBall>& members = clusters_.balls();
     for (const ClusterBall& ball : members) resting_.release(ball.ball);
-    for (const ClusterBall& ball : members) begin(ball.ball, ball.r, ball.v, ball.w);
     log_.cluster(a, b, members);
+    for (const ClusterBall& ball : members) {
+        if (in_space)
+            go_on(ball.ball, ball.r, {ball.v, ball.w});
+        else
+            begin(ball.ball, ball.r, ball.v, ball.w);
+    }
     return true;
 }
 

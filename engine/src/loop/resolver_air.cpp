@@ -77,6 +77,9 @@ void Resolver::free_balls(int a, int b) {
     const Vec3 apart = p2.position - p1.position, n = apart / length3(apart);
     Velocities ball1{p1.velocity, balls_.spin(one)}, ball2{p2.velocity, balls_.spin(two)};
     const double v_n = dot3(ball1.v - ball2.v, n);
+    if (plan_.clusters != ClusterModel::kSequential && !sinks(one) && !sinks(two) &&
+        plan_.sizes[one] == plan_.sizes[two] && cluster(a, b, v_n))
+        return;
     const double parting = parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity);
     if (pair.balls.e_b * v_n < parting && balances(a, b))
         log_.fail(fmt::format(

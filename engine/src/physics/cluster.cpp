@@ -58,8 +58,6 @@ double contact_time(double V) {
 
 namespace {
 
-constexpr std::size_t kPerBall = 5;
-
 // The exponent p of the unloading law: the smallest power of 2 with e^2 >= 2.5 / (2.5 + p), so that the force
 // stays a push.
 int law_exponent(double e_b) {
@@ -84,106 +82,134 @@ double* on_cache_line(std::vector<double>& numbers) {
 
 }  // namespace
 
-void ClusterMap::load(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                      double R, double V) {
+void ClusterMap::load(const std::vector<ClusterBall>& balls, double R, double V, int axes) {
     motion_.clear();
-    contacts_.clear();
     for (const ClusterBall& ball : balls) {
-        motion_.push_back(ball.v.x() / V);
-        motion_.push_back(ball.v.y() / V);
+        for (int k = 0; k < axes; ++k) motion_.push_back(ball.v[k] / V);
         for (int k = 0; k < 3; ++k) motion_.push_back(R * ball.w[k] / V);
     }
-    const double L = contact_length(V);
-    for (const ClusterContact& c : contacts)
-        contacts_.push_back({c.i, c.j, c.n.x(), c.n.y(), -c.gap / L, c.turn});
-    const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
-    numbers_.resize(
-        std::max(numbers_.size(), kernel::contact_phase_numbers(m, n) + kCacheLine / sizeof(double)));
-    places_.resize(std::max(places_.size(), kernel::contact_phase_places(n)));
 }
 
-double ClusterMap::energy() const {
+void ClusterMap::unload(double R, double V, int axes, std::vector<ClusterBall>& balls) const {
+    const double* y = motion_.data();
+    for (ClusterBall& ball : balls) {
+        for (int k = 0; k < 3; ++k) ball.v[k] = k < axes ? *y++ * V : 0.0;
+        for (int k = 0; k < 3; ++k) ball.w[k] = *y++ * V / R;
+    }
+}
+
+double ClusterMap::energy(int axes) const {
     double e = 0.0;
-    for (std::size_t n = 0; n < motion_.size(); n += kPerBall) {
-        const double* y = &motion_[n];
-        e += 0.5 * (y[0] * y[0] + y[1] * y[1]) + 0.2 * (y[2] * y[2] + y[3] * y[3] + y[4] * y[4]);
+    for (const double* y = motion_.data(); y != motion_.data() + motion_.size(); y += axes + 3) {
+        double v2 = y[0] * y[0] + y[1] * y[1];
+        if (axes == 3) v2 += y[2] * y[2];
+        const double* w = y + axes;
+        e += 0.5 * v2 + 0.2 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
     }
     return e;
 }
 
 // Step error can raise the energy where e = 1 and mu = 0: scale the velocities about their mean so that it
 // does not. Momentum and the signs of relative velocities are kept.
-void ClusterMap::keep_energy(double before) {
-    const double after = energy();
+void ClusterMap::keep_energy(double before, int axes) {
+    const double after = energy(axes);
     if (!(after > before)) return;
-    double mx = 0.0, my = 0.0, relative = 0.0;
-    for (std::size_t n = 0; n < motion_.size(); n += kPerBall) {
-        mx += motion_[n];
-        my += motion_[n + 1];
-    }
-    const std::size_t count = motion_.size() / kPerBall;
-    const auto balls = static_cast<double>(count);
-    mx /= balls;
-    my /= balls;
-    for (std::size_t n = 0; n < motion_.size(); n += kPerBall) {
-        const double x = motion_[n] - mx, y = motion_[n + 1] - my;
-        relative += 0.5 * (x * x + y * y);
+    const std::size_t stride = static_cast<std::size_t>(axes) + 3, count = motion_.size() / stride;
+    double mean[3] = {}, relative = 0.0;
+    for (std::size_t n = 0; n < motion_.size(); n += stride)
+        for (int k = 0; k < axes; ++k) mean[k] += motion_[n + k];
+    for (double& m : mean) m /= static_cast<double>(count);
+    for (std::size_t n = 0; n < motion_.size(); n += stride) {
+        const double x = motion_[n] - mean[0], y = motion_[n + 1] - mean[1];
+        double square = x * x + y * y;
+        if (axes == 3) square += (motion_[n + 2] - mean[2]) * (motion_[n + 2] - mean[2]);
+        relative += 0.5 * square;
     }
     const double wanted = relative - (after - before);
     if (!(relative > 0.0) || !(wanted > 0.0)) return;
     const double factor = std::sqrt(wanted / relative);
-    for (std::size_t n = 0; n < motion_.size(); n += kPerBall) {
-        motion_[n] = mx + factor * (motion_[n] - mx);
-        motion_[n + 1] = my + factor * (motion_[n + 1] - my);
-    }
+    for (std::size_t n = 0; n < motion_.size(); n += stride)
+        for (int k = 0; k < axes; ++k) motion_[n + k] = mean[k] + factor * (motion_[n + k] - mean[k]);
 }
+
+namespace {
+
+// A slow pair can be the first to touch where faster ones are about to: these set the scale, or their
+// forces would need a million steps.
+double fastest(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double V) {
+    for (const ClusterContact& c : contacts) V = std::max(V, dot3(balls[c.i].v - balls[c.j].v, c.n));
+    return V;
+}
+
+}  // namespace
 
 long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                            const ClusterSettings& settings, double V) {
-    // A slow pair can be the first to touch where faster ones are about to: these set the scale, or their
-    // forces would need a million steps.
-    for (const ClusterContact& c : contacts) {
-        const Vec3 closing = balls[c.i].v - balls[c.j].v;
-        V = std::max(V, closing.x() * c.n.x() + closing.y() * c.n.y());
-    }
-    load(balls, contacts, settings.R, V);
-    const double before = energy();
-    const kernel::ContactPhase phase{static_cast<int>(balls.size()),
-                                     static_cast<int>(contacts.size()),
+    V = fastest(balls, contacts, V);
+    const double L = contact_length(V);
+    load(balls, settings.R, V, 2);
+    contacts_.clear();
+    for (const ClusterContact& c : contacts)
+        contacts_.push_back({c.i, c.j, c.n.x(), c.n.y(), -c.gap / L, c.turn});
+    const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
+    numbers_.resize(
+        std::max(numbers_.size(), kernel::contact_phase_numbers(m, n) + kCacheLine / sizeof(double)));
+    places_.resize(std::max(places_.size(), kernel::contact_phase_places(n)));
+    const double before = energy(2);
+    const kernel::ContactPhase phase{m,
+                                     n,
                                      motion_.data(),
                                      contacts_.data(),
                                      on_cache_line(numbers_),
                                      places_.data(),
-                                     contact_length(V) / (2.0 * settings.R)};
+                                     L / (2.0 * settings.R)};
     const long steps = settings.integrate(phase, law_of(settings, V), settings.longest_step,
                                           kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
-    keep_energy(before);
-    const double* y = motion_.data();
-    for (ClusterBall& ball : balls) {
-        ball.v = Vec3(y[0] * V, y[1] * V, 0.0);
-        for (int k = 0; k < 3; ++k) ball.w[k] = y[2 + k] * V / settings.R;
-        y += kPerBall;
-    }
+    keep_energy(before, 2);
+    unload(settings.R, V, 2, balls);
+    return steps;
+}
+
+long ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
+                                    const std::vector<ClusterContact>& contacts,
+                                    const ClusterSettings& settings, double V) {
+    V = fastest(balls, contacts, V);
+    const double L = contact_length(V);
+    load(balls, settings.R, V, 3);
+    contacts_in_space_.clear();
+    for (const ClusterContact& c : contacts)
+        contacts_in_space_.push_back({c.i, c.j, {c.n.x(), c.n.y(), c.n.z()}, -c.gap / L});
+    const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
+    numbers_.resize(std::max(numbers_.size(), kernel::contact_phase_in_space_numbers(m, n)));
+    const double before = energy(3);
+    const long steps =
+        kernel::contact_phase_in_space({m, n, motion_.data(), contacts_in_space_.data(), numbers_.data(),
+                                        L / (2.0 * settings.R)},
+                                       law_of(settings, V), settings.longest_step, kClusterLookAhead,
+                                       kClusterTimeLimit);
+    if (steps < 0) return steps;
+    keep_energy(before, 3);
+    unload(settings.R, V, 3, balls);
     return steps;
 }
 
 long ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                       double e_b) {
-    std::vector<Vec2>& v = velocity_;
+                       double e_b, double R) {
+    std::vector<Vec3>& v = velocity_;
     v.clear();
-    for (const ClusterBall& b : balls) v.push_back(planar(b.v));
-    std::vector<double>& impulse = impulse_;
-    impulse.assign(contacts.size(), 0.0);
+    for (const ClusterBall& b : balls) v.push_back(b.v);
+    std::vector<double>& impulse = impulse_;  // of the contacts, then of the cloth under every ball
+    impulse.assign(contacts.size() + balls.size(), 0.0);
     double scale = 0.0;
-    for (const Vec2& x : v) scale = std::max(scale, x.norm());
+    for (const Vec3& x : v) scale = std::max(scale, length3(x));
     long sweeps = 0;
     for (; sweeps < kRigidSweeps; ++sweeps) {
         double change = 0.0;
         for (std::size_t c = 0; c < contacts.size(); ++c) {
             const int i = contacts[c].i, j = contacts[c].j;
-            const Vec2& n = contacts[c].n;
-            const double closing = dot(v[i] - v[j], n);
+            const Vec3& n = contacts[c].n;
+            const double closing = dot3(v[i] - v[j], n);
             const double next = std::max(0.0, impulse[c] + 0.5 * closing);
             const double J = next - impulse[c];
             impulse[c] = next;
@@ -191,12 +217,17 @@ long ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<Cluste
             v[j] += J * n;
             change = std::max(change, std::abs(J));
         }
+        for (std::size_t b = 0; b < balls.size(); ++b) {
+            if (balls[b].r.z() > R) continue;
+            double& up = impulse[contacts.size() + b];
+            const double next = std::max(0.0, up - v[b].z()), J = next - up;
+            up = next;
+            v[b].z() += J;
+            change = std::max(change, std::abs(J));
+        }
         if (change <= 1e-16 * scale) break;
     }
-    for (std::size_t b = 0; b < balls.size(); ++b) {
-        balls[b].v.x() = (1.0 + e_b) * v[b].x() - e_b * balls[b].v.x();
-        balls[b].v.y() = (1.0 + e_b) * v[b].y() - e_b * balls[b].v.y();
-    }
+    for (std::size_t b = 0; b < balls.size(); ++b) balls[b].v = (1.0 + e_b) * v[b] - e_b * balls[b].v;
     return sweeps;
 }
 

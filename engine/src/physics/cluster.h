@@ -32,7 +32,7 @@ struct ClusterBall {
 
 struct ClusterContact {
     int i, j;    ///< into the list of balls
-    Vec2 n;      ///< unit, from i to j
+    Vec3 n;      ///< unit, from i to j; level where both lie on the cloth
     double gap;  ///< [m], >= 0; 0 where the balls touch
     /// Share of the turning of the balls that the normal follows: kernel::HertzContact.
     double turn = 1.0;
@@ -67,23 +67,29 @@ class ClusterMap {
     long compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                    const ClusterSettings& settings, double V);
 
-    /// Rigid: v := (1 + e) P(v) - e v with P the nearest velocities that close no contact (equations 7, 8);
-    /// frictionless. Returns the number of sweeps.
-    long rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double e_b);
+    /// The same in space, where a ball flies or may leave the cloth: without the cloth, which answers next. `turn` and the friction of
+    /// the cloth are not read.
+    long compliant_in_space(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                            const ClusterSettings& settings, double V);
+
+    /// Rigid: v := (1 + e) P(v) - e v with P the nearest velocities that close no contact (equations 7, 8), nor press a ball that
+    /// lies (r_z not above R) into the cloth; frictionless. Returns the number of sweeps.
+    long rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double e_b, double R);
 
   private:
-    void load(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double R,
-              double V);
-    void keep_energy(double before);
-    double energy() const;
+    void load(const std::vector<ClusterBall>& balls, double R, double V, int axes);
+    void unload(double R, double V, int axes, std::vector<ClusterBall>& balls) const;
+    void keep_energy(double before, int axes);
+    double energy(int axes) const;
 
-    // Per ball five numbers: v_x, v_y, R w_x, R w_y, R w_z in units of V.
+    // Per ball v along two axes or three, and R w along three, in units of V.
     std::vector<double> motion_;
     std::vector<kernel::HertzContact> contacts_;
+    std::vector<kernel::HertzContactInSpace> contacts_in_space_;
     std::vector<double> numbers_;
     std::vector<int> places_;
     // Of rigid(): per ball [m/s], per contact.
-    std::vector<Vec2> velocity_;
+    std::vector<Vec3> velocity_;
     std::vector<double> impulse_;
 };
 

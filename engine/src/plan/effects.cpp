@@ -131,12 +131,10 @@ Need clusters(const Facts& f) {
     const ClusterModel model = f.scene.physics.clusters;
     if (f.scene.ball.size() < 3) return {false, f.say("fewer than three balls")};
     if (model == ClusterModel::kSequential) return {false, f.say("clusters = \"sequential\": pair by pair")};
-    if (f.scene.physics.ball_ball->free)
-        return {false, f.say("model {} goes pair by pair", f.scene.physics.ball_ball->name)};
     if (!f.plan.pairs) return no_two_balls_meet(f);
-    return {true, f.say("clusters = \"{}\"; decided per impact: no third ball within reach means the "
-                        "pair alone{}",
-                        name(model), f.scene.lifts() ? ", and so does a ball in the air" : "")};
+    return {true, f.say("clusters = \"{}\"; decided per impact: no third ball{} within reach means the "
+                        "pair alone",
+                        name(model), f.scene.alike() ? "" : " of the same size")};
 }
 
 Need airborne(const Facts& f) {

@@ -52,6 +52,7 @@ class Checker {
         check_finite();
         double last_time = 0.0, last_energy = energy_at(record_, 0.0);
         const double first_energy = std::max(last_energy, first_energy_after_cue());
+        const double rounding = height_rounding(record_);
         for (event_ = 0; event_ < record_.events.size() && !found_; ++event_) {
             const Event& e = record_.events[event_];
             if (!(e.time >= last_time))
@@ -67,7 +68,8 @@ class Checker {
             check_rolling(e.time);
             const double energy = energy_of(record_, now);
             if (e.type == EventType::kCueStrike) last_energy = energy;
-            if (keeps_energy(plan_) && energy > last_energy + 1e-12 * first_energy + slow_contacts(e.time))
+            const double allowed = 1e-12 * first_energy + rounding + slow_contacts(e.time);
+            if (keeps_energy(plan_) && energy > last_energy + allowed)
                 report("U4", "energy rises from {:.17g} to {:.17g} J/kg", last_energy, energy);
             last_energy = energy;
         }

@@ -35,7 +35,11 @@ struct Piece {
 class Between {
   public:
     Between(const Record& record, const Plan& plan, bool energy)
-        : record_(record), plan_(plan), keeps_energy_(energy), pieces_(record.tracks.size()) {}
+        : record_(record),
+          plan_(plan),
+          keeps_energy_(energy),
+          rounding_(height_rounding(record)),
+          pieces_(record.tracks.size()) {}
 
     std::optional<Violation> run() {
         for (const BallTrack& track : record_.tracks)
@@ -134,7 +138,7 @@ class Between {
         double added =
             plan_.in_force(Effect::kAirborne) ? static_cast<double>(pieces_.size()) * parting * parting : 0.0;
         for (const auto& [t, now] : {std::pair{from, start}, std::pair{half, middle}}) {
-            if (now > last_energy_ + 1e-12 * first_energy_ + std::exchange(added, 0.0))
+            if (now > last_energy_ + 1e-12 * first_energy_ + rounding_ + std::exchange(added, 0.0))
                 report("U4", t, "energy rises from {:.17g} to {:.17g} J/kg", last_energy_, now);
             last_energy_ = now;
         }
@@ -196,6 +200,7 @@ class Between {
     const Record& record_;
     const Plan& plan_;
     const bool keeps_energy_;
+    const double rounding_;  // [J/kg]
     std::vector<Piece> pieces_;
     std::vector<double> times_;  // at which a segment begins
     double first_energy_ = 0.0, last_energy_ = 0.0;
@@ -211,6 +216,15 @@ double ball_energy(const Record& record, int ball, const BallState& state) {
     const double fallen = off ? record.gravity * (state.position.z() - size.R) : 0.0;
     return size.m / record.balls.m *
            (0.5 * state.velocity.squaredNorm() + 0.2 * size.R * size.R * state.spin.squaredNorm() + fallen);
+}
+
+double height_rounding(const Record& record) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < record.tracks.size(); ++i) {
+        const BallSize size = record.size(static_cast<int>(i));
+        sum += size.m / record.balls.m * size.R;
+    }
+    return 0x1p-49 * record.gravity * sum;
 }
 
 std::optional<Violation> verify_between(const Record& record, const Plan& plan, bool energy) {

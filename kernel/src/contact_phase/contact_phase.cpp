@@ -7,6 +7,7 @@
 // numbers.
 #include "carom/kernel/contact_phase.h"
 #include "contact_phase/flight.h"
+#include "contact_phase/law.h"
 #include "contact_phase/state.h"
 #include "kernel_set.h"
 #include "numbers.h"
@@ -14,15 +15,6 @@
 
 namespace carom::kernel {
 namespace {
-
-// Stability of the step. The regularised friction is stiff: with k = mu_b F / |s|, friction over slip, the friction
-// of one contact makes its slip decay at the rate 7 k, and by the theorem of Gershgorin no rate of all contacts
-// together exceeds 7 times the largest sum of k over a ball (the cloth under the ball counts half). Runge-Kutta steps
-// are stable up to 2.78 over that rate; a step takes at most 2.5 over it.
-constexpr double kStableShare = 2.5 / 7.0;
-// Where a slip is still above epsilon, steps of that length would jump over the transition into stick. There k counts
-// kResolve times, but no more than its value in stick, mu_b F / epsilon.
-constexpr double kResolve = 4.0;
 
 // HertzLaw in lanes. kFalls: the friction between balls depends on the slip.
 template <bool kFalls>
@@ -33,24 +25,6 @@ struct Law {
     int p;
     bool cloth;
 };
-
-// e^-x for x >= 0, as the 64th power of a Taylor series: within 4e-8 of it (relative) up to x = 10. From 64 on it stays at e^-64.
-CAROM_INLINE Four falling_exponential(Four x) {
-    const Four part = (1.0 / 64.0) * x, one = broadcast<4>(1.0), t = select(part < one, part, one);
-    constexpr double kFactors[] = {-1.0 / 120.0, 1.0 / 24.0, -1.0 / 6.0, 0.5, -1.0, 1.0};
-    Four power = broadcast<4>(1.0 / 720.0);
-    for (const double factor : kFactors) power = power * t + broadcast<4>(factor);
-    for (int doubling = 0; doubling < 6; ++doubling) power = power * power;
-    return power;
-}
-
-template <bool kFalls>
-CAROM_INLINE Four normal_force(const Law<kFalls>& law, Four d, Four memory) {
-    const Four loading = d * square_root(d);
-    Four share = d / memory;  // a lane whose memory is 0 does not use it
-    for (int p = law.p; p > 1; p /= 2) share = share * share;
-    return select(d < memory, loading * (law.a + law.b * share), loading);
-}
 
 // Brings the list of contacts up to date.
 CAROM_INLINE void list_overlaps(Work& w, const double* d) {
@@ -90,7 +64,7 @@ CAROM_INLINE void add_forces(const Work& w, const Law<kFalls>& law, const double
                               turn[i[3]] + turn[j[3]]);
     const Four overlap = pack(d[c[0]], d[c[1]], d[c[2]], d[c[3]]);
     const Four memory = pack(w.memory[c[0]], w.memory[c[1]], w.memory[c[2]], w.memory[c[3]]);
-    const Four F = normal_force(law, overlap, memory);
+    const Four F = normal_force(law.a, law.b, law.p, overlap, memory);
     // t = n x z = (n_y, -n_x); s_x = (v_i - v_j) . t - R (w_iz + w_jz), s_z = R (w_i + w_j) . t.
     const Four s_x = motion[0] * ny - motion[2] * nx - turning;
     const Four s_z = motion[1] * ny - motion[3] * nx;
@@ -199,15 +173,6 @@ CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double longest) {
     combine<true>(w.y, w.dy, h / 6.0, kRow * w.rows);
     combine<false>(w.d, w.rate, h / 6.0, w.lanes);
     return h;
-}
-
-// The largest overlap inside a step in which the overlap stopped growing, from the cubic Hermite interpolant. Without
-// it the energy of each contact has an error of order h^2.
-CAROM_INLINE double peak(double before, double after, double m0, double m1) {
-    // d(s) = d0 + m0 s + (3 rise - 2 m0 - m1) s^2 + (m0 + m1 - 2 rise) s^3; its slope falls from m0 > 0 to m1 < 0.
-    const double rise = after - before, q2 = 3.0 * rise - 2.0 * m0 - m1, q3 = m0 + m1 - 2.0 * rise;
-    const double s = m0 / (square_root(largest(0.0, q2 * q2 - 3.0 * q3 * m0)) - q2);
-    return s > 0.0 && s < 1.0 ? before + s * (m0 + s * (q2 + s * q3)) : 0.0;
 }
 
 // Updates the largest overlap of each contact. `before` holds the rates before the step, `now` those after it.

@@ -2,13 +2,12 @@
 #pragma once
 
 #include "carom/kernel/contact_phase.h"
+#include "contact_phase/law.h"
 #include "numbers.h"
 #include "simd.h"
 
 namespace carom::kernel {
 namespace {
-
-using Four = Pack<4>;
 
 constexpr int kPerBall = 5;  // numbers of a ball in ContactPhase::motion
 constexpr int kStages = 4;   // of the Runge-Kutta step

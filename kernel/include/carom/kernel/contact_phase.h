@@ -59,4 +59,30 @@ using ContactPhaseFunction = long (*)(const ContactPhase& phase, const HertzLaw&
 /// The integration built for one instruction set (which must be available). All give the same bits.
 ContactPhaseFunction contact_phase_function(Isa isa) noexcept;
 
+struct HertzContactInSpace {
+    int i, j;        ///< balls
+    double n[3];     ///< unit normal from i to j
+    double overlap;  ///< [L] at the start; negative: a gap
+};
+
+/// As ContactPhase, for balls of which one or more are in the air.
+struct ContactPhaseInSpace {
+    int balls, contacts;
+    double* motion;  ///< per ball v (3 numbers), R w (3) [V]; replaced
+    const HertzContactInSpace* contact;
+    double* numbers;   ///< scratch memory of contact_phase_in_space_numbers() elements
+    double curvature;  ///< L/(2 R), > 0
+};
+
+constexpr std::size_t contact_phase_in_space_numbers(int balls, int contacts) noexcept {
+    return 55 * static_cast<std::size_t>(balls) + 6 * static_cast<std::size_t>(contacts);
+}
+
+/// The same forces in space, without a cloth: `law.mu_s` and the sign of its slip are not read. The contacts last a tenth of what one
+/// with the cloth does, which comes next. The places of the balls are integrated too, and every normal is that of the places. Steps,
+/// flights and the end are those of ContactPhaseFunction.
+/// @return the number of steps, or -1 if the contacts did not part within time_limit [L/V]
+long contact_phase_in_space(const ContactPhaseInSpace& phase, const HertzLaw& law, double longest_step,
+                            double look_ahead, double time_limit) noexcept;
+
 }  // namespace carom::kernel

@@ -1,0 +1,217 @@
+// The contact phase in space, one contact at a time: clusters with a ball in the air are rare, and few.
+#include "carom/kernel/contact_phase.h"
+#include "contact_phase/law.h"
+#include "numbers.h"
+
+namespace carom::kernel {
+namespace {
+
+constexpr int kSlopes = 4;     // of the Runge-Kutta step
+constexpr int kPerState = 9;   // numbers of a ball in a state: where it has moved to [L], v and R w [V]
+constexpr int kPerMotion = 6;  // in ContactPhaseInSpace::motion: without the place
+constexpr double kNever = 1e300;
+
+struct Vector {
+    double x, y, z;
+};
+
+Vector at(const double* from) {
+    return {from[0], from[1], from[2]};
+}
+Vector operator+(const Vector& a, const Vector& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+Vector operator-(const Vector& a, const Vector& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+Vector operator*(double s, const Vector& a) {
+    return {s * a.x, s * a.y, s * a.z};
+}
+double dot(const Vector& a, const Vector& b) {
+    return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+Vector cross(const Vector& a, const Vector& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+void add(double* to, const Vector& a) {
+    to[0] += a.x;
+    to[1] += a.y;
+    to[2] += a.z;
+}
+
+// A contact at one instant.
+struct Now {
+    Vector n;             // from i to j
+    double overlap, rate;  // and its slope
+};
+
+class InSpace {
+  public:
+    InSpace(const ContactPhaseInSpace& phase, const HertzLaw& law)
+        : phase_(phase), law_(law), diameter_(1.0 / phase.curvature), size_(kPerState * phase.balls) {
+        double* next = phase.numbers;
+        const auto take = [&next](int count) {
+            double* taken = next;
+            next += count;
+            for (int n = 0; n < count; ++n) taken[n] = 0.0;
+            return taken;
+        };
+        y_ = take(size_);
+        stage_ = take(size_);
+        for (double*& slope : slope_) slope = take(size_);
+        stiffness_ = take(phase.balls);
+        apart_ = take(3 * phase.contacts);
+        memory_ = take(phase.contacts);
+        before_ = take(phase.contacts);
+        rate_ = take(phase.contacts);
+        for (int b = 0; b < phase.balls; ++b) {
+            for (int k = 0; k < kPerMotion; ++k) y_[kPerState * b + 3 + k] = phase.motion[kPerMotion * b + k];
+        }
+        for (int c = 0; c < phase.contacts; ++c) {
+            const HertzContactInSpace& contact = phase.contact[c];
+            for (int k = 0; k < 3; ++k) apart_[3 * c + k] = (diameter_ - contact.overlap) * contact.n[k];
+        }
+    }
+
+    long run(double longest_step, double look_ahead, double time_limit) {
+        double time = 0.0;
+        for (long steps = 1; time < time_limit; ++steps) {
+            time += step(longest_step);
+            if (overlaps()) continue;
+            const double flight = next_touch();
+            if (!(flight < look_ahead)) {
+                for (int b = 0; b < phase_.balls; ++b) {
+                    for (int k = 0; k < kPerMotion; ++k)
+                        phase_.motion[kPerMotion * b + k] = y_[kPerState * b + 3 + k];
+                }
+                return steps;
+            }
+            for (int b = 0; b < phase_.balls; ++b) add(y_ + kPerState * b, flight * at(velocity(y_, b)));
+            time += flight;
+        }
+        return -1;
+    }
+
+  private:
+    static const double* velocity(const double* y, int ball) { return y + kPerState * ball + 3; }
+    static const double* spin(const double* y, int ball) { return y + kPerState * ball + 6; }
+
+    Vector apart(const double* y, int c) const {
+        const HertzContactInSpace& contact = phase_.contact[c];
+        return at(apart_ + 3 * c) + (at(y + kPerState * contact.j) - at(y + kPerState * contact.i));
+    }
+    Vector closing(const double* y, int c) const {
+        const HertzContactInSpace& contact = phase_.contact[c];
+        return at(velocity(y, contact.i)) - at(velocity(y, contact.j));
+    }
+    Now look(const double* y, int c) const {
+        const Vector z = apart(y, c);
+        const double distance = square_root(dot(z, z));
+        const Vector n = (1.0 / distance) * z;
+        return {n, diameter_ - distance, dot(closing(y, c), n)};
+    }
+
+    // Adds the forces of a contact to the slopes of its balls: (3.1) to (3.3) with springs.
+    void push(const double* y, int c, const Now& now, double* slope) {
+        const int i = phase_.contact[c].i, j = phase_.contact[c].j;
+        const double F = normal_force(law_.a, law_.b, law_.p, now.overlap, memory_[c]);
+        const Vector v = closing(y, c), spins = at(spin(y, i)) + at(spin(y, j));
+        const Vector slip = (v - now.rate * now.n) + cross(spins, now.n);
+        const double size = square_root(dot(slip, slip) + law_.epsilon * law_.epsilon);
+        double mu_b = law_.mu_b;
+        if (law_.mu_b_more > 0.0) mu_b += law_.mu_b_more * falling_exponential(law_.mu_b_fall * size);
+        const double k = mu_b * F / size;
+        const Vector friction = -k * slip;  // on ball i
+        const Vector force = friction - F * now.n, torque = 2.5 * cross(now.n, friction);
+        add(slope + kPerState * i + 3, force);
+        add(slope + kPerState * j + 3, -1.0 * force);
+        add(slope + kPerState * i + 6, torque);
+        add(slope + kPerState * j + 6, torque);
+        const double stiffness = smallest(kResolve * k, (law_.mu_b + law_.mu_b_more) / law_.epsilon * F);
+        stiffness_[i] += stiffness;
+        stiffness_[j] += stiffness;
+    }
+
+    void slopes(const double* y, double* slope) {
+        for (int b = 0; b < phase_.balls; ++b) {
+            stiffness_[b] = 0.0;
+            double* to = slope + kPerState * b;
+            for (int k = 0; k < 3; ++k) to[k] = velocity(y, b)[k];
+            for (int k = 3; k < kPerState; ++k) to[k] = 0.0;
+        }
+        for (int c = 0; c < phase_.contacts; ++c) {
+            const Now now = look(y, c);
+            if (now.overlap > 0.0) push(y, c, now, slope);
+        }
+    }
+
+    // One Runge-Kutta step; returns its length.
+    double step(double longest) {
+        for (int c = 0; c < phase_.contacts; ++c) {
+            const Now now = look(y_, c);
+            before_[c] = now.overlap;
+            rate_[c] = now.rate;
+        }
+        slopes(y_, slope_[0]);
+        double most = 0.0;
+        for (int b = 0; b < phase_.balls; ++b) most = largest(most, stiffness_[b]);
+        const double h = kStableShare < longest * most ? kStableShare / most : longest;
+        const double share[kSlopes] = {0.0, 0.5 * h, 0.5 * h, h};
+        for (int k = 1; k < kSlopes; ++k) {
+            for (int n = 0; n < size_; ++n) stage_[n] = y_[n] + share[k] * slope_[k - 1][n];
+            slopes(stage_, slope_[k]);
+        }
+        for (int n = 0; n < size_; ++n)
+            y_[n] += h / 6.0 * ((slope_[0][n] + slope_[3][n]) + 2.0 * (slope_[1][n] + slope_[2][n]));
+        for (int c = 0; c < phase_.contacts; ++c) remember(c, h);
+        return h;
+    }
+
+    // Updates the largest overlap of a contact.
+    void remember(int c, double h) {
+        const Now now = look(y_, c);
+        memory_[c] = now.overlap > 0.0 ? largest(memory_[c], now.overlap) : 0.0;
+        if (now.overlap > 0.0 && rate_[c] > 0.0 && now.rate < 0.0)
+            memory_[c] = largest(memory_[c], peak(before_[c], now.overlap, h * rate_[c], h * now.rate));
+    }
+
+    bool overlaps() const {
+        for (int c = 0; c < phase_.contacts; ++c) {
+            if (look(y_, c).overlap > 0.0) return true;
+        }
+        return false;
+    }
+
+    // When the next contact closes, if nothing overlaps: |z - v s| = 2 R, without the difference of numbers that are
+    // nearly equal.
+    double next_touch() const {
+        double first = kNever;
+        for (int c = 0; c < phase_.contacts; ++c) {
+            const Vector z = apart(y_, c), v = closing(y_, c);
+            const double towards = dot(v, z), distance = square_root(dot(z, z));
+            const double q = (distance - diameter_) * (distance + diameter_),
+                         root2 = towards * towards - dot(v, v) * q;
+            if (towards > 0.0 && root2 >= 0.0) first = smallest(first, q / (towards + square_root(root2)));
+        }
+        return first;
+    }
+
+    const ContactPhaseInSpace phase_;
+    const HertzLaw law_;
+    const double diameter_;  // [L]
+    const int size_;
+    double *y_, *stage_, *slope_[kSlopes];
+    double* stiffness_;  // per ball: the sum of friction over slip
+    // Per contact: from one centre to the other at the start (3 numbers); the largest overlap since it opened; overlap and its
+    // slope before the step.
+    double *apart_, *memory_, *before_, *rate_;
+};
+
+}  // namespace
+
+long contact_phase_in_space(const ContactPhaseInSpace& phase, const HertzLaw& law, double longest_step,
+                            double look_ahead, double time_limit) noexcept {
+    return InSpace(phase, law).run(longest_step, look_ahead, time_limit);
+}
+
+}  // namespace carom::kernel
