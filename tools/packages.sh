@@ -9,8 +9,8 @@ carom_packages=(
     pkg-config python3 python3-numpy
 )
 # What continuous integration needs in addition: a second compiler with its sanitizers, the static checks, valgrind, what counts
-# lines, what reads the completions and the man page, and what runs the script of pages.
-carom_check_packages=(clang clang-format clang-tidy glslang-tools valgrind llvm zsh groff-base nodejs)
+# lines, what reads the completions and the man page, what runs the script of pages, and what makes films.
+carom_check_packages=(clang clang-format clang-tidy glslang-tools valgrind llvm zsh groff-base nodejs ffmpeg)
 # The browser that the tests open pages in. Ubuntu has it as a snap only: there these tests are left out.
 carom_browser=chromium
 # What the Python package is built and tested with (tools/python.sh); its tests are left out where they are missing.

@@ -35,7 +35,8 @@ void add_high_ball(Scene& scene, const std::string& id, double x, double y, doub
 /// Three to six balls that touch or nearly do, and one or two that come down on them; those that have no room are left out.
 void add_pile(Scene& scene, Generator& random) {
     const double R = scene.balls.R, apart = 2.0 * R + (random.next() % 3) * random.uniform(0.0, 2e-4);
-    const double x = random.uniform(0.2, scene.table.width - 0.2), y = random.uniform(0.2, scene.table.length - 0.2);
+    const double x = random.uniform(0.2, scene.table.width - 0.2),
+                 y = random.uniform(0.2, scene.table.length - 0.2);
     const auto add = [&](const std::string& id, double right, double up, double height, const Vec3& v) {
         BallStart ball;
         ball.id = id;
@@ -52,8 +53,8 @@ void add_pile(Scene& scene, Generator& random) {
     const int rows = 2 + static_cast<int>(random.next() % 2);
     for (int row = 0; row < rows; ++row)
         for (int k = 0; k <= row; ++k)
-            add("pile" + std::to_string(10 * row + k), (k - 0.5 * row) * apart, 0.5 * std::sqrt(3.0) * row * apart,
-                0.0, Vec3::Zero());
+            add("pile" + std::to_string(10 * row + k), (k - 0.5 * row) * apart,
+                0.5 * std::sqrt(3.0) * row * apart, 0.0, Vec3::Zero());
     const int falling = 1 + static_cast<int>(random.next() % 2);
     for (int n = 0; n < falling; ++n)
         add("onto" + std::to_string(n), random.uniform(-R, R), random.uniform(0.0, 2.0 * R),

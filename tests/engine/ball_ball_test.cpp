@@ -202,7 +202,8 @@ TEST(Unequal, RandomScenesKeepEveryLaw) {
         Scene scene = empty_scene();
         scene.table = box(1.0, 1.6, 0.03);
         scene.physics.clusters = ClusterModel::kSequential;
-        scene.physics.ball_ball = i % 2 ? (i % 4 == 1 ? &kMathavan : ball_ball_model("inelastic")) : ball_ball_model("elastic");
+        scene.physics.ball_ball =
+            i % 2 ? (i % 4 == 1 ? &kMathavan : ball_ball_model("inelastic")) : ball_ball_model("elastic");
         const bool radii = i % 4 == 0;
         if (radii) scene.balls.mu_b = 0.0;
         scene.stop.events = 40;

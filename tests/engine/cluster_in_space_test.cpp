@@ -68,7 +68,8 @@ Vec3 momentum(const std::vector<ClusterBall>& balls) {
 double error_of(std::vector<ClusterBall> balls, const MovingLaw& law, double V) {
     std::vector<MovingBall> start;
     for (const ClusterBall& b : balls)
-        start.push_back({{b.r.x(), b.r.y(), b.r.z()}, {b.v.x(), b.v.y(), b.v.z()}, {b.w.x(), b.w.y(), b.w.z()}});
+        start.push_back(
+            {{b.r.x(), b.r.y(), b.r.z()}, {b.v.x(), b.v.y(), b.v.z()}, {b.w.x(), b.w.y(), b.w.z()}});
     const double before = energy(balls);
     const Vec3 carried = momentum(balls);
     ClusterMap map;
@@ -85,8 +86,7 @@ double error_of(std::vector<ClusterBall> balls, const MovingLaw& law, double V) 
     for (const std::vector<MovingBall>& end : truth.ends()) {
         double worst = 0.0;
         for (std::size_t b = 0; b < end.size(); ++b)
-            worst = std::max(
-                worst, length3(balls[b].v - Vec3(end[b].v[0], end[b].v[1], end[b].v[2])) / V);
+            worst = std::max(worst, length3(balls[b].v - Vec3(end[b].v[0], end[b].v[1], end[b].v[2])) / V);
         least = std::min(least, worst);
     }
     return least;
@@ -117,7 +117,8 @@ TEST(ClusterInSpace, ABallOnThree) {
         std::vector<ClusterBall> balls{ball(0, {0.0, 0.0, kR}), ball(1, {side, 0.0, kR}),
                                        ball(2, {0.5 * side, 0.5 * root3 * side, kR})};
         const double V = rng.uniform(0.3, 4.0), aside = n < 3 ? 0.0 : 0.005;
-        Vec3 top(0.5 * side + rng.uniform(-aside, aside), side / (2.0 * root3) + rng.uniform(-aside, aside), 0.2);
+        Vec3 top(0.5 * side + rng.uniform(-aside, aside), side / (2.0 * root3) + rng.uniform(-aside, aside),
+                 0.2);
         // It touches the first that it meets.
         double z = 0.0;
         for (const ClusterBall& b : balls) {
@@ -168,7 +169,8 @@ TEST(ClusterInSpace, LevelWithoutClothIsTheMapOnTheCloth) {
         law.mu_b = law.mu_b_more = 0.0;
         const double angle = rng.uniform(0.2, 1.2), gap = rng.uniform(0.0, 1e-4), V = rng.uniform(1.0, 6.0);
         const double far = 2.0 * kR + gap;
-        std::vector<ClusterBall> space{ball(0, {0.0, -2.0 * kR, kR}, {0.1 * V, V, 0.0}), ball(1, {0.0, 0.0, kR}),
+        std::vector<ClusterBall> space{ball(0, {0.0, -2.0 * kR, kR}, {0.1 * V, V, 0.0}),
+                                       ball(1, {0.0, 0.0, kR}),
                                        ball(2, {far * std::sin(angle), far * std::cos(angle), kR})};
         std::vector<ClusterBall> plane = space;
         const std::vector<ClusterContact> contacts = contacts_of(space, 1e-3);
@@ -213,8 +215,8 @@ Scene on_three(const std::string& more) {
 }
 
 int count(const Record& record, EventType type) {
-    return static_cast<int>(
-        std::count_if(record.events.begin(), record.events.end(), [type](const Event& e) { return e.type == type; }));
+    return static_cast<int>(std::count_if(record.events.begin(), record.events.end(),
+                                          [type](const Event& e) { return e.type == type; }));
 }
 
 TEST(ClusterInSpace, ADroppedBallPushesAllThreeApart) {
@@ -224,7 +226,8 @@ TEST(ClusterInSpace, ADroppedBallPushesAllThreeApart) {
         EXPECT_GE(count(record, EventType::kBallCluster), 1) << more;
         double least = 1.0, most = 0.0;
         for (int b = 0; b < 3; ++b) {
-            const Vec3 from = record.state_at(b, 0.0).position, to = record.state_at(b, record.duration).position;
+            const Vec3 from = record.state_at(b, 0.0).position,
+                       to = record.state_at(b, record.duration).position;
             const double way = length(planar(to) - planar(from));
             least = std::min(least, way);
             most = std::max(most, way);
@@ -255,11 +258,12 @@ TEST(ClusterInSpace, TheThirdBallMayFly) {
 
 TEST(ClusterInSpace, TwoStepBreaksComeToRest) {
     for (int seed = 1; seed <= 8; ++seed) {
-        const Scene scene = parse_scene("[physics]\nball_ball = \"two_step\"\n[rack]\ngame = \"eight_ball\"\nseed = " +
-                                            std::to_string(seed) +
-                                            "\n[cue]\nball = \"cue\"\nspeed = 8\naim_deg = 90\n"
-                                            "[[ball]]\nid = \"cue\"\nposition = [0.62, 0.5]\n",
-                                        "s.toml");
+        const Scene scene =
+            parse_scene("[physics]\nball_ball = \"two_step\"\n[rack]\ngame = \"eight_ball\"\nseed = " +
+                            std::to_string(seed) +
+                            "\n[cue]\nball = \"cue\"\nspeed = 8\naim_deg = 90\n"
+                            "[[ball]]\nid = \"cue\"\nposition = [0.62, 0.5]\n",
+                        "s.toml");
         const Record record = run_verified(scene);
         EXPECT_EQ(record.stopped, StopReason::kAtRest);
         ASSERT_GE(count(record, EventType::kBallCluster), 1);

@@ -53,8 +53,8 @@ std::vector<ClusterContact> contacts_of(const std::vector<ClusterBall>& balls) {
             const Vec3 apart = balls[j].r - balls[i].r;
             const double distance = apart.norm(), gap = distance - 2.0 * kR;
             if (gap < 1e-3)
-                contacts.push_back({static_cast<int>(i), static_cast<int>(j),
-                                    apart / distance, gap < 1e-14 ? 0.0 : gap});
+                contacts.push_back(
+                    {static_cast<int>(i), static_cast<int>(j), apart / distance, gap < 1e-14 ? 0.0 : gap});
         }
     }
     return contacts;

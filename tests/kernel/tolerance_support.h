@@ -111,7 +111,8 @@ inline Impact hard_random_impact(Generator& rng, double mu_b, double mu_s, kerne
 }
 
 /// Random impacts and as many built to be hard, of balls whose masses have a ratio of 1/10 to 10, the ends included.
-inline std::vector<Impact> impacts_of_masses_that_differ(std::uint64_t seed, int count, kernel::ClothSlip slip) {
+inline std::vector<Impact> impacts_of_masses_that_differ(std::uint64_t seed, int count,
+                                                         kernel::ClothSlip slip) {
     Generator rng(seed);
     std::vector<Impact> impacts;
     for (int n = 0; n < count; ++n) {

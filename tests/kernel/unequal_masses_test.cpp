@@ -34,7 +34,8 @@ ImpactResult marched(const Impact& i, int steps) {
         // Slip of ball 1 on ball 2 at the contact, and the friction on ball 1 along it.
         const double c_x = v[0].x - v[1].x - R * (w[0].z + w[1].z), c_z = R * (w[0].x + w[1].x);
         const double c = std::hypot(c_x, c_z);
-        const double F_x = c > 0.0 ? -p.mu_b * dP * c_x / c : 0.0, F_z = c > 0.0 ? -p.mu_b * dP * c_z / c : 0.0;
+        const double F_x = c > 0.0 ? -p.mu_b * dP * c_x / c : 0.0,
+                     F_z = c > 0.0 ? -p.mu_b * dP * c_z / c : 0.0;
         const int pressed = F_z > 0.0 ? 1 : 0;  // the other ball's vertical friction is -F_z
         const double u_x = v[pressed].x - R * w[pressed].y, u_y = v[pressed].y + R * w[pressed].x;
         const double u = std::hypot(u_x, u_y), N = std::fabs(F_z);
@@ -202,7 +203,8 @@ TEST(UnequalMasses, EveryInstructionSetAgrees) {
     for (const Impact& i : impacts_of_masses_that_differ(75, 3000, ClothSlip::kConsistent)) {
         for (double tolerance : {1e-3, 1e-10}) {
             const ImpactResult scalar = solve(i, tolerance, Isa::kScalar);
-            for (Isa isa : isas()) EXPECT_TRUE(same_velocities(solve(i, tolerance, isa), scalar)) << name(isa);
+            for (Isa isa : isas())
+                EXPECT_TRUE(same_velocities(solve(i, tolerance, isa), scalar)) << name(isa);
         }
     }
 }

@@ -23,7 +23,7 @@ struct MovingLaw {
     double slip = 1e-4;                       ///< [V] regularisation of the friction
     double step = 5e-4;                       ///< [L/V]
     double look_ahead = 2.0;  ///< [L/V] it ends when all are open and none touches within this time
-    bool cloth = true;        ///< holds every ball, with friction under those pressed down; else they move in space
+    bool cloth = true;  ///< holds every ball, with friction under those pressed down; else they move in space
 };
 
 class MovingContacts {

@@ -167,7 +167,8 @@ Json ball_ball(const Json& line, const ImpactSettings& settings) {
         if (settings.method != ImpactSettings::Method::kMathavan || settings.substeps)
             throw LineError("\"m2\": masses that differ are solved by tolerance only; leave it out");
         if (!(p.mass_ratio <= kernel::kLargestMassRatio && p.mass_ratio >= 1.0 / kernel::kLargestMassRatio))
-            throw LineError(fmt::format("\"m2\": expected m times or over {} at most", kernel::kLargestMassRatio));
+            throw LineError(
+                fmt::format("\"m2\": expected m times or over {} at most", kernel::kLargestMassRatio));
     }
     p.mu_s1 = parameter(params, "mu_s1", 0.0, kUnbounded);
     p.mu_s2 = parameter(params, "mu_s2", 0.0, kUnbounded);

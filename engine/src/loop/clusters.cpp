@@ -102,10 +102,11 @@ void Clusters::collect_at(int a, int b, double v_n) {
             if (near.gap <= reach(near)) members_.push_back(candidate);
         });
     }
-    in_space_ = plan_.in_force(Effect::kAirborne) &&
-                (plan_.ball_ball->free ||
-                 std::any_of(members_.begin(), members_.end(),
-                             [this](const ClusterBall& m) { return flies(balls_.segment(m.ball).state); }));
+    in_space_ =
+        plan_.in_force(Effect::kAirborne) &&
+        (plan_.ball_ball->free || std::any_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
+             return flies(balls_.segment(m.ball).state);
+         }));
     if (members_.size() < 3) return;
     std::sort(members_.begin(), members_.end(), [](const ClusterBall& p, const ClusterBall& q) {
         const Vec2 here = planar(p.r), there = planar(q.r);

@@ -115,7 +115,8 @@ void Detector::search_pairs(int ball) {
 // one of its ends. The bound only increases; no result depends on its value.
 void Detector::bound_speed(const Segment& s) {
     fastest_ = std::max(fastest_, length(planar(s.v)));
-    if (flies(s.state)) fastest_ = std::max(fastest_, length3(s.v) + std::sqrt(2.0 * plan_.gravity * s.r.z()));
+    if (flies(s.state))
+        fastest_ = std::max(fastest_, length3(s.v) + std::sqrt(2.0 * plan_.gravity * s.r.z()));
     if (s.a == Vec2::Zero()) return;
     fastest_ = std::max(fastest_, s.duration < kNever ? length(planar(velocity_at(s, s.duration))) : kNever);
 }

@@ -183,11 +183,9 @@ long ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
     const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
     numbers_.resize(std::max(numbers_.size(), kernel::contact_phase_in_space_numbers(m, n)));
     const double before = energy(3);
-    const long steps =
-        kernel::contact_phase_in_space({m, n, motion_.data(), contacts_in_space_.data(), numbers_.data(),
-                                        L / (2.0 * settings.R)},
-                                       law_of(settings, V), settings.longest_step, kClusterLookAhead,
-                                       kClusterTimeLimit);
+    const long steps = kernel::contact_phase_in_space(
+        {m, n, motion_.data(), contacts_in_space_.data(), numbers_.data(), L / (2.0 * settings.R)},
+        law_of(settings, V), settings.longest_step, kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
     keep_energy(before, 3);
     unload(settings.R, V, 3, balls);

@@ -74,7 +74,8 @@ class ClusterMap {
 
     /// Rigid: v := (1 + e) P(v) - e v with P the nearest velocities that close no contact (equations 7, 8), nor press a ball that
     /// lies (r_z not above R) into the cloth; frictionless. Returns the number of sweeps.
-    long rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double e_b, double R);
+    long rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double e_b,
+               double R);
 
   private:
     void load(const std::vector<ClusterBall>& balls, double R, double V, int axes);

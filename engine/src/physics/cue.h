@@ -17,7 +17,7 @@ StruckBall strike(const Cue& cue, const BallSize& ball, bool squirt = true,
                   Vertical vertical = Vertical::kDrop);
 
 /// Whether a ball that lies on the cloth would meet the tip again: it comes back from the cloth faster along the cue than that
-/// goes on. The strike is then no single impact. Equation (A10).
+/// goes on. The strike is then no single impact. Equation (A8).
 /// @param after  the ball when the cloth has answered
 bool meets_tip_again(const Cue& cue, const BallSize& ball, const Vec3& v, const Vec3& w);
 

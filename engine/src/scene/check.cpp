@@ -155,8 +155,9 @@ void check_sizes(const Section& top, const Scene& scene) {
                 "has no formula; use physics.ball_ball = \"two_step\" or set balls.mu_b = 0");
         if (rough && model.reads_tolerance) {
             if (const std::string why = masses_refused(scene); !why.empty())
-                refuse(fmt::format("the model {} {}; use physics.ball_ball = \"inelastic\" or set balls.mu_b = 0",
-                                   model.name, why));
+                refuse(fmt::format(
+                    "the model {} {}; use physics.ball_ball = \"inelastic\" or set balls.mu_b = 0",
+                    model.name, why));
         }
         if (scene.ball.size() > 2 && scene.physics.clusters != ClusterModel::kSequential && !model.free)
             refuse(

@@ -41,7 +41,7 @@ void add(double* to, const Vector& a) {
 
 // A contact at one instant.
 struct Now {
-    Vector n;             // from i to j
+    Vector n;              // from i to j
     double overlap, rate;  // and its slope
 };
 

@@ -26,8 +26,9 @@ CAROM_INLINE Shares shares(const ImpactParams& p) {
 
 CAROM_INLINE bool tolerance_in_range(const ImpactParams& p, const Shares& share, double tolerance) {
     return tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance &&
-           p.mass_ratio >= 1.0 / kLargestMassRatio && p.mass_ratio <= kLargestMassRatio && p.mu_b <= kLargestFriction &&
-           share.one * p.mu_s1 <= kLargestFriction && share.two * p.mu_s2 <= kLargestFriction;
+           p.mass_ratio >= 1.0 / kLargestMassRatio && p.mass_ratio <= kLargestMassRatio &&
+           p.mu_b <= kLargestFriction && share.one * p.mu_s1 <= kLargestFriction &&
+           share.two * p.mu_s2 <= kLargestFriction;
 }
 
 // Brings an impact into its canonical form. Returns whether ball 2 is the one that is pressed on the cloth.
