@@ -23,7 +23,7 @@ namespace {
 using namespace test;
 using reference::Generator;
 
-constexpr double kR = 0.028575;  // [m] of pool balls
+constexpr double kPoolR = 0.028575;  // [m] of pool balls
 
 ClusterSettings settings_of(const MovingLaw& law) {
     return {.R = law.R,
@@ -42,7 +42,7 @@ std::vector<ClusterContact> contacts_of(const std::vector<ClusterBall>& balls, d
     for (std::size_t i = 0; i < balls.size(); ++i) {
         for (std::size_t j = i + 1; j < balls.size(); ++j) {
             const Vec3 apart = balls[j].r - balls[i].r;
-            const double distance = length3(apart), gap = distance - 2.0 * kR;
+            const double distance = length3(apart), gap = distance - 2.0 * kPoolR;
             if (gap < reach)
                 contacts.push_back({static_cast<int>(i), static_cast<int>(j), apart / distance,
                                     gap < kTouchUlp ? 0.0 : gap});
@@ -53,7 +53,8 @@ std::vector<ClusterContact> contacts_of(const std::vector<ClusterBall>& balls, d
 
 double energy(const std::vector<ClusterBall>& balls) {
     double sum = 0.0;
-    for (const ClusterBall& b : balls) sum += 0.5 * b.v.squaredNorm() + 0.2 * kR * kR * b.w.squaredNorm();
+    for (const ClusterBall& b : balls)
+        sum += 0.5 * b.v.squaredNorm() + 0.2 * kPoolR * kPoolR * b.w.squaredNorm();
     return sum;
 }
 
@@ -113,9 +114,9 @@ TEST(ClusterInSpace, ABallOnThree) {
     Generator rng(81);
     double worst = 0.0;
     for (int n = 0; n < 12; ++n) {
-        const double gap = n % 3 * 1e-4, side = 2.0 * kR + gap, root3 = std::sqrt(3.0);
-        std::vector<ClusterBall> balls{ball(0, {0.0, 0.0, kR}), ball(1, {side, 0.0, kR}),
-                                       ball(2, {0.5 * side, 0.5 * root3 * side, kR})};
+        const double gap = n % 3 * 1e-4, side = 2.0 * kPoolR + gap, root3 = std::sqrt(3.0);
+        std::vector<ClusterBall> balls{ball(0, {0.0, 0.0, kPoolR}), ball(1, {side, 0.0, kPoolR}),
+                                       ball(2, {0.5 * side, 0.5 * root3 * side, kPoolR})};
         const double V = rng.uniform(0.3, 4.0), aside = n < 3 ? 0.0 : 0.005;
         Vec3 top(0.5 * side + rng.uniform(-aside, aside), side / (2.0 * root3) + rng.uniform(-aside, aside),
                  0.2);
@@ -123,7 +124,7 @@ TEST(ClusterInSpace, ABallOnThree) {
         double z = 0.0;
         for (const ClusterBall& b : balls) {
             const Vec2 level = planar(top - b.r);
-            z = std::max(z, kR + std::sqrt(4.0 * kR * kR - level.squaredNorm()));
+            z = std::max(z, kPoolR + std::sqrt(4.0 * kPoolR * kPoolR - level.squaredNorm()));
         }
         top.z() = z;
         balls.push_back(ball(3, top, {rng.uniform(-0.3, 0.3) * V, rng.uniform(-0.3, 0.3) * V, -V},
@@ -142,16 +143,17 @@ TEST(ClusterInSpace, BreaksThroughTheAir) {
         double worst = 0.0;
         for (int n = 0; n < 6; ++n) {
             std::vector<ClusterBall> balls;
-            const double side = 2.0 * kR + gap;
+            const double side = 2.0 * kPoolR + gap;
             for (int row = 0; row < 5; ++row)
                 for (int k = 0; k <= row; ++k)
-                    balls.push_back(ball(static_cast<int>(balls.size()),
-                                         {(k - 0.5 * row) * side, 0.5 * std::sqrt(3.0) * row * side, kR}));
+                    balls.push_back(
+                        ball(static_cast<int>(balls.size()),
+                             {(k - 0.5 * row) * side, 0.5 * std::sqrt(3.0) * row * side, kPoolR}));
             const double height = rng.uniform(0.001, 0.02), x = rng.uniform(-0.002, 0.002);
-            const double y = -std::sqrt(4.0 * kR * kR - height * height - x * x);
+            const double y = -std::sqrt(4.0 * kPoolR * kPoolR - height * height - x * x);
             const double V = rng.uniform(6.0, 9.0);
-            balls.push_back(ball(15, {x, y, kR + height}, {0.0, V, rng.uniform(-0.4, 0.4)},
-                                 {-rng.uniform(0.0, 2.0) * V / kR, 0.0, rng.uniform(-30.0, 30.0)}));
+            balls.push_back(ball(15, {x, y, kPoolR + height}, {0.0, V, rng.uniform(-0.4, 0.4)},
+                                 {-rng.uniform(0.0, 2.0) * V / kPoolR, 0.0, rng.uniform(-30.0, 30.0)}));
             worst = std::max(worst, error_of(balls, pool_law(), V));
         }
         report(("break through the air, gap " + std::to_string(gap) + ", error in V").c_str(), worst);
@@ -168,10 +170,10 @@ TEST(ClusterInSpace, LevelWithoutClothIsTheMapOnTheCloth) {
         MovingLaw law = pool_law();
         law.mu_b = law.mu_b_more = 0.0;
         const double angle = rng.uniform(0.2, 1.2), gap = rng.uniform(0.0, 1e-4), V = rng.uniform(1.0, 6.0);
-        const double far = 2.0 * kR + gap;
-        std::vector<ClusterBall> space{ball(0, {0.0, -2.0 * kR, kR}, {0.1 * V, V, 0.0}),
-                                       ball(1, {0.0, 0.0, kR}),
-                                       ball(2, {far * std::sin(angle), far * std::cos(angle), kR})};
+        const double far = 2.0 * kPoolR + gap;
+        std::vector<ClusterBall> space{ball(0, {0.0, -2.0 * kPoolR, kPoolR}, {0.1 * V, V, 0.0}),
+                                       ball(1, {0.0, 0.0, kPoolR}),
+                                       ball(2, {far * std::sin(angle), far * std::cos(angle), kPoolR})};
         std::vector<ClusterBall> plane = space;
         const std::vector<ClusterContact> contacts = contacts_of(space, 1e-3);
         ClusterMap map;
@@ -188,18 +190,19 @@ TEST(ClusterInSpace, LevelWithoutClothIsTheMapOnTheCloth) {
 
 // As rigid bodies: the ball that comes down goes up again, and nothing goes through the cloth.
 TEST(ClusterInSpace, RigidKeepsBallsOnTheCloth) {
-    const double root3 = std::sqrt(3.0), height = std::sqrt(8.0 / 3.0) * kR;
+    const double root3 = std::sqrt(3.0), height = std::sqrt(8.0 / 3.0) * kPoolR;
     for (const double e : {0.0, 0.5, 1.0}) {
-        std::vector<ClusterBall> balls{ball(0, {-kR, -kR / root3, kR}), ball(1, {kR, -kR / root3, kR}),
-                                       ball(2, {0.0, 2.0 * kR / root3, kR}),
-                                       ball(3, {0.0, 0.0, kR + height}, {0.0, 0.0, -2.0})};
+        std::vector<ClusterBall> balls{ball(0, {-kPoolR, -kPoolR / root3, kPoolR}),
+                                       ball(1, {kPoolR, -kPoolR / root3, kPoolR}),
+                                       ball(2, {0.0, 2.0 * kPoolR / root3, kPoolR}),
+                                       ball(3, {0.0, 0.0, kPoolR + height}, {0.0, 0.0, -2.0})};
         const double before = energy(balls);
         ClusterMap map;
-        EXPECT_GT(map.rigid(balls, contacts_of(balls, 1e-6), e, kR), 0);
+        EXPECT_GT(map.rigid(balls, contacts_of(balls, 1e-6), e, kPoolR), 0);
         EXPECT_LE(energy(balls), before * (1.0 + 1e-12));
         EXPECT_NEAR(length(planar(momentum(balls))), 0.0, 1e-12);
         for (int b = 0; b < 3; ++b) EXPECT_GE(balls[b].v.z(), -1e-12);
-        const Vec3 n = (balls[0].r - balls[3].r) / (2.0 * kR);
+        const Vec3 n = (balls[0].r - balls[3].r) / (2.0 * kPoolR);
         const double closing = dot3(balls[3].v - balls[0].v, n);
         EXPECT_NEAR(closing, e * 2.0 * n.z(), 1e-9) << "they part at e times the approach";
     }
@@ -242,14 +245,14 @@ TEST(ClusterInSpace, ADroppedBallPushesAllThreeApart) {
 // A third ball that flies by makes it a cluster in space, though the two that meet lie on the cloth.
 TEST(ClusterInSpace, TheThirdBallMayFly) {
     Scene scene = empty_scene();
-    add_ball(scene, "one", Vec3(0.0, 0.0, kR), Vec3(0.0, 2.0, 0.0));
-    add_ball(scene, "two", Vec3(0.0, 2.2 * kR, kR));
+    add_ball(scene, "one", Vec3(0.0, 0.0, kPoolR), Vec3(0.0, 2.0, 0.0));
+    add_ball(scene, "two", Vec3(0.0, 2.2 * kPoolR, kPoolR));
     // Above and between, it comes down on "two" when "one" meets it.
     scene.ball.push_back(scene.ball.back());
     BallStart& high = scene.ball.back();
     high.id = "high";
-    high.height = 1.9 * kR;
-    high.position = {0.0, 2.9 * kR, kR + high.height};
+    high.height = 1.9 * kPoolR;
+    high.position = {0.0, 2.9 * kPoolR, kPoolR + high.height};
     high.velocity = {0.0, 0.0, -0.02};
     const Record record = run_verified(scene);
     EXPECT_EQ(count(record, EventType::kBallCluster) > 0, true);

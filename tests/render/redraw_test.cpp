@@ -17,7 +17,7 @@
 namespace carom::render {
 namespace {
 
-const Record& broken_rack() {
+const Record& rack_to_redraw() {
     static const Record record = [] {
         const Scene scene = read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/eight_ball_break.toml");
         return simulate(make_plan(scene, kernel::Isa::kScalar));
@@ -31,7 +31,7 @@ Stage stage_of(const std::string& camera, const std::string& overlay = "") {
     options.overlay = parse_overlay(overlay);
     options.size = {480, 270};
     options.table_samples = 2;
-    return Stage(broken_rack(), options);
+    return Stage(rack_to_redraw(), options);
 }
 
 // Draws from nothing: a picture from elsewhere makes both targets worthless.
@@ -50,8 +50,8 @@ Image whole_picture(Renderer& renderer, const DrawList& list) {
 std::vector<double> instants() {
     std::vector<double> times;
     for (double t : {0.0, 0.02, 0.1, 0.1, 0.3, 0.9, 2.0, 2.05, 3.5, 5.0, 0.3}) times.push_back(t);
-    times.push_back(broken_rack().duration);
-    times.push_back(broken_rack().duration);
+    times.push_back(rack_to_redraw().duration);
+    times.push_back(rack_to_redraw().duration);
     return times;
 }
 
@@ -114,7 +114,7 @@ TEST(RedrawLines, TheSizeMayChange) {
     for (const FrameSize size : {FrameSize{160, 90}, FrameSize{200, 120}, FrameSize{160, 90}}) {
         options.size = size;
         Renderer fresh;
-        const DrawList list = Stage(broken_rack(), options).at(0.5);
+        const DrawList list = Stage(rack_to_redraw(), options).at(0.5);
         Image expected, got;
         fresh.draw(list);
         fresh.read(expected);
@@ -166,7 +166,7 @@ TEST(RedrawWork, OnlyWhatMovedIsDrawn) {
     const FrameSize size{480, 270};
     const auto table = std::make_shared<TableDrawing>();
     const auto picture = [&](double t) { return DrawnPicture{table, visible_balls(stage.at(t), none)}; };
-    const double end = broken_rack().duration;
+    const double end = rack_to_redraw().duration;
     EXPECT_TRUE(differing_boxes(picture(end), picture(end + 1.0), size).empty());
     const DrawnPicture rack = picture(0.0), cue_moved = picture(0.01);
     std::vector<PixelBox> boxes = differing_boxes(rack, cue_moved, size);
@@ -198,7 +198,7 @@ TEST(RedrawWork, AnOverlayIsDrawnWhereItChanges) {
     const Stage stage = stage_of("top", "clock");
     const FrameSize size{480, 270};
     const auto table = std::make_shared<TableDrawing>();
-    const double end = broken_rack().duration;
+    const double end = rack_to_redraw().duration;
     const DrawnPicture before = picture_of(stage.at(end), table),
                        after = picture_of(stage.at(end + 0.1), table);
     std::vector<PixelBox> boxes = differing_boxes(before, after, size);

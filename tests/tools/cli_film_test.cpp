@@ -56,7 +56,7 @@ std::string decoded(const std::vector<std::string>& input) {
 }
 
 /// Root of the mean squared difference of two pictures, in steps of 8 bits.
-double difference(const std::string& a, const std::string& b) {
+double picture_difference(const std::string& a, const std::string& b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         const double d = static_cast<unsigned char>(a[i]) - static_cast<unsigned char>(b.at(i));
@@ -86,10 +86,11 @@ TEST_F(CliFilm, EveryKindHasItsFramesAndColors) {
         const std::string film = decoded({"-i", folder_.file("shot" + ending)});
         ASSERT_EQ(film.size(), frames.size()) << ending;
         for (const std::size_t k : {std::size_t{0}, std::size_t{9}}) {
-            const double off = difference(frames.substr(k * kFrame, kFrame), film.substr(k * kFrame, kFrame));
+            const double off =
+                picture_difference(frames.substr(k * kFrame, kFrame), film.substr(k * kFrame, kFrame));
             EXPECT_LT(off, 6.0) << ending << " " << k;
         }
-        EXPECT_GT(difference(film.substr(0, kFrame), film.substr(9 * kFrame)), 1.0) << ending;
+        EXPECT_GT(picture_difference(film.substr(0, kFrame), film.substr(9 * kFrame)), 1.0) << ending;
     }
     if (std::filesystem::exists(folder_.file("shot.webp"))) {
         const std::string webp = read_file(folder_.file("shot.webp"));

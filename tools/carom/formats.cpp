@@ -244,7 +244,7 @@ std::string scene_schema() {
 
 std::string record_schema() {
     constexpr Files kRecord = Files::kRecord;
-    Json table = object_of(kTableFields, Table{}, kRecord);
+    Json table = object_of(kTableFields, carom::Table{}, kRecord);
     for (const auto& [list, part, meaning] : {std::array{"cushions", "cushion", "straight noses"},
                                               {"jaws", "jaw", "round noses"},
                                               {"pockets", "pocket", "where balls fall"}}) {

@@ -117,7 +117,7 @@ Measured read_measured(const toml::table& table, const std::string& file) {
     return m;
 }
 
-ValidationShot read_shot(const toml::table& table, const std::string& file) {
+ValidationShot read_validation_shot(const toml::table& table, const std::string& file) {
     const Reader in(table, file, {"name", "group", "values", "measured"});
     ValidationShot shot;
     shot.name = in.value<std::string>("name");
@@ -212,7 +212,8 @@ ValidationCase read_case(const CaseFile& file) {
         c.plot = CasePlot{plot.value("x", std::string()), plot.value("over", std::string()),
                           plot.value<std::string>("x_title"), plot.value<std::string>("y_title")};
     }
-    in.tables("shot", [&](const toml::table& each) { c.shots.push_back(read_shot(each, c.file)); });
+    in.tables("shot",
+              [&](const toml::table& each) { c.shots.push_back(read_validation_shot(each, c.file)); });
     in.tables("variant", [&](const toml::table& each) {
         c.variants.push_back(read_variant(each, c.file));
         check_claims(c, c.variants.back(), place_of(each.source()));
