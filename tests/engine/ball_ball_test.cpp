@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "base/temporary_folder.h"
 #include "carom/kernel/closed_forms.h"
 #include "reference/random_impacts.h"
 #include "support/engine_cases.h"
@@ -279,7 +280,8 @@ TEST(Unequal, RecordsKeepTheSizes) {
                                  "[[ball]]\nradius = 0.04\nmass = 0.5\nvelocity = [0, 1]\n"
                                  "[[ball]]\nid = \"b\"\nposition = [0.6, 1]\n");
     const Record record = simulate(plan_of(scene));
-    const std::string path = ::testing::TempDir() + "unequal_sizes.json";
+    const TemporaryFolder folder;
+    const std::string path = folder.file("sizes.json");
     write_record(record, path);
     const Record read = read_record(path);
     EXPECT_EQ(read.hash(), record.hash());

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <functional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/temporary_folder.h"
 #include "reference/random_impacts.h"
 #include "scene/rack.h"
 #include "support/hard_scenes.h"
@@ -187,7 +187,8 @@ TEST(HardRuns, Restart) {
     add_ball(push, "c", 0.5, 1.0 + 2.0 * R);
     add_ball(push, "d", 0.5 + 0.01, 1.0 + 4.0 * R);
     scenes.emplace_back("held", push);
-    const std::string file = testing::TempDir() + "carom_hard_restart.json";
+    const TemporaryFolder folder;
+    const std::string file = folder.file("restart.json");
     for (auto& [label, scene] : scenes) {
         const Plan whole_plan = plan_of(scene);
         const Record whole = run_verified(scene);
@@ -216,7 +217,6 @@ TEST(HardRuns, Restart) {
             EXPECT_GE(stops_in_hold, 3);
         }
     }
-    std::filesystem::remove(file);
 }
 
 // H40: one seed, one hash; another seed, another rack.
