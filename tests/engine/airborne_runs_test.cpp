@@ -171,6 +171,15 @@ TEST(Airborne, BouncesBrakeAsSlidingDoes) {
                 2.0 * scene.balls.mu_s * bounce_end(scene.balls.R, 9.81));
 }
 
+// Of a fall from so low the rounding of the height is a share of the energy that shows.
+TEST(Airborne, FallsFromNextToNothingRaiseNoAlarm) {
+    for (int k = 1; k <= 200; ++k) {
+        Scene scene = empty_scene();
+        add_high_ball(scene, "a", 0.0, 0.0, 5e-9 * k);
+        run_verified(scene);
+    }
+}
+
 TEST(Airborne, OnABallThatLies) {
     Scene scene = empty_scene();
     const double R = scene.balls.R;
