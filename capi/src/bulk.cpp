@@ -188,10 +188,3 @@ carom_status carom_record_states(const carom_record* record, size_t count, const
         }
     });
 }
-
-carom_status carom_scene_from_record(const carom_record* record, carom_scene** scene) {
-    return made(scene, [&](carom_scene& s) {
-        need({record});
-        s.scene = carom::scene_after(record->scene, record->record);
-    });
-}

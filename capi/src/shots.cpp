@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "carom/engine/next_scene.h"
 #include "carom/engine/simulate.h"
 #include "guard.h"
 #include "handles.h"
@@ -51,6 +52,14 @@ carom::BallStart* find_ball(carom::Scene& scene, const std::string& id) {
     const auto it = std::find_if(scene.ball.begin(), scene.ball.end(),
                                  [&](const carom::BallStart& ball) { return ball.id == id; });
     return it == scene.ball.end() ? nullptr : &*it;
+}
+
+/// What the caller's cue comes to, striking this ball.
+carom::Cue cue_of(const char* id, const carom_cue& cue) {
+    carom::Cue c;
+    c.ball = id;
+    for (const auto& [theirs, ours] : kCueNumbers) c.*ours = cue.*theirs;
+    return c;
 }
 
 }  // namespace
@@ -132,10 +141,7 @@ carom_status carom_scene_set_cue(carom_scene* scene, const char* id, const carom
             return;
         }
         need({id});
-        carom::Cue c;
-        c.ball = id;
-        for (const auto& [theirs, ours] : kCueNumbers) c.*ours = cue->*theirs;
-        scene->scene.cue = c;
+        scene->scene.cue = cue_of(id, *cue);
     });
 }
 
@@ -220,5 +226,20 @@ carom_status carom_record_hash(const carom_record* record, char hash[17]) {
         need({record, hash});
         const std::string text = record->record.hash();
         std::memcpy(hash, text.c_str(), 17);
+    });
+}
+
+carom_status carom_scene_from_record(const carom_record* record, carom_scene** scene) {
+    return made(scene, [&](carom_scene& s) {
+        need({record});
+        s.scene = carom::scene_after(record->scene, record->record);
+    });
+}
+
+carom_status carom_next_scene(const carom_record* record, const char* id, const carom_cue* cue,
+                              carom_scene** scene) {
+    return made(scene, [&](carom_scene& s) {
+        need({record, id, cue});
+        s.scene = carom::next_scene(record->scene, record->record, cue_of(id, *cue));
     });
 }

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from carom import _carom
+from carom import _carom, _toml
+from carom._errors import SceneError
 
 if TYPE_CHECKING:
     from typing import Self
@@ -176,13 +177,16 @@ class Record:
         scene: the one that was played; needed for a record that was loaded from a file, which has no physics
         cue: what strikes then, as for Scene; None for nothing
 
-        Raises ValueError without a scene, and SceneError where the result is none, as when no ball is left.
+        Raises ValueError without a scene, and SceneError where the result is none: no ball is left, or the one that is struck is gone
+        or still moves.
         """
-        from carom._scene import Scene, _section
+        from carom._scene import Scene, _placeless, _section
 
-        native = self._native.scene_after(None if scene is None else scene._native)
-        after = Scene._of(native)
-        return after if cue is None else after.replace(cue=_section(cue, "preset"))
+        section = "" if cue is None else _toml.document({"cue": _section(cue, "preset")}, "scene")
+        try:
+            return Scene._of(self._native.scene_after(None if scene is None else scene._native, section))
+        except SceneError as error:
+            raise _placeless(error) from None
 
     def to_pandas(self, what: Literal["events", "segments"] = "events") -> pandas.DataFrame:
         """The events, or the motion segments of all balls, as a DataFrame; a copy. Needs pandas (extra [notebook]).

@@ -86,8 +86,9 @@ void orientations(const NativeRecord& r, const Flat<const double>& times, const 
             at = std::copy_n(r.record->orientation_at(ball, times.data()[k]).coeffs().data(), 4, at);
 }
 
-/// The scene for the next shot, with the physics of `scene`. @throws nb::value_error for another scene's balls
-NativeScene scene_after_record(const NativeRecord& r, const NativeScene* other) {
+/// The scene for the next shot, with the physics of `scene`, and with `cue`, a section of a scene file or nothing.
+/// @throws nb::value_error for another scene's balls, SceneError
+NativeScene scene_after_record(const NativeRecord& r, const NativeScene* other, const std::string& cue) {
     const Scene* scene = other != nullptr ? other->scene.get() : r.scene.get();
     if (scene == nullptr)
         throw nb::value_error(
@@ -95,8 +96,8 @@ NativeScene scene_after_record(const NativeRecord& r, const NativeScene* other) 
     if (!std::equal(scene->ball.begin(), scene->ball.end(), r.record->tracks.begin(), r.record->tracks.end(),
                     [](const BallStart& ball, const BallTrack& track) { return ball.id == track.id; }))
         throw nb::value_error("the scene has other balls than the record");
-    const Scene after = scene_after(*scene, *r.record);
-    const std::string text = scene_text(after);
+    // Sections of a file stand in any order, keys without a section in front of them.
+    const std::string text = cue + scene_text(scene_after(*scene, *r.record));
     return {std::make_shared<const Scene>(parse_scene(text, scene->file)), text};
 }
 
@@ -178,7 +179,7 @@ void add_records(nb::module_& m) {
         .def("hash", [](const NativeRecord& r) { return r.record->hash(); })
         .def("states", states, nb::arg("times"), nb::arg("rvw").noconvert(), nb::arg("kinds").noconvert())
         .def("orientations", orientations, nb::arg("times"), nb::arg("out").noconvert())
-        .def("scene_after", scene_after_record, nb::arg("scene").none())
+        .def("scene_after", scene_after_record, nb::arg("scene").none(), nb::arg("cue"))
         .def("text",
              [](const NativeRecord& r) {
                  const nb::gil_scoped_release no_gil;

@@ -207,5 +207,32 @@ TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
     EXPECT_EQ(next, nullptr);
 }
 
+// In one call what a record and a cue make together, checked.
+TEST(CApiBatch, TheNextSceneWithItsStrike) {
+    const RecordPtr first = play(scene_of("eight_ball_break").get());
+    carom_cue cue;
+    carom_cue_init(&cue);
+    cue.speed = 2.0;
+    carom_scene *next = nullptr, *by_hand = nullptr;
+    ASSERT_EQ(carom_next_scene(first.get(), "cue", &cue, &next), CAROM_OK) << carom_last_error();
+    const ScenePtr owner(next, carom_scene_free);
+    ASSERT_EQ(carom_scene_from_record(first.get(), &by_hand), CAROM_OK);
+    const ScenePtr other(by_hand, carom_scene_free);
+    ASSERT_EQ(carom_scene_set_cue(by_hand, "cue", &cue), CAROM_OK);
+    char a[17], b[17];
+    ASSERT_EQ(carom_record_hash(play(next).get(), a), CAROM_OK);
+    ASSERT_EQ(carom_record_hash(play(by_hand).get(), b), CAROM_OK);
+    EXPECT_STREQ(a, b);
+
+    // A ball that is not there, or does not rest, is not struck.
+    EXPECT_EQ(carom_next_scene(first.get(), "nobody", &cue, &next), CAROM_BAD_SCENE);
+    EXPECT_EQ(next, nullptr);
+    const RecordPtr half = play(scene_of("side_bank").get(), 0.1);
+    EXPECT_EQ(carom_next_scene(half.get(), "cue", &cue, &next), CAROM_BAD_SCENE);
+    EXPECT_EQ(carom_next_scene(half.get(), "cue", nullptr, &next), CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(carom_next_scene(half.get(), nullptr, &cue, &next), CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(carom_next_scene(nullptr, "cue", &cue, &next), CAROM_BAD_ARGUMENT);
+}
+
 }  // namespace
 }  // namespace carom::test

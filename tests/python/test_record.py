@@ -141,9 +141,20 @@ def test_the_final_scene_is_the_next_shot(break_scene):
     kept = [i for i, ball in enumerate(record.ids) if ball in after.ids]
     assert (after.positions == end[kept, 0, :2]).all()
     assert carom.simulate(after).event_list()[0].type == "cue_strike"
+    # Over as many shots as there are: what rests keeps its place to the bit.
+    for shot in range(1, 8):
+        record = carom.simulate(after)
+        end = dict(zip(record.ids, record.states(record.duration)[:, 0, :2]))
+        after = record.final_scene(cue={"speed": 2 + shot / 3, "aim_deg": 50 * shot})
+        assert all((place == end[ball]).all() for ball, place in zip(after.ids, after.positions))
+        assert after == record.final_scene().replace(cue={"speed": 2 + shot / 3, "aim_deg": 50 * shot})
     other = carom.Scene(ball=[{"id": "x"}])
     with pytest.raises(ValueError, match="other balls"):
         record.final_scene(scene=other)
+    with pytest.raises(carom.SceneError, match=r'no ball "nobody"'):
+        record.final_scene(cue={"ball": "nobody"})
+    with pytest.raises(carom.SceneError, match="velocity or spin of its own"):
+        carom.simulate(after, until=0.05).final_scene(cue={"speed": 1})
 
 
 def test_limits_end_a_shot(break_scene):

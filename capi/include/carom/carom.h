@@ -206,6 +206,11 @@ CAROM_API carom_status carom_record_states(const carom_record* record, size_t co
  * in pockets and without the cue. On failure *scene is NULL. */
 CAROM_API carom_status carom_scene_from_record(const carom_record* record, carom_scene** scene);
 
+/* The same with the next strike, and validated: the cue strikes the ball with this id. Returns CAROM_BAD_SCENE if that ball
+ * has fallen or has left the table, or is not at rest. */
+CAROM_API carom_status carom_next_scene(const carom_record* record, const char* id, const carom_cue* cue,
+                                        carom_scene** scene);
+
 /* ---- Many shots ---- */
 
 typedef struct carom_batch carom_batch;
