@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 set(carom_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/carom)
 install(FILES ${PROJECT_BINARY_DIR}/include/carom/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/carom)
 
-install(TARGETS carom_kernel carom_engine EXPORT carom ARCHIVE)
+install(TARGETS carom_kernel carom_engine carom_games EXPORT carom ARCHIVE)
 if(CAROM_BUILD_C_LIBRARY)
   install(TARGETS carom_c EXPORT carom LIBRARY)
 endif()

@@ -1,7 +1,6 @@
 // The scene of the next shot: what is gone is gone, and the rest lies where it rests, to the bit.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -42,11 +41,9 @@ TEST(NextScene, KeepsWhatRestsToTheBitOverManyShots) {
             rest.push_back({.id = record.tracks[i].id, .position = end.position, .where = {}});
             EXPECT_TRUE(end.velocity.isZero(0.0) && end.spin.isZero(0.0));
         }
-        const bool scratch =
-            std::none_of(rest.begin(), rest.end(), [](const BallStart& b) { return b.id == "cue"; });
-        if (scratch || rest.size() < 2) break;
+        if (rest.size() < 2) break;
         // Every third cue is raised, so that balls fly as well.
-        Cue cue = strike("cue", 4.0 + 0.1 * shot, 37.0 * shot);
+        Cue cue = strike(rest[0].id, 4.0 + 0.1 * shot, 37.0 * shot);
         if (shot % 3 == 0) cue.elevation_deg = 12.0;
         const Scene next = next_scene(scene, record, cue);
         EXPECT_EQ(next.ball, rest);
@@ -58,8 +55,8 @@ TEST(NextScene, KeepsWhatRestsToTheBitOverManyShots) {
         EXPECT_EQ(played(next).hash(), played(parse_scene(scene_text(next), "next")).hash());
         scene = next;
     }
-    EXPECT_GT(gone, 0u);
-    EXPECT_GE(shot, 5);
+    EXPECT_GT(gone, 3u);
+    EXPECT_GE(shot, 10);
 }
 
 TEST(NextScene, ABallThatLeftTheTableIsGone) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/draws.h"
 #include "scene/distribution.h"
 #include "support/process.h"
 
@@ -287,7 +288,7 @@ TEST(StandardNormal, HasTheMomentsAndTailsOfTheNormalDistribution) {
     double sum = 0.0, squares = 0.0, fourth = 0.0;
     int beyond_two = 0, beyond_three = 0;
     for (int i = 0; i < kDraws; ++i) {
-        const double x = detail::standard_normal(random);
+        const double x = standard_normal(random);
         sum += x;
         squares += x * x;
         fourth += x * x * x * x;

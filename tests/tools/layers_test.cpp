@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(Layers, NoIncludePointsUpwards) {
-    for (const char* layer : {"kernel", "engine", "render", "capi", "tools", "python"}) {
+    for (const char* layer : {"kernel", "engine", "games", "render", "capi", "tools", "python"}) {
         ASSERT_TRUE(fs::exists(fs::path(CAROM_SOURCE_DIR) / layer)) << layer;
     }
     for (const std::string& violation : layer_violations(CAROM_SOURCE_DIR)) ADD_FAILURE() << violation;
@@ -41,6 +41,7 @@ class LayersSelfTest : public ::testing::Test {
         put("engine/src/loop/l.h", "#include \"contact/c.h\"\n");
         put("engine/CMakeLists.txt",
             "target_link_libraries(carom_engine PUBLIC carom::kernel) # carom::tools\n");
+        put("games/src/g.cpp", "#include \"base/b.h\"\n#include \"carom/engine/e.h\"\n");
         put("render/src/stage/s.cpp", "#include \"base/b.h\"\n");
         put("render/src/draw/d.h", "#pragma once\n");
         put("render/src/r.cpp", "#include <png.h>\n#include <GL/gl.h>\n#include \"carom/engine/e.h\"\n");
@@ -83,6 +84,9 @@ TEST_F(LayersSelfTest, SeesEveryKindOfViolation) {
         {"kernel/src/k.cpp", "#include <unistd.h>\n", "standard library only"},
         {"engine/src/e.cpp", "#include \"carom/render/r.h\"\n", "upwards to render"},
         {"engine/src/e.cpp", "#include \"../../render/src/r.cpp\"\n", "upwards to render"},
+        {"engine/src/e.cpp", "#include \"carom/games/g.h\"\n", "upwards to games"},
+        {"games/src/g.cpp", "#include \"carom/render/r.h\"\n", "upwards to render"},
+        {"games/src/g.cpp", "#include \"contact/c.h\"\n", "engine/src, which is not public"},
         {"engine/src/e.cpp", "#include<png.h>\n", "not for this layer"},
         {"engine/src/e.cpp", "#include \"support/s.h\"\n", "outside the layers"},
         {"engine/src/e.cpp", "#include \"u.h\"\n", "upwards to tools"},

@@ -170,13 +170,14 @@ TEST(Pages, NotesOfTheLabSayWhenWhereAndAtWhichCommit) {
 // Words are what holds a letter or a digit: the rules of a table are none. The command line is generated and counts. 20 000 are those of
 // 2026-11; the validation against real tables, the choice of a model and the pockets came on top, and the Python package, whose pages
 // have the 1048 words by which the limit was raised for it, balls in the air, with 952, the page of carom view, by exactly its 684, and
-// sweeps on many machines, by the 828 of theirs, and masses that differ, clusters in space and four pictures, by 395.
+// sweeps on many machines, by the 828 of theirs, and masses that differ, clusters in space and four pictures, by 395, and
+// the shot after a record, by 7.
 TEST(Pages, GuideReferenceAndDesignAreNoLongerThanAnAfternoon) {
     EXPECT_EQ(words_of("| a | 1.5 m |\n|---|---|\n"), 3u);
     std::size_t words = 0;
     for (const char* folder : {"guide", "reference", "design"})
         for (const auto& [name, text] : pages_of(folder)) words += words_of(text);
-    EXPECT_LT(words, 24907u) << "cut, or move what was measured to a note in docs/lab";
+    EXPECT_LT(words, 24914u) << "cut, or move what was measured to a note in docs/lab";
 }
 
 }  // namespace

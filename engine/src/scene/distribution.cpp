@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "carom/engine/math.h"
+#include "base/draws.h"
 #include "scene/reader.h"
 #include "scene/toml_depth.h"
 
@@ -89,15 +89,6 @@ Distribution parse_distribution(std::string_view text, const toml::node* own) {
         };
     }
     fail("unknown distribution {}; use uniform, normal, integer or list", in_quotes(name));
-}
-
-double standard_normal(SplitMix64& random) {
-    const double width = 2.0 * std::sqrt(2.0 * exponential(-1.0));  // sqrt(8 / e)
-    for (;;) {
-        const double u = 1.0 - random.uniform();  // in (0, 1]
-        const double x = width * (random.uniform() - 0.5) / u;
-        if (u <= exponential(-0.25 * x * x)) return x;
-    }
 }
 
 }  // namespace carom::detail

@@ -34,8 +34,4 @@ toml::array arguments(std::string_view name, std::string_view text);
 /// @throws std::invalid_argument saying what is wrong
 Distribution parse_distribution(std::string_view text, const toml::node* own);
 
-/// Standard normal, by the ratio of uniforms: Kinderman, Monahan, "Computer generation of random variables
-/// using the ratio of uniform deviates", ACM TOMS 3, 1977.
-double standard_normal(SplitMix64& random);
-
 }  // namespace carom::detail

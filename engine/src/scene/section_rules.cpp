@@ -5,19 +5,12 @@
 #include <utility>
 
 #include "carom/engine/ball_ball.h"
+#include "carom/engine/strike.h"
 #include "carom/engine/tolerances.h"
 #include "carom/kernel/tolerance.h"
 #include "scene/sections.h"
 
 namespace carom::detail {
-namespace {
-
-// [ball radii] Cue offsets beyond this from the centre are refused: with chalk, a tip slips off at about
-// half a radius (static friction of about 0.6 between tip and ball gives sin(atan 0.6) = 0.51), and a miscue
-// is not simulated.
-constexpr double kMiscueOffset = 0.5;
-
-}  // namespace
 
 void check_id(const Section& section, const std::string& id) {
     if (id.empty()) section.fail("id", "a ball's id is empty; give it a name");

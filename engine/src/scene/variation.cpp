@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/draws.h"
 #include "base/fnv.h"
 #include "carom/engine/tolerances.h"
 #include "scene/distribution.h"
@@ -43,11 +44,7 @@ struct Rule {
     const Field<Rack>* rack = nullptr;
 
     Drawn draw(std::uint64_t seed, std::uint64_t index) const {
-        Fnv hash;
-        hash.add(seed);
-        hash.add(index);
-        hash.add(key);
-        SplitMix64 random(hash.value());
+        SplitMix64 random = draws_of(seed, index, key);
         return distribution(random);
     }
 };

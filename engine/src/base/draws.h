@@ -1,0 +1,18 @@
+// Random draws by name: what is drawn for one thing depends neither on what else is drawn nor on the order.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "base/splitmix64.h"
+
+namespace carom {
+
+/// The generator for `key` in shot `index` of a seed.
+SplitMix64 draws_of(std::uint64_t seed, std::uint64_t index, std::string_view key);
+
+/// Standard normal, by the ratio of uniforms: Kinderman, Monahan, "Computer generation of random variables
+/// using the ratio of uniform deviates", ACM TOMS 3, 1977.
+double standard_normal(SplitMix64& random);
+
+}  // namespace carom
