@@ -1,7 +1,7 @@
 #include "carom/games/noise.h"
 
-#include <cstdint>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 

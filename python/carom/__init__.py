@@ -7,7 +7,7 @@ names end in `_deg` are degrees. The table's frame has x along the short side, y
 Long calls run without the GIL, and Ctrl-C ends them. Results have the same bits on every machine and with any number of threads.
 """
 
-from carom import kernel, plot, sweep
+from carom import games, kernel, plot, sweep
 from carom._carom import VERSION as __version__
 from carom._errors import SceneError, SimulationError
 from carom._program import accuracy, margin
@@ -27,6 +27,7 @@ __all__ = [
     "TablePlan",
     "__version__",
     "accuracy",
+    "games",
     "kernel",
     "margin",
     "plot",

@@ -63,4 +63,5 @@ NB_MODULE(_carom, m) {
     add_batches(m);
     add_impacts(m);
     add_frames(m);
+    add_games(m);
 }

@@ -60,5 +60,6 @@ void add_shots(nb::module_& m);
 void add_batches(nb::module_& m);
 void add_impacts(nb::module_& m);
 void add_frames(nb::module_& m);
+void add_games(nb::module_& m);
 
 }  // namespace carom::python

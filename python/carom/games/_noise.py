@@ -1,0 +1,68 @@
+"""Execution noise."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
+
+import numpy as np
+
+from carom import _carom
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+#: What the five numbers of a strike are, in the order of arrays of strikes: the numbers of `Noise`, too.
+STRIKE = ("speed", "aim_deg", "elevation_deg", "side", "height")
+
+
+class Noise(NamedTuple):
+    """Standard deviations of independent normal errors of a strike."""
+
+    speed: float = 0.0  # [m/s]
+    aim_deg: float = 0.0
+    elevation_deg: float = 0.0
+    side: float = 0.0  # of the offset [ball radii]
+    height: float = 0.0
+
+    @classmethod
+    def named(cls, name: str, radius: float = 0.028575) -> Noise:
+        """"none"; "fastfiz": 0.075 m/s, aim 0.125 and elevation 0.1 degrees, offset 0.5 mm, the default of FastFiz, the simulator of the
+        computational pool championships; or "ai3603": 0.1 m/s, aim and elevation 0.1 degrees, offset 0.003 ball radii, of the course AI3603.
+
+        radius: of the struck ball [m]
+
+        Raises ValueError for another name.
+        """
+        return cls(*_carom.noise_by_name(name, radius))
+
+
+@overload
+def noisy(cue: Mapping[str, Any], noise: Noise | str, seed: int, index: int = 0) -> dict[str, Any]: ...
+@overload
+def noisy(cue: ArrayLike, noise: Noise | str, seed: int, index: int = 0) -> NDArray[np.float64]: ...
+def noisy(cue: Mapping[str, Any] | ArrayLike, noise: Noise | str, seed: int, index: int = 0) -> dict[str, Any] | NDArray[np.float64]:
+    """The strike that a player makes who means `cue`.
+
+    cue: a mapping, as for `Scene`, where a number that is left out is that of scene files; or an array (5,) of `STRIKE`, or (n, 5) for the shots
+        index, index + 1, ...
+    noise: standard deviations, or a name of `Noise.named`
+    seed, index: the same ones give the same errors; they are those of `carom sweep --vary cue.speed=normal(sd)` and so on
+
+    Returns what the cue was, a mapping or an array. It is always a strike that a scene takes: a negative speed becomes 0, an elevation below 0 a
+    level cue, and an offset of more than half a radius goes straight towards the centre until it is no more. "none" does only that.
+
+    Raises ValueError for a number that is not finite, a negative deviation, or an array of another shape.
+    """
+    sd = Noise.named(noise) if isinstance(noise, str) else noise
+    if not isinstance(cue, Mapping):
+        strikes = np.array(cue, np.float64)
+        if strikes.ndim not in (1, 2) or strikes.shape[-1] != len(STRIKE):
+            raise ValueError(f"cue: expected the shape (5,) or (n, 5), not {strikes.shape}")
+        _carom.add_noise(strikes.reshape(-1), tuple(sd), seed, index)
+        return strikes
+    standard = dict(zip(STRIKE, _carom.standard_strike()))
+    side, height = cue.get("offset", (standard["side"], standard["height"]))
+    numbers = [cue.get(key, standard[key]) for key in STRIKE[:3]]
+    speed, aim, elevation, side, height = noisy([*numbers, side, height], sd, seed, index).tolist()
+    return dict(cue) | {"speed": speed, "aim_deg": aim, "elevation_deg": elevation, "offset": [side, height]}
