@@ -69,7 +69,7 @@ class Shots(NamedTuple):
     @property
     def places(self) -> NDArray[np.float64]:
         """Where balls are that are still on the table: (n, b, 2) [m], NaN for the others; a copy, for `simulate_many(xy=...)`."""
-        return np.where((self.pocket >= 0)[:, :, None], np.nan, self.xy)
+        return np.where((self.pocket != -1)[:, :, None], np.nan, self.xy)
 
     def _native(self) -> _carom.ShotArrays:
         return _carom.ShotArrays(

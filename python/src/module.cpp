@@ -64,4 +64,5 @@ NB_MODULE(_carom, m) {
     add_impacts(m);
     add_frames(m);
     add_games(m);
+    add_arrays(m);
 }

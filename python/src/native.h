@@ -61,5 +61,6 @@ void add_batches(nb::module_& m);
 void add_impacts(nb::module_& m);
 void add_frames(nb::module_& m);
 void add_games(nb::module_& m);
+void add_arrays(nb::module_& m);
 
 }  // namespace carom::python

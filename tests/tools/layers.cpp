@@ -41,12 +41,13 @@ constexpr std::array<std::string_view, 4> kHeadersOfStations = {
 struct Door {
     std::string_view from, to;
 };
-constexpr std::array<Door, 11> kDoors = {{{"kernel/ladder", "kernel/src"},
+constexpr std::array<Door, 12> kDoors = {{{"kernel/ladder", "kernel/src"},
                                           {"tools", "kernel/ladder"},
                                           {"tools", "kernel/reference"},
                                           {"games", "engine/src/base"},
                                           {"render", "engine/src/base"},
                                           {"tools", "engine/src/base"},
+                                          {"python", "engine/src/base"},
                                           {"tools/measure", "kernel/src"},
                                           {"tools/measure", "engine/src"},
                                           {"tools/measure", "render/src"},

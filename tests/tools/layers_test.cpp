@@ -53,7 +53,8 @@ class LayersSelfTest : public ::testing::Test {
         put("capi/src/c.cpp",
             "#include \"carom/carom.h\"\n#include \"c.h\"\n#include \"carom/engine/e.h\"\n");
         put("capi/src/c.h", "#pragma once\n");
-        put("python/src/p.cpp", "#include <nanobind/nanobind.h>\n#include \"carom/render/r.h\"\n");
+        put("python/src/p.cpp",
+            "#include <nanobind/nanobind.h>\n#include \"base/b.h\"\n#include \"carom/render/r.h\"\n");
         put("tests/support/s.h", "#pragma once\n");
     }
 
@@ -97,7 +98,7 @@ TEST_F(LayersSelfTest, SeesEveryKindOfViolation) {
         {"capi/src/c.cpp", "#include \"../../tools/u.h\"\n", "upwards to tools"},
         {"capi/CMakeLists.txt", "target_link_libraries(carom_c carom::render)\n", "links carom::render"},
         {"render/src/r.cpp", "#include \"carom/carom.h\"\n", "outside the layers"},
-        {"python/src/p.cpp", "#include \"base/b.h\"\n", "engine/src, which is not public"},
+        {"python/src/p.cpp", "#include \"contact/c.h\"\n", "engine/src, which is not public"},
         {"tools/carom/p.cpp", "#include \"../../python/src/p.cpp\"\n", "outside the layers"},
         {"render/src/r.cpp", "#include HEADER\n", "not a literal name"},
         {"kernel/src/k.cpp", "#include \"ladder/l.h\"\n", "kernel/ladder, which is not public"},

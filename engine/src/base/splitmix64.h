@@ -26,6 +26,9 @@ class SplitMix64 {
     /// Uniform in 0 .. n-1 for small n (the bias is below n 2^-32).
     int below(int n) { return static_cast<int>(((next() >> 32) * static_cast<std::uint64_t>(n)) >> 32); }
 
+    /// The seed of a generator that goes on from here.
+    std::uint64_t state() const { return state_; }
+
   private:
     std::uint64_t state_;
 };

@@ -1,0 +1,50 @@
+"""Learning environments: `import carom.gym` registers them with Gymnasium. Needs the extra [gym].
+
+`gymnasium.make("carom/Pot-v0")` is one table, `gymnasium.make_vec("carom/Pot-v0", num_envs=256)` a batch of them. The guide is
+docs/guide/learning.md.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+try:
+    import gymnasium
+except ImportError as error:
+    raise ImportError("carom.gym needs Gymnasium: pip install 'carom-billiards[gym]'") from error
+
+from carom.gym._env import TableEnv
+from carom.gym._games import Game, Judged, Position, Pot, States
+from carom.gym._strikes import Strikes
+from carom.gym._tables import Rollout
+from carom.gym._vector import TableVectorEnv
+
+__all__ = ["Game", "Judged", "Position", "Pot", "Rollout", "States", "Strikes", "TableEnv", "TableVectorEnv", "make_env", "make_vector_env"]
+
+#: The games by their names in "carom/NAME-v0", and the options that are the game's own.
+_GAMES: dict[str, type[Game]] = {"Pot": Pot, "Position": Position}
+_OWN = ("table", "scene")
+
+
+def _game(name: str, options: dict[str, Any]) -> Game:
+    """Takes the game's own options out of the others."""
+    return _GAMES[name](**{key: options.pop(key) for key in _OWN if key in options})
+
+
+def make_env(game: str, **options: Any) -> TableEnv:
+    """What `gymnasium.make(f"carom/{game}-v0", ...)` makes, without its wrappers."""
+    return TableEnv(_game(game, options), **options)
+
+
+def make_vector_env(game: str, num_envs: int = 1, **options: Any) -> TableVectorEnv:
+    """What `gymnasium.make_vec(f"carom/{game}-v0", ...)` makes."""
+    return TableVectorEnv(_game(game, options), num_envs, **options)
+
+
+for _name in _GAMES:
+    gymnasium.register(
+        f"carom/{_name}-v0",
+        entry_point="carom.gym:make_env",
+        vector_entry_point="carom.gym:make_vector_env",
+        kwargs={"game": _name},
+    )

@@ -1,0 +1,148 @@
+"""One table as an environment of Gymnasium."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+
+from carom._record import Record
+from carom._render import render
+from carom.gym._games import Game, States
+from carom.gym._strikes import Strikes
+from carom.gym._tables import Rollout, Rules, Tables
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+Observation = Any  # an array, or with observation="dict" a dict of two
+
+
+def rules_of(
+    game: Game,
+    aim: str,
+    speed: tuple[float, float],
+    elevation_deg: float | tuple[float, float],
+    threads: int,
+    hashes: bool,
+) -> Rules:
+    """Checked options of an environment as what plays. Lists are taken as pairs, as specs of JSON have them."""
+    pair = elevation_deg if isinstance(elevation_deg, (int, float)) else (float(elevation_deg[0]), float(elevation_deg[1]))
+    strikes = Strikes(aim, (float(speed[0]), float(speed[1])), pair)
+    if threads < 0:
+        raise ValueError(f"threads={threads}: expected at least 0")
+    return Rules(game, strikes, threads=threads, hashes=hashes)
+
+
+def spaces_of(rules: Rules, observation: str) -> tuple[spaces.Space[Any], spaces.Box]:
+    """What is observed, and what is done."""
+    game = rules.game
+    places = len(game.ids) + len(game.points(States(np.empty((1, len(game.ids), 2)), np.zeros((1, len(game.EXTRA)))))[0])
+    balls: spaces.Space[Any] = spaces.Box(-1.0, 1.0, (places, 3), np.float32)
+    if observation == "dict":
+        balls = spaces.Dict({"balls": balls, "legal": spaces.MultiBinary(len(game.ids))})
+    elif observation != "box":
+        raise ValueError(f"observation={observation!r}: expected 'box' or 'dict'")
+    return balls, spaces.Box(-1.0, 1.0, (rules.strikes.size,), np.float32)
+
+
+def observed(game: Game, states: States, observation: str) -> Observation:
+    """Of all tables, in arrays of their own."""
+    balls = game.observe(states)
+    return balls if observation == "box" else {"balls": balls, "legal": game.legal(states).astype(np.int8)}
+
+
+def plain(value: Any) -> Any:
+    """A value of one table out of an array of many: of the types that Gymnasium's own vectors put together again."""
+    return bool(value) if isinstance(value, np.bool_) else value.copy() if isinstance(value, np.ndarray) else value
+
+
+class TableEnv(gymnasium.Env[Observation, Any]):
+    """One table. The subclasses in carom.gym say which game.
+
+    aim, speed, elevation_deg: how an action is a strike (`carom.gym.Strikes`)
+    observation: "box", or "dict" with the mask of the balls that may be hit first beside it
+    most_shots: an episode with as many shots is truncated
+    hashes: info["hash"] is that of the shot's record
+    render_mode: "rgb_array" or None
+    size: width and height of pictures [pixels]
+
+    Info of a step: "status" (a number of `carom.ShotStatus`), "events", "duration" [s], "first_hit" (a ball's place in `ids`, or -1), "pocket"
+    and "cushions" of every ball, "cue" (the strike: speed, aim_deg, elevation_deg, side, height), "foul" (its name, or ""), and "message" for a shot
+    without an end, which is truncated.
+
+    Options of reset: "xy" (balls, 2) [m], NaN for a ball that is not there; or "scene", a `carom.Scene` with these places; and what the game
+    remembers, by name.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 1}
+
+    def __init__(
+        self,
+        game: Game,
+        *,
+        aim: str = "angle",
+        speed: tuple[float, float] = (0.3, 6.0),
+        elevation_deg: float | tuple[float, float] = 0.0,
+        observation: str = "box",
+        most_shots: int = 1000,
+        hashes: bool = False,
+        render_mode: str | None = None,
+        size: tuple[int, int] = (640, 360),
+    ) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode={render_mode!r}: expected 'rgb_array' or None")
+        self._rules = rules_of(game, aim, speed, elevation_deg, 1, hashes)
+        self.observation_space, self.action_space = spaces_of(self._rules, observation)
+        self.render_mode, self._observation, self._size = render_mode, observation, (int(size[0]), int(size[1]))
+        self._tables = Tables(1, self._rules, most_shots)
+        self._seeded = False
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """The balls, in the order of every array's ball axis."""
+        return self._rules.game.ids
+
+    @property
+    def states(self) -> States:
+        """The table as it is, a copy with one row."""
+        return self._tables.states.take(slice(None))
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
+        super().reset(seed=seed)
+        if seed is not None or not self._seeded:
+            self._tables.seed(0, self.np_random)
+            self._seeded = True
+        self._tables.reset(np.array([0]), options)
+        return self._observe(), {}
+
+    def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+        if not self._seeded:
+            raise gymnasium.error.ResetNeeded("call reset before step")
+        played, info = self._tables.step(np.array([0]), np.asarray(action)[None])
+        said = {key: plain(values[0]) for key, values in info.items()}
+        said |= {"message": text for text in played.shots.messages.values()}
+        return self._observe(), float(played.reward[0]), bool(played.terminated[0]), bool(played.truncated[0]), said
+
+    def rollout(self, states: States, actions: ArrayLike, *, threads: int = 1) -> Rollout:
+        """Plays n actions on n tables at once, for search; this environment does not change. `env.states.take([0] * n)` is this table n times."""
+        rules = self._rules
+        return Rules(rules.game, rules.strikes, threads=threads, hashes=rules.hashes).rollout(states, actions)
+
+    def record(self) -> Record:
+        """The last shot with everything that happened, for pictures and pages. Raises RuntimeError before the first shot."""
+        if np.isnan(self._tables.cue[0, 0]):
+            raise RuntimeError("there was no shot since reset")
+        return self._rules.game.record(self._tables.before.xy[0], self._tables.cue[0])
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """The table as it is, from above: (height, width, 3) bytes."""
+        if self.render_mode is None:
+            return None
+        return next(render(self._rules.game.scene_of(self._tables.states.xy[0]), camera="top", size=self._size, times=[0.0]))
+
+    def _observe(self) -> Observation:
+        all_of = observed(self._rules.game, self._tables.states, self._observation)
+        return {key: values[0] for key, values in all_of.items()} if isinstance(all_of, dict) else all_of[0]

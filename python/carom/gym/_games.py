@@ -1,0 +1,193 @@
+"""Games of one player, on any number of tables at once: arrays in, arrays out. The environments are made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from carom._record import Record
+from carom._scene import Scene
+from carom._simulate import Shots, ShotStatus, simulate
+from carom.gym._strikes import uniforms
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+#: [m] The least room between balls, and between a ball and a cushion, in a random layout.
+_ROOM = 1e-3
+#: Random layouts that are tried before something must be wrong with the table.
+_TRIES = 1000
+
+
+class States(NamedTuple):
+    """n tables between two shots. Copy it, cut it, repeat it: `states.take([0] * 1000)`."""
+
+    xy: NDArray[np.float64]  # (n, balls, 2) [m]; NaN for a ball that is not on the table
+    extra: NDArray[np.float64]  # (n, k) what the game remembers beside: `Game.EXTRA` names the columns
+
+    def take(self, rows: Any) -> States:
+        """The tables with these numbers, as a copy."""
+        return States(self.xy[rows].copy(), self.extra[rows].copy())
+
+    def put(self, rows: Any, others: States) -> None:
+        """Replaces the tables with these numbers."""
+        self.xy[rows], self.extra[rows] = others.xy, others.extra
+
+
+class Judged(NamedTuple):
+    """What n shots were worth."""
+
+    states: States  # behind the shots
+    reward: NDArray[np.float64]  # (n,)
+    terminated: NDArray[np.bool_]  # (n,)
+    foul: NDArray[np.object_]  # (n,) its name, or ""
+
+
+class Game:
+    """A game of one player. The subclasses say what stands on the table and what a shot is worth."""
+
+    #: Names of the columns of `States.extra`.
+    EXTRA: tuple[str, ...] = ()
+    #: Whether an episode may have more than one shot.
+    RUN = False
+
+    def __init__(self, scene: Scene) -> None:
+        record = simulate(scene, until=0.0)
+        self.scene, self.ids, self.radii = scene, scene.ids, record.radii
+        self.table, self.colors = record.table, record.colors
+        if min(self.table.width, self.table.length) <= 0:
+            raise ValueError("scene: its table has no cushions, and so no size to place balls in")
+        self._tree = Scene.loads(scene.text()).to_dict()
+        if "cue" not in self._tree:
+            raise ValueError("scene: it has no [cue], and so no ball to strike")
+        self.cue_ball = self.ids.index(self._tree["cue"].get("ball", "cue"))
+
+    # What subclasses say.
+
+    def start(self, states: NDArray[np.uint64]) -> States:
+        """New tables, one for each of the generators, which move on."""
+        raise NotImplementedError
+
+    def legal(self, states: States) -> NDArray[np.bool_]:
+        """(n, balls) which balls may be hit first."""
+        legal = ~np.isnan(states.xy[:, :, 0])
+        legal[:, self.cue_ball] = False
+        return legal
+
+    def judge(self, states: States, shots: Shots) -> Judged:
+        """What shots were worth that began with `states`; all of them have a result."""
+        raise NotImplementedError
+
+    def points(self, states: States) -> NDArray[np.float64]:
+        """(n, places, 2) what an observation shows beside the balls [m]."""
+        return np.empty((len(states.xy), 0, 2))
+
+    # What all share.
+
+    def observe(self, states: States) -> NDArray[np.float32]:
+        """(n, balls + places, 3): x and y from -1 to 1 across the table, and 1. All three are 0 for a ball that is not on the table."""
+        places = np.concatenate((states.xy, self.points(states)), axis=1)
+        half = 0.5 * np.array([self.table.width, self.table.length])
+        out = np.empty((*places.shape[:2], 3), np.float32)
+        out[:, :, :2] = (places - (np.array(self.table.corner) + half)) / half
+        out[:, :, 2] = 1.0
+        out[np.isnan(places[:, :, 0])] = 0.0
+        return np.clip(out, -1.0, 1.0)
+
+    def scene_of(self, xy: NDArray[np.float64], cue: NDArray[np.float64] | None = None) -> Scene:
+        """One table as a scene, with the strike or without one. Raises SceneError where the balls cannot stand so."""
+        tree: dict[str, Any] = {key: part for key, part in self._tree.items() if key not in ("ball", "cue")}
+        tree["ball"] = [ball | {"position": place} for ball, place in zip(self._tree["ball"], xy.tolist()) if place[0] == place[0]]
+        if cue is not None:
+            speed, aim, elevation, side, height = cue.tolist()
+            tree["cue"] = self._tree["cue"] | {"speed": speed, "aim_deg": aim, "elevation_deg": elevation, "offset": [side, height]}
+        return Scene.from_dict(tree)
+
+    def record(self, xy: NDArray[np.float64], cue: NDArray[np.float64]) -> Record:
+        """One shot with everything that happened. Raises SimulationError for one that cannot go on."""
+        return simulate(self.scene_of(xy, cue))
+
+    def no_extra(self, n: int) -> NDArray[np.float64]:
+        return np.zeros((n, len(self.EXTRA)))
+
+    def scratch(self, shots: Shots) -> NDArray[np.object_]:
+        """Fouls of every game: the name, or ""."""
+        foul = np.full(len(shots.status), "", object)
+        foul[(shots.pocket == -2).any(1)] = "ball off the table"
+        foul[shots.pocket[:, self.cue_ball] >= 0] = "scratch"
+        return foul
+
+    def random_places(self, states: NDArray[np.uint64], balls: int) -> NDArray[np.float64]:
+        """(n, balls, 2) places that leave room between each other and to cushions and pockets, uniform among all such."""
+        low = np.array(self.table.corner) + self.radii.max() + _ROOM
+        size = np.array([self.table.width, self.table.length]) - 2 * (self.radii.max() + _ROOM)
+        mouths = np.array([pocket[1:3] for pocket in self.table.pockets]).reshape(-1, 2)
+        reach = np.array([pocket[3] for pocket in self.table.pockets]) + self.radii.max()
+        xy = np.empty((len(states), balls, 2))
+        left = np.arange(len(states))
+        for _ in range(_TRIES):
+            moved = states[left]
+            places = low + size * uniforms(moved, 2 * balls).reshape(-1, balls, 2)
+            states[left] = moved
+            xy[left] = places
+            fits = np.ones(len(left), bool)
+            for i in range(balls):
+                to_mouths = places[:, i, None] - mouths
+                fits &= ((to_mouths * to_mouths).sum(-1) > reach * reach).all(1)
+                for k in range(i):
+                    apart = places[:, i] - places[:, k]
+                    fits &= (apart * apart).sum(-1) > (2 * self.radii.max() + _ROOM) ** 2
+            left = left[~fits]
+            if len(left) == 0:
+                return xy
+        raise ValueError("no random layout fits this table: it is too small for its balls")
+
+
+def _placed(ids: Mapping[str, tuple[float, float]]) -> list[dict[str, Any]]:
+    return [{"id": ball, "position": list(place)} for ball, place in ids.items()]
+
+
+class Pot(Game):
+    """One object ball and one shot, from a random layout: 1 for the ball in any pocket, -1 for a foul (the cue ball in a pocket, a ball off the
+    table), 0 otherwise."""
+
+    def __init__(self, *, table: str = "nine_foot", scene: Scene | None = None) -> None:
+        super().__init__(scene or Scene(table=table, ball=_placed({"cue": (0.4, 0.5), "1": (0.5, 1.2)}), cue={"speed": 2.0, "aim_deg": 90.0}))
+
+    def start(self, states: NDArray[np.uint64]) -> States:
+        xy = self.random_places(states, len(self.ids))
+        return States(xy, self.no_extra(len(xy)))
+
+    def judge(self, states: States, shots: Shots) -> Judged:
+        foul = self.scratch(shots)
+        potted = (np.delete(shots.pocket, self.cue_ball, axis=1) >= 0).any(1)
+        reward = np.where(foul != "", -1.0, potted.astype(np.float64))
+        behind = States(shots.places, states.extra.copy())
+        return Judged(behind, reward, np.ones(len(reward), bool), foul)
+
+
+class Position(Pot):
+    """As Pot, and the cue ball should come to rest at a target: the reward is less by the distance to it, in diagonals of the table. A foul is -1."""
+
+    EXTRA = ("target x", "target y")
+
+    def start(self, states: NDArray[np.uint64]) -> States:
+        xy = self.random_places(states, len(self.ids))
+        return States(xy, self.random_places(states, 1)[:, 0])
+
+    def judge(self, states: States, shots: Shots) -> Judged:
+        judged = super().judge(states, shots)
+        to = shots.xy[:, self.cue_ball] - states.extra
+        diagonal = np.sqrt(self.table.width**2 + self.table.length**2)
+        far = np.sqrt((to * to).sum(-1)) / diagonal
+        return judged._replace(reward=np.where(judged.foul != "", -1.0, judged.reward - far))
+
+    def points(self, states: States) -> NDArray[np.float64]:
+        return states.extra[:, None]
+
+
+def failed(shots: Shots) -> NDArray[np.bool_]:
+    """(n,) the shots without an end: invalid, failed, or stopped by a limit."""
+    return np.asarray(shots.status != ShotStatus.AT_REST)

@@ -1,0 +1,152 @@
+"""Tables side by side: what one environment and a vector of them share, so that both do the same to the bit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from carom._scene import Scene
+from carom._simulate import Shots, simulate_many
+from carom.gym._games import Game, Judged, States, failed
+from carom.gym._strikes import Strikes
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+#: More events than any shot has: one that reaches it is truncated.
+_MOST_EVENTS = 100_000
+
+
+class Rollout(NamedTuple):
+    """n shots that were tried: none of them changes the environment."""
+
+    states: States  # behind the shots; as before for a shot without an end
+    reward: NDArray[np.float64]  # (n,)
+    terminated: NDArray[np.bool_]  # (n,)
+    truncated: NDArray[np.bool_]  # (n,) the shot has no end; `shots.status` and `shots.messages` say why
+    foul: NDArray[np.object_]  # (n,) its name, or ""
+    cue: NDArray[np.float64]  # (n, 5) the strikes, as `simulate_many(cue=...)` takes them
+    shots: Shots
+
+
+class Rules:
+    """A game, and how actions are strikes."""
+
+    def __init__(self, game: Game, strikes: Strikes, *, threads: int, hashes: bool) -> None:
+        self.game, self.strikes, self.threads, self.hashes = game, strikes, threads, hashes
+
+    def rollout(self, states: States, actions: ArrayLike) -> Rollout:
+        """Plays one action on each of the tables."""
+        act = np.asarray(actions)
+        wanted = (len(states.xy), self.strikes.size)
+        if act.shape != wanted or not np.issubdtype(act.dtype, np.floating):
+            raise ValueError(f"actions: expected floating-point numbers in the shape {wanted}, not {act.dtype} in {act.shape}")
+        game = self.game
+        cue = self.strikes.cue(act, states.xy, game.cue_ball, game.legal(states), game.radii)
+        return self.play(states, cue)
+
+    def play(self, states: States, cue: NDArray[np.float64]) -> Rollout:
+        """Plays one strike on each of the tables."""
+        shots = simulate_many(self.game.scene, cue=cue, xy=states.xy, max_events=_MOST_EVENTS, threads=self.threads, hashes=self.hashes)
+        bad = failed(shots)
+        judged = self.game.judge(states, shots)
+        if bad.any():
+            kept = States(judged.states.xy.copy(), judged.states.extra.copy())
+            kept.put(bad, states.take(bad))
+            judged = Judged(kept, np.where(bad, 0.0, judged.reward), judged.terminated & ~bad, np.where(bad, "", judged.foul))
+        return Rollout(judged.states, judged.reward, judged.terminated, bad, judged.foul, cue, shots)
+
+
+class Tables:
+    """n tables in the middle of their episodes, and what reset and step do to some of them."""
+
+    def __init__(self, n: int, rules: Rules, most_shots: int) -> None:
+        balls, k = len(rules.game.ids), len(rules.game.EXTRA)
+        self.rules, self.most_shots = rules, most_shots
+        self.states = States(np.full((n, balls, 2), np.nan), np.zeros((n, k)))
+        self.generators = np.zeros(n, np.uint64)
+        self.shots = np.zeros(n, np.int64)  # of this episode
+        self.before, self.cue = self.states.take(slice(None)), np.full((n, 5), np.nan)  # of the last shot
+
+    def seed(self, row: int, generator: np.random.Generator) -> None:
+        self.generators[row] = generator.integers(0, 2**64, dtype=np.uint64)
+
+    def reset(self, rows: NDArray[np.intp], options: Mapping[str, Any] | None) -> None:
+        """New episodes on these tables. Raises ValueError for options that are none."""
+        generators = self.generators[rows]
+        states = self.rules.game.start(generators)
+        self.generators[rows] = generators
+        if options:
+            states = self._as_asked(states, options)
+        self.states.put(rows, states)
+        self.shots[rows] = 0
+        self.cue[rows] = np.nan
+
+    def step(self, rows: NDArray[np.intp], actions: NDArray[np.floating]) -> tuple[Rollout, dict[str, NDArray[Any]]]:
+        """One shot on each of these tables, and what an environment says about it."""
+        whole = len(rows) == len(self.shots)
+        before = self.states.take(rows)
+        played = self.rules.rollout(before, actions)
+        self.before.put(rows, before)
+        self.cue[rows] = played.cue
+        self.states.put(rows, played.states)
+        self.shots[rows] += 1
+        over = (self.shots if whole else self.shots[rows]) >= self.most_shots
+        played = played._replace(truncated=played.truncated | (over & ~played.terminated))
+        shots = played.shots
+        info: dict[str, NDArray[Any]] = {
+            "status": shots.status,
+            "events": shots.events,
+            "duration": shots.duration,
+            "first_hit": shots.first_hit,
+            "pocket": shots.pocket,
+            "cushions": shots.cushions,
+            "cue": played.cue,
+            "foul": played.foul,
+        }
+        if shots.hash is not None:
+            info["hash"] = shots.hash
+        return played, info
+
+    def _as_asked(self, states: States, options: Mapping[str, Any]) -> States:
+        game, n = self.rules.game, len(states.xy)
+        known = {"xy", "scene", *game.EXTRA}
+        wrong = set(options) - known
+        if wrong:
+            raise ValueError(f"options: there is no {sorted(wrong)[0]!r}; there are {', '.join(sorted(known))}")
+        if "scene" in options and "xy" in options:
+            raise ValueError("options: both xy and scene say where the balls are; give one")
+        xy, extra = states.xy, states.extra
+        if "scene" in options:
+            xy = _repeated("scene", _places_of(options["scene"], game), n)
+        elif "xy" in options:
+            xy = _repeated("xy", np.asarray(options["xy"], np.float64), n, (len(game.ids), 2))
+        for k, name in enumerate(game.EXTRA):
+            if name in options:
+                extra[:, k] = _repeated(name, np.asarray(options[name], np.float64), n, ())
+        trial = simulate_many(game.scene, xy=xy, until=0.0)
+        for row, why in sorted(trial.messages.items()):
+            raise ValueError(f"options: table {row} cannot be played: {why}")
+        return States(np.array(xy), extra)
+
+
+def _repeated(name: str, values: NDArray[np.float64], n: int, shape: tuple[int, ...] | None = None) -> NDArray[np.float64]:
+    """The same for every table, or one for each."""
+    if shape is None or values.shape == shape:
+        return np.repeat(values[None], n, axis=0)
+    if values.shape == (n, *shape):
+        return values
+    raise ValueError(f"options: {name} has the shape {values.shape}; expected {shape}, or {(n, *shape)}")
+
+
+def _places_of(scene: Any, game: Game) -> NDArray[np.float64]:
+    if not isinstance(scene, Scene):
+        raise ValueError(f"options: scene is no carom.Scene but {scene!r}")
+    stranger = [ball for ball in scene.ids if ball not in game.ids]
+    if stranger:
+        raise ValueError(f"options: the scene has a ball {stranger[0]!r}; this game has {', '.join(game.ids)}")
+    xy = np.full((len(game.ids), 2), np.nan)
+    xy[[game.ids.index(ball) for ball in scene.ids]] = scene.positions
+    return xy

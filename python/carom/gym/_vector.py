@@ -1,0 +1,187 @@
+"""Many tables as one vector environment of Gymnasium: all shots of a step are one batch."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+from gymnasium.utils import seeding
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+
+from carom._render import render
+from carom.gym._env import Observation, observed, plain, rules_of, spaces_of
+from carom.gym._games import Game, States
+from carom.gym._tables import Rollout, Rules, Tables
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+_Step = tuple[Observation, "NDArray[np.float64]", "NDArray[np.bool_]", "NDArray[np.bool_]", dict[str, Any]]
+
+
+class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
+    """n tables. Table i does what a `TableEnv` does that was seeded with its seed: the same bits. The other options are those of `TableEnv`.
+
+    autoreset_mode: when a table whose episode is over is reset: at its next step, which plays no shot then ("NextStep"); in the same step ("SameStep",
+        what it ended with is in info["final_obs"] and info["final_info"]); or by `reset(options={"reset_mask": ...})` ("Disabled")
+    threads: that play a step's shots; 0 takes one for each core that the process may use
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 1, "autoreset_mode": AutoresetMode.NEXT_STEP}
+
+    def __init__(
+        self,
+        game: Game,
+        num_envs: int = 1,
+        *,
+        autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
+        threads: int = 1,
+        aim: str = "angle",
+        speed: tuple[float, float] = (0.3, 6.0),
+        elevation_deg: float | tuple[float, float] = 0.0,
+        observation: str = "box",
+        most_shots: int = 1000,
+        hashes: bool = False,
+        render_mode: str | None = None,
+        size: tuple[int, int] = (640, 360),
+    ) -> None:
+        super().__init__()
+        if num_envs < 1:
+            raise ValueError(f"num_envs={num_envs}: expected at least 1")
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode={render_mode!r}: expected 'rgb_array' or None")
+        self.num_envs, self.render_mode, self._observation, self._size = num_envs, render_mode, observation, (int(size[0]), int(size[1]))
+        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        self.metadata = {**type(self).metadata, "autoreset_mode": self.autoreset_mode}
+        self._rules = rules_of(game, aim, speed, elevation_deg, threads, hashes)
+        self.single_observation_space, self.single_action_space = spaces_of(self._rules, observation)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._tables = Tables(num_envs, self._rules, most_shots)
+        self._seeded = np.zeros(num_envs, bool)
+        self._over = np.zeros(num_envs, bool)
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """The balls, in the order of every array's ball axis."""
+        return self._rules.game.ids
+
+    @property
+    def states(self) -> States:
+        """The tables as they are, a copy."""
+        return self._tables.states.take(slice(None))
+
+    def reset(self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
+        n = self.num_envs
+        seeds = [None] * n if seed is None else [seed + i for i in range(n)] if isinstance(seed, (int, np.integer)) else list(seed)
+        if len(seeds) != n:
+            raise ValueError(f"seed: {len(seeds)} seeds for {n} environments; give one for each")
+        rest: Mapping[str, Any] = dict(options or {})
+        mask = _mask(rest.pop("reset_mask"), n) if "reset_mask" in rest else np.ones(n, bool)  # type: ignore[attr-defined]
+        rows = np.flatnonzero(mask)
+        for row in rows.tolist():
+            if seeds[row] is not None or not self._seeded[row]:
+                generator, used = seeding.np_random(seeds[row])
+                self._tables.seed(row, generator)
+                if row == 0:
+                    self._np_random, self._np_random_seed = generator, used
+        self._seeded[rows] = True
+        self._tables.reset(rows, _cut(rest, mask))
+        self._over[rows] = False
+        return self._observe(), {}
+
+    def step(self, actions: Any) -> _Step:
+        if not self._seeded.all():
+            raise gymnasium.error.ResetNeeded("call reset before step")
+        over, mode = self._over, self.autoreset_mode
+        if mode == AutoresetMode.DISABLED and over.any():
+            raise gymnasium.error.ResetNeeded(f'the episode of environment {np.argmax(over)} is over: reset(options={{"reset_mask": ...}})')
+        act = np.asarray(actions)
+        if act.shape != self.action_space.shape:
+            raise ValueError(f"actions: expected the shape {self.action_space.shape}, not {act.shape}")
+        resets = np.flatnonzero(over)  # none but with NEXT_STEP
+        rows = np.flatnonzero(~over)
+        reward, terminated, truncated = np.zeros(self.num_envs), np.zeros(self.num_envs, bool), np.zeros(self.num_envs, bool)
+        infos: dict[str, Any] = {}
+        if len(resets):
+            self._tables.reset(resets, None)
+        if len(rows):
+            played, info = self._tables.step(rows, act if len(rows) == self.num_envs else act[rows])
+            reward[rows], terminated[rows], truncated[rows] = played.reward, played.terminated, played.truncated
+            ended = terminated | truncated
+            if mode == AutoresetMode.SAME_STEP and ended.any():
+                infos = self._same_step(rows, played, info, ended)
+            else:
+                infos = self._infos(rows, info, played.shots.messages)
+        self._over = terminated | truncated if mode != AutoresetMode.SAME_STEP else np.zeros(self.num_envs, bool)
+        return self._observe(), reward, terminated, truncated, infos
+
+    def rollout(self, states: States, actions: ArrayLike, *, threads: int = 1) -> Rollout:
+        """Plays n actions on n tables at once, as many as you like, for search; this environment does not change."""
+        rules = self._rules
+        return Rules(rules.game, rules.strikes, threads=threads, hashes=rules.hashes).rollout(states, actions)
+
+    def render(self) -> tuple[Any, ...] | None:
+        """The tables as they are, from above."""
+        if self.render_mode is None:
+            return None
+        scenes = (self._rules.game.scene_of(xy) for xy in self._tables.states.xy)
+        return tuple(next(render(scene, camera="top", size=self._size, times=[0.0])) for scene in scenes)
+
+    def _same_step(self, rows: NDArray[np.intp], played: Rollout, info: dict[str, Any], ended: NDArray[np.bool_]) -> dict[str, Any]:
+        """Resets the tables whose episode is over. The info of the others, and how these ended."""
+        going = ~ended[rows]
+        said = played.shots.messages
+        infos = self._infos(rows[going], {key: values[going] for key, values in info.items()}, _renumbered(said, going)) if going.any() else {}
+        last = self._observe()
+        final = np.full(self.num_envs, None, object)
+        for row in np.flatnonzero(ended).tolist():
+            final[row] = {key: plain(values[row]) for key, values in last.items()} if isinstance(last, dict) else last[row].copy()
+        infos["final_obs"], infos["_final_obs"] = final, ended.copy()
+        infos["final_info"] = self._infos(rows[~going], {key: values[~going] for key, values in info.items()}, _renumbered(said, ~going))
+        infos["_final_info"] = ended.copy()
+        self._tables.reset(np.flatnonzero(ended), None)
+        return infos
+
+    def _infos(self, rows: NDArray[np.intp], info: Mapping[str, NDArray[Any]], messages: Mapping[int, str]) -> dict[str, Any]:
+        """As `VectorEnv._add_info` puts the info of these environments together."""
+        infos: dict[str, Any] = {}
+        mask = np.zeros(self.num_envs, bool)
+        mask[rows] = True
+        for key, values in info.items():
+            whole = np.full(self.num_envs, None, object) if values.dtype == object else np.zeros((self.num_envs, *values.shape[1:]), values.dtype)
+            whole[rows] = values
+            infos[key], infos[f"_{key}"] = whole, mask.copy()
+        if messages:
+            texts, told = np.full(self.num_envs, None, object), np.zeros(self.num_envs, bool)
+            for i, text in messages.items():
+                texts[rows[i]], told[rows[i]] = text, True
+            infos["message"], infos["_message"] = texts, told
+        return infos
+
+    def _observe(self) -> Observation:
+        return observed(self._rules.game, self._tables.states, self._observation)
+
+
+def _mask(mask: Any, n: int) -> NDArray[np.bool_]:
+    if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_ or mask.shape != (n,) or not mask.any():
+        raise ValueError(f"options: reset_mask has to be an array of {n} truth values, at least one of them true, not {mask!r}")
+    return mask
+
+
+def _cut(options: Mapping[str, Any], mask: NDArray[np.bool_]) -> dict[str, Any]:
+    """Options with one value for every environment, of the ones that are reset."""
+    whole = {"xy": 3}
+    return {
+        key: np.asarray(value)[mask] if key != "scene" and np.ndim(value) == whole.get(key, 1) else value for key, value in options.items()
+    }
+
+
+def _renumbered(messages: Mapping[int, str], keep: NDArray[np.bool_]) -> dict[int, str]:
+    """Messages of some of the shots, by their places among these."""
+    places = np.cumsum(keep) - 1
+    return {int(places[i]): text for i, text in messages.items() if keep[i]}

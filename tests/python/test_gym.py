@@ -1,0 +1,287 @@
+"""Environments of Gymnasium: its own checks, legal strikes for every action, the vector as so many single environments, bits that repeat."""
+
+from __future__ import annotations
+
+import itertools
+import warnings
+
+import carom
+import numpy as np
+import pytest
+from conftest import SOURCE
+
+gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed: pip install 'carom-billiards[gym]'")
+import carom.gym  # noqa: E402
+from gymnasium.utils.env_checker import check_env, data_equivalence  # noqa: E402
+from gymnasium.vector import AutoresetMode, SyncVectorEnv  # noqa: E402
+
+NAMES = sorted(carom.gym._GAMES)
+#: Options that reach every part of an observation, an action and an info.
+OPTIONS = [{}, {"aim": "ball", "observation": "dict", "elevation_deg": (0.0, 5.0), "hashes": True}]
+
+
+def same_bits(a, b):
+    """data_equivalence without its tolerance, which takes 1e-5 for nothing; NaN equals NaN."""
+    if isinstance(a, dict):
+        return data_equivalence(a, b) and all(same_bits(a[key], b[key]) for key in a)
+    if isinstance(a, np.ndarray) and a.dtype != object:
+        return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
+    if isinstance(a, np.ndarray):
+        return len(a) == len(b) and all(same_bits(x, y) for x, y in zip(a, b))
+    if isinstance(a, tuple):
+        return len(a) == len(b) and all(same_bits(x, y) for x, y in zip(a, b))
+    return type(a) is type(b) and a == b
+
+
+@pytest.mark.parametrize("options", OPTIONS, ids=["box", "dict"])
+@pytest.mark.parametrize("name", NAMES)
+def test_gymnasium_accepts_the_environment(name, options):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        env = gymnasium.make(f"carom/{name}-v0", **options).unwrapped
+        check_env(env)
+        check_env(gymnasium.make(env.spec).unwrapped)
+
+
+@pytest.mark.parametrize("mode", list(AutoresetMode))
+@pytest.mark.parametrize(("name", "options"), list(itertools.product(NAMES, OPTIONS)))
+def test_the_vector_is_so_many_single_environments(name, options, mode):
+    n, steps = 5, 8
+    single = SyncVectorEnv([lambda: gymnasium.make(f"carom/{name}-v0", **options)] * n, autoreset_mode=mode)
+    many = gymnasium.make_vec(f"carom/{name}-v0", num_envs=n, autoreset_mode=mode.value, **options)
+    assert isinstance(many.unwrapped, carom.gym.TableVectorEnv) and many.metadata["autoreset_mode"] is mode
+    assert many.observation_space == single.observation_space and many.action_space == single.action_space
+    seeds = [3, 1, 4, 1, 5]
+    assert same_bits(many.reset(seed=seeds), single.reset(seed=seeds))
+    single.action_space.seed(7)
+    over = 0
+    for _ in range(steps):
+        actions = single.action_space.sample()
+        a, b = many.step(actions), single.step(actions)
+        assert same_bits(a, b), (a, b)
+        assert a[0] in many.observation_space if isinstance(a[0], dict) else many.observation_space.contains(a[0])
+        ended = a[2] | a[3]
+        over += ended.sum()
+        if mode == AutoresetMode.DISABLED and ended.any():
+            with pytest.raises(gymnasium.error.ResetNeeded, match="is over"):
+                many.step(actions)
+            # One by one as Gymnasium's own vector, with a seed for one of them.
+            again = [None, 9, None, None, None]
+            assert same_bits(many.reset(seed=again, options={"reset_mask": ended.copy()}), single.reset(seed=again, options={"reset_mask": ended.copy()}))
+    assert over > 0 and same_bits(many.reset(seed=8), single.reset(seed=8)) and same_bits(many.reset(), single.reset())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_seed_repeats_to_the_bit_whatever_the_threads(name):
+    def run(threads):
+        env = carom.gym.make_vector_env(name, 40, threads=threads, hashes=True, autoreset_mode="SameStep")
+        env.action_space.seed(2)
+        first = env.reset(seed=11)
+        return [first, *(env.step(env.action_space.sample()) for _ in range(4))]
+
+    one, two = run(1), run(3)
+    assert all(same_bits(a, b) for a, b in zip(one, two))
+    hashes = np.concatenate([step[4]["final_info"]["hash"][step[2]] for step in one[1:] if step[2].any()])
+    assert len(set(hashes.tolist())) == len(hashes) > 30
+
+
+def test_what_is_returned_is_nobody_elses():
+    env = carom.gym.make_vector_env("Pot", 3, observation="dict")
+    kept = [env.reset(seed=1)[0]]
+    copies = [{key: values.copy() for key, values in kept[0].items()}]
+    for _ in range(3):
+        step = env.step(env.action_space.sample())
+        kept.append(step[0])
+        copies.append({key: values.copy() for key, values in step[0].items()})
+        for values in (*step[1:4], *(v for v in step[4].values())):
+            values[...] = 0
+        env.states.xy[...] = 0
+        kept[-1]["legal"][...] = copies[-1]["legal"][...] = 1
+    assert all(same_bits(a, b) for a, b in zip(kept, copies))
+    assert env.states.xy.any()
+
+
+# Strikes.
+
+
+def corners(size):
+    """Every action whose numbers are ends, middles, or hardly more than nothing."""
+    tiny = np.array([-1.0, 0.0, 1.0, 1e-45, -1e-30, 0.5])
+    few = np.array(list(itertools.product([-1.0, 0.0, 1.0], repeat=size)))
+    random = np.random.default_rng(5)
+    return np.concatenate((few, random.choice(tiny, (300, size)), random.uniform(-1, 1, (700, size)), random.uniform(-3, 3, (200, size))))
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("aim", ["angle", "ball"])
+@pytest.mark.parametrize("elevation", [0.0, (0.0, 60.0)], ids=["level", "raised"])
+def test_every_action_is_a_legal_strike(aim, elevation, dtype):
+    env = carom.gym.make_env("Pot", aim=aim, elevation_deg=elevation, speed=(0.3, 5.0))
+    env.reset(seed=4)
+    actions = corners(env.action_space.shape[0]).astype(dtype)
+    played = env.rollout(env.states.take(np.zeros(len(actions), int)), actions)
+    # The scene's own check has the last word on what is legal: none of them is invalid.
+    assert not played.shots.messages and (played.shots.status == carom.ShotStatus.AT_REST).all()
+    speed, aim_deg, raised, side, height = played.cue.T
+    assert (speed >= 0.3).all() and (speed <= 5.0).all() and {0.3, 5.0} <= set(speed.tolist())
+    assert (np.abs(aim_deg) <= 180).all() and (side**2 + height**2).max() <= 0.25
+    assert raised.min() == 0.0 and raised.max() == (60.0 if isinstance(elevation, tuple) else 0.0)
+
+
+def test_the_square_of_offsets_is_laid_on_the_whole_disc():
+    ends = np.array([[1, 0, 0, x, y] for x, y in [(1, 0), (0, 1), (1, 1), (-1, 1), (0.01, 0)]], float)
+    env = carom.gym.make_env("Pot")
+    env.reset(seed=1)
+    side, height = env.rollout(env.states.take([0] * 5), ends).cue.T[3:]
+    half = np.sqrt(0.125)
+    assert np.allclose(np.column_stack((side, height)), [[0.5, 0], [0, 0.5], [half, half], [-half, half], [0.005, 0]], atol=1e-9)
+
+
+def test_directions_are_those_of_numpy():
+    along = np.random.default_rng(1).normal(size=(1000, 2)) * 10.0 ** np.random.default_rng(2).uniform(-40, 3, (1000, 1))
+    assert np.abs(carom.gym._strikes.directions_deg(along) - np.degrees(np.arctan2(along[:, 1], along[:, 0]))).max() < 1e-13
+    ends = np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1e-170, 1e-160], [np.nan, 1]], float)
+    assert np.allclose(carom.gym._strikes.directions_deg(ends)[:5], [0, 0, 180, 90, -90], rtol=0, atol=1e-13)
+    assert np.isfinite(carom.gym._strikes.directions_deg(ends)[:6]).all() and np.isnan(carom.gym._strikes.directions_deg(ends)[6])
+
+
+def test_an_aim_at_a_ball_hits_it_as_full_as_it_says():
+    env = carom.gym.make_env("Pot", aim="ball")
+    env.reset(seed=1)
+    # Straight up the table, so that left and right are seen in x.
+    states = carom.gym.States(np.array([[[0.6, 0.6], [0.6, 1.6]]] * 5), np.empty((5, 0)))
+    full = np.array([0.0, 0.5, -0.5, 0.98, -0.98])
+    actions = np.column_stack((np.zeros(5), full, np.full(5, -0.2), np.zeros((5, 2))))
+    played = env.rollout(states, actions)
+    radius = 0.028575
+    line = np.radians(played.cue[:, 1])
+    # The distance of the other ball from the line of aim, to the right of it.
+    right = (1.0 * np.cos(line)) * -1.0
+    assert np.allclose(right, full * 2 * radius, atol=1e-12)
+    assert (played.shots.first_hit == 1).all()
+
+
+# Games, and shots without an end.
+
+
+def play_one(game, xy, cue, **extra):
+    env = carom.gym.make_env(game)
+    env.reset(seed=1, options={"xy": xy, **extra})
+    return env._rules.play(env.states, np.array([cue], float))
+
+
+def test_pot_pays_for_the_ball_and_takes_for_fouls():
+    # A straight shot into the corner (0, 0) from the diagonal of the table.
+    straight = [[0.6, 0.6], [0.3, 0.3]]
+    for speed, height, reward, foul in ((1.0, -0.3, 1.0, ""), (2.0, 0.45, -1.0, "scratch"), (0.3, 0.0, 0.0, "")):
+        played = play_one("Pot", straight, [speed, -135, 0, 0, height])
+        assert played.reward.tolist() == [reward] and played.foul.tolist() == [foul] and played.terminated.all(), (speed, height)
+
+
+def test_position_takes_the_distance_to_the_target():
+    target = {"target x": 0.9, "target y": 1.5}
+    played = play_one("Position", [[0.6, 0.6], [0.3, 0.3]], [1.0, -135, 0, 0, -0.3], **target)
+    far = np.hypot(*(played.shots.xy[0, 0] - [0.9, 1.5])) / np.hypot(1.27, 2.54)
+    assert played.shots.pocket[0, 1] >= 0 and abs(played.reward[0] - (1 - far)) < 1e-12
+
+
+def test_a_shot_without_an_end_is_truncated_and_says_why():
+    env = carom.gym.make_env("Pot")
+    before, _ = env.reset(seed=1)
+    observation, reward, terminated, truncated, info = env.step(np.array([np.nan, 0, 0, 0, 0], np.float32))
+    assert (reward, terminated, truncated) == (0.0, False, True) and same_bits(observation, before)
+    assert info["status"] == carom.ShotStatus.INVALID and "aim_deg" in info["message"]
+    many = carom.gym.make_vector_env("Pot", 3)
+    many.reset(seed=1)
+    actions = np.zeros((3, 5), np.float32)
+    actions[1, 2] = np.nan
+    _, reward, terminated, truncated, infos = many.step(actions)
+    assert truncated.tolist() == [False, True, False] and terminated.tolist() == [True, False, True] and reward[1] == 0
+    assert infos["status"][1] == carom.ShotStatus.INVALID and infos["_message"].tolist() == [False, True, False] and "speed" in infos["message"][1]
+
+
+def test_a_run_that_cannot_go_on_is_truncated_too():
+    balls = [{"id": "cue", "position": [0.4, 0.4]}, {"id": "b", "position": [0.6, 0.4], "mass": 0.34}]
+    scene = carom.Scene(balls={"mu_b": 0, "e_b": 0}, physics={"clusters": "sequential"}, ball=balls, cue={"speed": 1.0, "aim_deg": 0.0})
+    env = carom.gym.make_env("Pot", scene=scene)
+    env.reset(seed=1, options={"scene": scene})
+    *_, reward, terminated, truncated, info = env.step(np.array([1, 0, -0.5, 0, 0], np.float32))
+    assert info["status"] == carom.ShotStatus.FAILED and truncated and not terminated and reward == 0
+    assert info["message"].startswith("simulation stopped at t = ")
+    # An open table has no size to draw a layout in.
+    with pytest.raises(ValueError, match="no cushions"):
+        carom.gym.make_env("Pot", scene=scene.replace(table={"cushion": []}))
+
+
+def test_the_record_is_the_shot_and_the_picture_the_table():
+    env = carom.gym.make_env("Position", hashes=True, render_mode="rgb_array", size=(64, 36))
+    env.reset(seed=3)
+    with pytest.raises(RuntimeError, match="no shot"):
+        env.record()
+    *_, info = env.step(np.array([0.3, 0.8, 0.1, 0.2, -0.4], np.float32))
+    record = env.record()
+    assert record.hash() == f"{info['hash']:016x}" and len(record.events) == info["events"] and record.duration == info["duration"]
+    picture = env.render()
+    assert picture.shape == (36, 64, 3) and picture.std() > 0
+    assert carom.gym.make_env("Pot").render() is None
+
+
+def test_a_rollout_is_what_a_step_would_be():
+    env = carom.gym.make_env("Pot", hashes=True)
+    env.reset(seed=6)
+    env.action_space.seed(1)
+    actions = np.array([env.action_space.sample() for _ in range(20)])
+    tried = env.rollout(env.states.take([0] * 20), actions, threads=2)
+    assert np.array_equal(env.states.xy[0], tried.states.xy[0] * 0 + env.states.xy[0], equal_nan=True)
+    for k in (0, 7, 19):
+        env.reset(options={"xy": env.states.xy[0] if k == 0 else places})
+        places = env.states.xy[0]
+        _, reward, terminated, truncated, info = env.step(actions[k])
+        assert (reward, terminated, truncated) == (tried.reward[k], tried.terminated[k], tried.truncated[k])
+        assert info["hash"] == tried.shots.hash[k] and np.array_equal(env.states.xy[0], tried.states.xy[k], equal_nan=True)
+        env.reset(options={"xy": places})
+
+
+def test_reset_takes_a_scene_and_says_what_is_wrong():
+    env = carom.gym.make_env("Pot")
+    scene = carom.Scene.load(SOURCE / "scenes/draw.toml")
+    env.reset(options={"scene": scene})
+    assert np.array_equal(env.states.xy[0], scene.positions)
+    many = carom.gym.make_vector_env("Pot", 3)
+    each = np.array([[[0.5, 0.5], [0.5, 0.9 + 0.1 * i]] for i in range(3)])
+    many.reset(options={"xy": each})
+    assert np.array_equal(many.states.xy, each)
+    for options, message in [
+        ({"xz": 1}, "there is no 'xz'; there are scene, xy"),
+        ({"xy": np.zeros((3, 2))}, r"xy has the shape \(3, 2\)"),
+        ({"xy": [[0.5, 0.5], [0.5, 0.51]]}, "table 0 cannot be played: "),
+        ({"xy": each[0], "scene": scene}, "give one"),
+        ({"scene": "draw.toml"}, "no carom.Scene"),
+        ({"scene": carom.Scene.load(SOURCE / "scenes/eight_ball_break.toml")}, "the scene has a ball"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            env.reset(options=options)
+    for wrong, message in [
+        ({"aim": "up"}, "aim='up'"),
+        ({"speed": (2, 1)}, "speed="),
+        ({"elevation_deg": 90}, "elevation_deg=90"),
+        ({"observation": "pixels"}, "observation='pixels'"),
+        ({"render_mode": "human"}, "render_mode='human'"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            carom.gym.make_env("Pot", **wrong)
+        with pytest.raises(ValueError, match=message):
+            carom.gym.make_vector_env("Pot", 2, **wrong)
+    with pytest.raises(ValueError, match="expected the shape"):
+        many.step(np.zeros((2, 5), np.float32))
+    with pytest.raises(ValueError, match="reset_mask"):
+        many.reset(options={"reset_mask": [True, False, True]})
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        carom.gym.make_env("Pot").step(np.zeros(5, np.float32))
+
+
+def test_places_know_balls_that_left_the_table():
+    scene = carom.Scene.load(SOURCE / "scenes/jump.toml")
+    shots = carom.simulate_many(scene, params={"cue.speed": np.linspace(1, 12, 60), "cue.elevation_deg": np.full(60, 40.0)})
+    out = shots.pocket == -2
+    assert out.any() and np.isnan(shots.places[out]).all()
