@@ -65,4 +65,5 @@ NB_MODULE(_carom, m) {
     add_frames(m);
     add_games(m);
     add_arrays(m);
+    add_games_rules(m);
 }

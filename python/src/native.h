@@ -34,6 +34,11 @@ struct NativeRecord {
 template <class T>
 using Flat = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
+/// The scene that was played, or `other`. @throws nb::value_error where there is none, or one with other balls
+const Scene& scene_of(const NativeRecord& record, const NativeScene* other);
+/// A scene built in code with one more section of a file, or "". @throws SceneError
+NativeScene parsed_with(const std::string& section, const Scene& scene);
+
 /// The instruction set that CAROM_ISA names, or else the widest one. @throws nb::value_error
 kernel::Isa chosen_isa();
 
@@ -62,5 +67,6 @@ void add_impacts(nb::module_& m);
 void add_frames(nb::module_& m);
 void add_games(nb::module_& m);
 void add_arrays(nb::module_& m);
+void add_games_rules(nb::module_& m);
 
 }  // namespace carom::python

@@ -89,16 +89,7 @@ void orientations(const NativeRecord& r, const Flat<const double>& times, const 
 /// The scene for the next shot, with the physics of `scene`, and with `cue`, a section of a scene file or nothing.
 /// @throws nb::value_error for another scene's balls, SceneError
 NativeScene scene_after_record(const NativeRecord& r, const NativeScene* other, const std::string& cue) {
-    const Scene* scene = other != nullptr ? other->scene.get() : r.scene.get();
-    if (scene == nullptr)
-        throw nb::value_error(
-            "the record comes from a file, which has no physics: give the scene that was played");
-    if (!std::equal(scene->ball.begin(), scene->ball.end(), r.record->tracks.begin(), r.record->tracks.end(),
-                    [](const BallStart& ball, const BallTrack& track) { return ball.id == track.id; }))
-        throw nb::value_error("the scene has other balls than the record");
-    // Sections of a file stand in any order, keys without a section in front of them.
-    const std::string text = cue + scene_text(scene_after(*scene, *r.record));
-    return {std::make_shared<const Scene>(parse_scene(text, scene->file)), text};
+    return parsed_with(cue, scene_after(scene_of(r, other), *r.record));
 }
 
 std::vector<std::tuple<double, std::string, std::string, std::string>> event_list(const NativeRecord& r) {
@@ -155,6 +146,23 @@ std::vector<std::string> names_in_files() {
 }
 
 }  // namespace
+
+const Scene& scene_of(const NativeRecord& r, const NativeScene* other) {
+    const Scene* scene = other != nullptr ? other->scene.get() : r.scene.get();
+    if (scene == nullptr)
+        throw nb::value_error(
+            "the record comes from a file, which has no physics: give the scene that was played");
+    if (!std::equal(scene->ball.begin(), scene->ball.end(), r.record->tracks.begin(), r.record->tracks.end(),
+                    [](const BallStart& ball, const BallTrack& track) { return ball.id == track.id; }))
+        throw nb::value_error("the scene has other balls than the record");
+    return *scene;
+}
+
+NativeScene parsed_with(const std::string& section, const Scene& scene) {
+    // Sections of a file stand in any order, keys without a section in front of them.
+    const std::string text = section + scene_text(scene);
+    return {std::make_shared<const Scene>(parse_scene(text, scene.file)), text};
+}
 
 void add_records(nb::module_& m) {
     nb::class_<NativeRecord>(m, "Record")

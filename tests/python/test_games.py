@@ -1,4 +1,4 @@
-"""carom.games: the noise of a strike."""
+"""carom.games: the noise of a strike, and rules."""
 
 from __future__ import annotations
 
@@ -51,3 +51,95 @@ def test_a_noisy_strike_is_legal_whatever_it_was():
             games.noisy(bad, "none", 1)
     with pytest.raises(ValueError, match="at least 0"):
         games.noisy({}, games.Noise(speed=-1.0), 1)
+
+
+RACKS = {
+    "eight_ball": {"table": "nine_foot", "balls": "pool", "rack": "eight_ball", "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
+    "nine_ball": {"table": "nine_foot", "balls": "pool", "rack": "nine_ball", "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
+    "three_cushion": {"table": "carom", "balls": "carom", "rack": "three_cushion"},
+    "snooker": {"table": "snooker", "balls": "snooker", "rack": "snooker", "ball": [{"id": "cue", "position": [0.8, 0.6]}]},
+    "sum_to_three": {"table": "carom", "balls": "carom", "ball": [{"id": "cue", "position": [0.5, 0.5]}, {"id": "1", "position": [0.7, 2.0]}]},
+}
+
+
+def test_a_new_game_and_what_is_legal():
+    state = games.new_game("eight_ball")
+    assert state == games.State("eight_ball", 0, True, "head string", (0, 0), 0, False, -1, ("open", "open"), False, (0, 0), "red", False)
+    assert games.legal(state, ["cue", "8", "1"]) == games.Legal(["cue"], ["8", "1"], [], "head string", False)
+    later = state._replace(opening=False, in_hand="no", group=("solids", "stripes"))
+    assert games.legal(later, ["cue", "8", "1", "9"]).callable == ["1"]
+    assert games.legal(games.new_game("three_cushion", first=1), carom.Scene(**RACKS["three_cushion"])).cue_balls == ["yellow"]
+    for bad in (lambda: games.new_game("pinball"), lambda: games.new_game("snooker", first=3), lambda: games.legal(state._replace(over=True), ["8"])):
+        with pytest.raises(ValueError):
+            bad()
+    with pytest.raises(ValueError, match="open, solids, stripes"):
+        games.legal(state._replace(group=("reds", "open")), ["8"])
+
+
+def test_a_shot_is_judged_and_the_next_scene_follows():
+    # The one is potted, and the cue ball behind it: a scratch of nine-ball.
+    scene = carom.Scene(
+        table="nine_foot",
+        balls="pool",
+        ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.2, 0.2]}, {"id": "9", "position": [0.7, 1.0]}],
+        cue={"speed": 4.0, "aim_deg": 225.0, "offset": [0.0, 0.4]},
+    )
+    record = carom.simulate(scene)
+    state = games.new_game("nine_ball")._replace(opening=False, in_hand="no")
+    verdict = games.judge(state, record)
+    assert verdict.fouls == [games.Foul("cue ball pocketed", "WPA 6.1")] and verdict.chooser == -1
+    assert verdict.next.turn == 1 and verdict.next.in_hand == "anywhere" and verdict.next.fouls == (1, 0)
+    assert [option.decision for option in verdict.options] == ["take in hand"]
+    with pytest.raises(ValueError, match="say where it is placed"):
+        games.next_scene(record, verdict)
+    assert not games.may_place(record, verdict.options[0], (0.7, 1.02))
+    with pytest.raises(ValueError, match="not free"):
+        games.next_scene(record, verdict, place=(0.7, 1.02))
+    after = games.next_scene(record, verdict, {"speed": 2.0, "aim_deg": 90.0}, place=(0.7, 0.5))
+    assert after.ids == ("cue", "9") and after.positions.tolist() == [[0.7, 0.5], [0.7, 1.0]]
+    assert games.judge(verdict.next, carom.simulate(after)).points in (0, 1)
+    with pytest.raises(ValueError, match="before its balls were at rest"):
+        games.judge(state, carom.simulate(scene, until=0.1))
+
+
+def test_respots_come_back_exactly():
+    scene = carom.Scene(
+        table="snooker",
+        balls="snooker",
+        ball=[{"id": "cue", "position": [1.5, 3.3]}, {"id": "black", "position": [1.65, 3.45]}, {"id": "1", "position": [0.5, 2.0]}],
+        cue={"speed": 1.5, "aim_deg": 45.0, "offset": [0.0, -0.2]},
+    )
+    record = carom.simulate(scene)
+    state = games.new_game("snooker")._replace(opening=False, in_hand="no", on="colour")
+    verdict = games.judge(state, record, games.Call("black"))
+    assert verdict.points == 7 and not verdict.fouls and verdict.next.on == "red"
+    assert verdict.respots == [games.Respot("black", games.spots(record)["black"])]
+    after = games.next_scene(record, verdict)
+    assert tuple(after.positions[after.ids.index("black")]) == games.spots(record)["black"]
+
+
+@pytest.mark.parametrize("game", games.GAMES)
+def test_whole_games_of_random_strikes(game):
+    random = np.random.default_rng(5)
+    state, scene = games.new_game(game, target=3), carom.Scene(**RACKS[game])
+    for _ in range(60):
+        legal = games.legal(state, scene)
+        cue, target = (scene.positions[scene.ids.index(ball)] for ball in (state.cue_ball, str(random.choice(legal.first))))
+        aim = float(np.degrees(np.arctan2(*(target - cue)[::-1]))) + random.normal(0.0, 1.0)
+        scene = scene.replace(cue={"ball": state.cue_ball, "speed": float(random.uniform(1.0, 7.0)), "aim_deg": aim})
+        record = carom.simulate(scene)
+        verdict = games.judge(state, record, games.Call(str(random.choice(legal.callable)) if legal.callable else "", f"p{random.integers(1, 7)}"))
+        option = verdict.options[random.integers(len(verdict.options))]
+        state = option.state
+        if state.over:
+            assert state.winner in (0, 1)
+            return
+        if option.rerack:
+            scene = carom.Scene(**RACKS[game])
+            continue
+        place = None
+        if state.in_hand != "no":
+            while place is None or not games.may_place(record, option, place):
+                place = random.uniform(0.0, 1.0, 2) * (record.table.width, record.table.length)
+        scene = games.next_scene(record, option, place=place)
+    assert state.game == game

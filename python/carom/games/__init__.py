@@ -1,8 +1,43 @@
-"""Games on the table: the noise of a player's strike.
+"""Games on the table: rules, and the noise of a player's strike.
 
-Pure functions, the same as in C++ (`carom/games/*.h`).
+Pure functions, the same as in C++ (`carom/games/*.h`). A game is a loop: `new_game`, then for every shot `legal`, `carom.simulate`, `judge`, a choice
+among the options of the verdict, and `next_scene`.
 """
 
 from carom.games._noise import STRIKE, Noise, noisy
+from carom.games._rules import (
+    GAMES,
+    Call,
+    Foul,
+    Legal,
+    Option,
+    Respot,
+    State,
+    Verdict,
+    judge,
+    legal,
+    may_place,
+    new_game,
+    next_scene,
+    spots,
+)
 
-__all__ = ["STRIKE", "Noise", "noisy"]
+__all__ = [
+    "GAMES",
+    "STRIKE",
+    "Call",
+    "Foul",
+    "Legal",
+    "Noise",
+    "Option",
+    "Respot",
+    "State",
+    "Verdict",
+    "judge",
+    "legal",
+    "may_place",
+    "new_game",
+    "next_scene",
+    "noisy",
+    "spots",
+]

@@ -1,0 +1,140 @@
+// Eight-ball by the World Pool-Billiard Association: rule 3, with 1.4 to 1.6 and 6.
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "facts.h"
+
+namespace carom::games::detail {
+namespace {
+
+const std::string kEight = "8";
+
+Group group_of(std::string_view ball) {
+    const int number = number_of(ball);
+    if (number >= 1 && number <= 7) return Group::kSolids;
+    return number >= 9 && number <= 15 ? Group::kStripes : Group::kOpen;
+}
+
+/// What a player shoots at: the own group, any ball but the eight while the table is open, and the eight when they are gone.
+std::vector<std::string> targets(const State& state, const std::vector<std::string>& balls) {
+    const Group own = state.group[static_cast<std::size_t>(state.turn)];
+    std::vector<std::string> list;
+    for (const std::string& ball : balls) {
+        const Group group = group_of(ball);
+        if (group != Group::kOpen && (own == Group::kOpen || group == own)) list.push_back(ball);
+    }
+    if (list.empty() && is_in(kEight, balls)) list.push_back(kEight);
+    return list;
+}
+
+Respot eight_on_its_spot(const Facts& facts) {
+    const double R = facts.record.size(index_of(facts.record, kEight)).R;
+    return {kEight, spot_on_long_string(facts.record.table, foot_spot(facts.record.table), R,
+                                        facts.lying(kSpotGap, 0.0))};
+}
+
+Option rerack(const State& state, Decision decision, int breaker) {
+    return {decision, new_game(state.game, breaker, state.target), {}};
+}
+
+/// 3.3 (e) and (f): the eight is back, or the player who chooses breaks anew.
+void eight_on_the_break(const Facts& facts, const State& next, Verdict& verdict) {
+    verdict.chooser = next.turn;
+    verdict.options = {{Decision::kSpotEight, next, {eight_on_its_spot(facts)}},
+                       rerack(facts.state, Decision::kRerack, next.turn)};
+}
+
+/// 3.3 (d), (g) and (h): what the other player may choose after a break that was illegal or foul.
+void bad_break(const Facts& facts, State next, bool illegal, Verdict& verdict) {
+    std::vector<Respot> respots;
+    if (facts.left(kEight)) respots = {eight_on_its_spot(facts)};
+    verdict.chooser = next.turn;
+    next.in_hand = InHand::kNo;
+    if (!facts.shot.gone(facts.shot.struck)) verdict.options.push_back({Decision::kPlayOn, next, respots});
+    next.in_hand = InHand::kHeadString;
+    if (!verdict.fouls.empty()) verdict.options.push_back({Decision::kTakeInHand, next, respots});
+    if (illegal) {
+        verdict.options.push_back(rerack(facts.state, Decision::kRerack, next.turn));
+        verdict.options.push_back(rerack(facts.state, Decision::kRerackForOther, 1 - next.turn));
+    }
+    if (verdict.options.size() == 1) verdict.chooser = -1;
+}
+
+Verdict judge_break(const Facts& facts) {
+    Verdict verdict;
+    // 3.3 (b): any ball may be met first.
+    facts.add_pool_fouls(verdict.fouls, facts.ids(), true);
+    const bool illegal = !facts.any_object_fell() && facts.objects_driven() < kDrivenOnBreak;
+    State next = facts.state;
+    next.opening = false;
+    next.in_hand = InHand::kNo;
+    if (!verdict.fouls.empty() || illegal) {
+        next = other_players(next, InHand::kHeadString);
+        if (facts.fell(kEight))
+            eight_on_the_break(facts, next, verdict);
+        else
+            bad_break(facts, next, illegal, verdict);
+        return verdict;
+    }
+    if (facts.fell(kEight)) {
+        eight_on_the_break(facts, next, verdict);
+        return verdict;
+    }
+    if (!facts.any_object_fell()) next = other_players(next, InHand::kNo);
+    verdict.options = {{Decision::kPlayOn, next, {}}};
+    return verdict;
+}
+
+/// Whether the shot that pockets the eight wins: 3.6 and 3.8.
+bool wins(const Facts& facts, const std::vector<Foul>& fouls, const std::vector<std::string>& targets) {
+    const bool behind_the_group =
+        facts.state.group[static_cast<std::size_t>(facts.state.turn)] != Group::kOpen &&
+        is_in(kEight, targets);
+    return fouls.empty() && behind_the_group && !facts.call.safety && facts.call.ball == kEight &&
+           facts.fell_as_called();
+}
+
+}  // namespace
+
+Legal legal_eight_ball(const State& state, const std::vector<std::string>& balls) {
+    Legal legal;
+    legal.cue_balls = {"cue"};
+    if (state.opening) {
+        for (const std::string& ball : balls)
+            if (number_of(ball) > 0) legal.first.push_back(ball);
+        return legal;
+    }
+    legal.first = legal.callable = targets(state, balls);
+    return legal;
+}
+
+Verdict judge_eight_ball(const Facts& facts) {
+    if (facts.state.opening) return judge_break(facts);
+    const State& state = facts.state;
+    const std::vector<std::string> own = targets(state, facts.ids());
+    std::vector<Foul> fouls;
+    facts.add_pool_fouls(fouls, own, !facts.any_object_fell());
+    State next = state;
+    next.in_hand = InHand::kNo;
+    if (facts.gone(kEight)) {
+        const int winner = wins(facts, fouls, own) ? state.turn : 1 - state.turn;
+        return one_way(std::move(fouls), {Decision::kPlayOn, won_by(next, winner), {}});
+    }
+    if (!fouls.empty())
+        return one_way(std::move(fouls), {Decision::kTakeInHand, other_players(next, InHand::kAnywhere), {}});
+    const bool made = !facts.call.safety && is_in(facts.call.ball, own) && facts.fell_as_called();
+    if (!made) return one_way({}, {Decision::kPlayOn, other_players(next, InHand::kNo), {}});
+    // 3.4: the first ball that is called and falls decides the groups.
+    const auto me = static_cast<std::size_t>(state.turn);
+    if (state.group[me] == Group::kOpen) {
+        next.group[me] = group_of(facts.call.ball);
+        next.group[1 - me] = next.group[me] == Group::kSolids ? Group::kStripes : Group::kSolids;
+    }
+    Verdict verdict = one_way({}, {Decision::kPlayOn, next, {}});
+    verdict.points = 1;
+    return verdict;
+}
+
+}  // namespace carom::games::detail

@@ -1,0 +1,123 @@
+#include "facts.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace carom::games::detail {
+
+bool is_in(std::string_view ball, const std::vector<std::string>& list) {
+    return std::find(list.begin(), list.end(), ball) != list.end();
+}
+
+int number_of(std::string_view ball) {
+    int number = 0;
+    const char* end = ball.data() + ball.size();
+    const auto [stop, error] = std::from_chars(ball.data(), end, number);
+    return error == std::errc() && stop == end && number > 0 ? number : 0;
+}
+
+State other_players(const State& state, InHand in_hand) {
+    State next = state;
+    next.turn = 1 - state.turn;
+    next.in_hand = in_hand;
+    return next;
+}
+
+State won_by(State state, int winner) {
+    state.over = true;
+    state.winner = winner;
+    state.in_hand = InHand::kNo;
+    return state;
+}
+
+Verdict one_way(std::vector<Foul> fouls, const Option& option) {
+    Verdict verdict;
+    verdict.fouls = std::move(fouls);
+    verdict.options = {option};
+    return verdict;
+}
+
+Facts::Facts(const State& of, const Record& in, const Call& said)
+    : state(of), record(in), call(said), shot(shot_of(in)) {}
+
+bool Facts::fell(std::string_view ball) const {
+    const int index = index_of(record, ball);
+    return index >= 0 && shot.fell(index);
+}
+
+bool Facts::left(std::string_view ball) const {
+    const int index = index_of(record, ball);
+    return index >= 0 && shot.left(index);
+}
+
+bool Facts::any_object_fell() const {
+    return std::any_of(shot.pocketed.begin(), shot.pocketed.end(),
+                       [this](const Shot::Fallen& f) { return f.ball != shot.struck; });
+}
+
+int Facts::objects_off() const {
+    return static_cast<int>(shot.out.size()) - (shot.left(shot.struck) ? 1 : 0);
+}
+
+bool Facts::fell_as_called() const {
+    return std::any_of(shot.pocketed.begin(), shot.pocketed.end(), [this](const Shot::Fallen& f) {
+        return f.ball != shot.struck && id(f.ball) == call.ball &&
+               record.table.pockets[static_cast<std::size_t>(f.pocket)].id == call.pocket;
+    });
+}
+
+bool Facts::first_is_one_of(const std::vector<std::string>& ids) const {
+    return std::any_of(shot.first_hits.begin(), shot.first_hits.end(),
+                       [&](int ball) { return is_in(id(ball), ids); });
+}
+
+std::vector<std::string> Facts::ids() const {
+    std::vector<std::string> list;
+    for (const BallTrack& track : record.tracks) list.push_back(track.id);
+    return list;
+}
+
+std::vector<Lying> Facts::lying(double cue_gap, double gap, const std::vector<std::string>& left_out) const {
+    std::vector<Lying> balls;
+    for (int i = 0; i < static_cast<int>(record.tracks.size()); ++i) {
+        if (shot.gone(i) || is_in(id(i), left_out)) continue;
+        balls.push_back({planar(record.state_at(i, record.duration).position), record.size(i).R,
+                         i == shot.struck ? cue_gap : gap});
+    }
+    return balls;
+}
+
+int Facts::objects_driven() const {
+    const std::vector<int> driven = shot.driven_after(shot.first_time);
+    return static_cast<int>(
+        std::count_if(driven.begin(), driven.end(), [this](int b) { return b != shot.struck; }));
+}
+
+void Facts::add_placement_fouls(std::vector<Foul>& fouls) const {
+    if (state.in_hand != InHand::kHeadString && state.in_hand != InHand::kD) return;
+    if (!in_area(record.table, state.in_hand, planar(record.state_at(shot.struck, 0.0).position))) {
+        fouls.push_back(Foul::kPlacedOutside);
+        return;
+    }
+    if (state.in_hand != InHand::kHeadString || shot.first_hits.empty()) return;
+    const double string = head_string(record.table);
+    const double first = record.state_at(shot.first_hits.front(), 0.0).position.y();
+    if (first < string && farthest(record, shot.struck, Vec2(0.0, 1.0), shot.first_time) <= string)
+        fouls.push_back(Foul::kBehindHeadString);
+}
+
+void Facts::add_pool_fouls(std::vector<Foul>& fouls, const std::vector<std::string>& first,
+                           bool need_cushion) const {
+    if (shot.fell(shot.struck)) fouls.push_back(Foul::kCueBallPocketed);
+    if (shot.left(shot.struck)) fouls.push_back(Foul::kCueBallOff);
+    if (need_cushion && shot.first_hits.empty())
+        fouls.push_back(Foul::kNoBallHit);
+    else if (!shot.first_hits.empty() && !first_is_one_of(first))
+        fouls.push_back(Foul::kWrongBallFirst);
+    if (need_cushion && !shot.first_hits.empty() && shot.driven_after(shot.first_time).empty())
+        fouls.push_back(Foul::kNoCushion);
+    if (objects_off() > 0) fouls.push_back(Foul::kBallOff);
+    add_placement_fouls(fouls);
+}
+
+}  // namespace carom::games::detail

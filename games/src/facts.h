@@ -1,0 +1,76 @@
+// What the rules of all games share.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "carom/games/rules.h"
+#include "carom/games/shot.h"
+
+namespace carom::games::detail {
+
+/// A shot with the names of its balls.
+class Facts {
+  public:
+    Facts(const State& state, const Record& record, const Call& call);
+
+    const State& state;
+    const Record& record;
+    const Call& call;
+    Shot shot;
+
+    const std::string& id(int ball) const { return record.tracks[static_cast<std::size_t>(ball)].id; }
+    bool fell(std::string_view ball) const;
+    bool left(std::string_view ball) const;
+    bool gone(std::string_view ball) const { return fell(ball) || left(ball); }
+    bool any_object_fell() const;  ///< any ball but the struck one
+    int objects_off() const;       ///< balls but the struck one that left the table
+    int objects_driven() const;    ///< balls but the struck one that were driven to a cushion
+    /// Whether the call names this ball and the pocket that holds it.
+    bool fell_as_called() const;
+    bool struck(std::string_view ball) const { return id(shot.struck) == ball; }
+    /// Whether one of the balls that are met first is in the list: where two are met at once, the shooter has the benefit.
+    bool first_is_one_of(const std::vector<std::string>& ids) const;
+    std::vector<std::string> ids() const;  ///< of all balls that were on the table
+    /// The balls that lie on the table at the end, without `left_out`. The cue ball keeps `cue_gap`, the others `gap` away.
+    std::vector<Lying> lying(double cue_gap, double gap, const std::vector<std::string>& left_out = {}) const;
+
+    /// Adds the fouls that all pool games know: cue ball gone, wrong ball first, nothing hit, no cushion, ball off, placement.
+    void add_pool_fouls(std::vector<Foul>& fouls, const std::vector<std::string>& first,
+                        bool need_cushion) const;
+
+  private:
+    void add_placement_fouls(std::vector<Foul>& fouls) const;
+};
+
+bool is_in(std::string_view ball, const std::vector<std::string>& list);
+/// The number of a numbered ball, or 0.
+int number_of(std::string_view ball);
+/// [-] Object balls that a break has to drive to a cushion if nothing falls (WPA 2.3, 3.3).
+inline constexpr int kDrivenOnBreak = 4;
+
+/// Whose cue ball is whose in three-cushion: player 0 has the white one.
+inline const char* own_ball(int player) {
+    return player == 0 ? "white" : "yellow";
+}
+
+/// The state with the turn of the other player, and the cue ball where it says.
+State other_players(const State& state, InHand in_hand);
+/// Ends a game.
+State won_by(State state, int winner);
+/// The one way on.
+Verdict one_way(std::vector<Foul> fouls, const Option& option);
+
+Legal legal_eight_ball(const State& state, const std::vector<std::string>& balls);
+Legal legal_nine_ball(const State& state, const std::vector<std::string>& balls);
+Legal legal_three_cushion(const State& state, const std::vector<std::string>& balls);
+Legal legal_snooker(const State& state, const std::vector<std::string>& balls);
+Legal legal_sum_to_three(const State& state, const std::vector<std::string>& balls);
+Verdict judge_eight_ball(const Facts& facts);
+Verdict judge_nine_ball(const Facts& facts);
+Verdict judge_three_cushion(const Facts& facts);
+Verdict judge_snooker(const Facts& facts);
+Verdict judge_sum_to_three(const Facts& facts);
+
+}  // namespace carom::games::detail

@@ -1,0 +1,100 @@
+// From a verdict to the next shot.
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "carom/games/rules.h"
+#include "carom/games/shot.h"
+#include "facts.h"
+
+namespace carom::games {
+namespace {
+
+bool is_back(const Option& option, const std::string& ball) {
+    return std::any_of(option.respots.begin(), option.respots.end(),
+                       [&](const Respot& r) { return r.ball == ball; });
+}
+
+/// Puts a ball of the shot before back onto the cloth.
+BallStart placed(const BallStart& before, double R, const Vec2& place) {
+    BallStart ball = before;
+    ball.position = {place.x(), place.y(), R};
+    ball.velocity = ball.spin = Vec3::Zero();
+    ball.height = 0.0;
+    ball.where = {};
+    return ball;
+}
+
+}  // namespace
+
+const char* cue_ball(const State& state) {
+    if (state.game != Game::kThreeCushion) return "cue";
+    return detail::own_ball(state.turn);
+}
+
+bool may_place(const Record& record, const Option& option, const Vec2& place) {
+    const std::string cue = cue_ball(option.state);
+    const int index = index_of(record, cue);
+    if (index < 0 || !in_area(record.table, option.state.in_hand, place)) return false;
+    const double R = record.size(index).R;
+    const Vec2 from = place - record.table.corner;
+    if (from.x() < R || from.y() < R || from.x() > record.table.width - R ||
+        from.y() > record.table.length - R)
+        return false;
+    std::vector<Lying> others;
+    for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball) {
+        const std::string& id = record.tracks[static_cast<std::size_t>(ball)].id;
+        const BallState end = record.state_at(ball, record.duration);
+        if (ball != index && !is_gone(end.state) && !is_back(option, id))
+            others.push_back({planar(end.position), record.size(ball).R, 0.0});
+    }
+    for (const Respot& back : option.respots)
+        others.push_back({back.place, record.size(index_of(record, back.ball)).R, 0.0});
+    return is_free(place, R, others);
+}
+
+Scene table_after(const Scene& scene, const Record& record, const Option& option,
+                  const std::optional<Vec2>& place) {
+    if (option.rerack())
+        throw std::invalid_argument("the balls are racked anew; take the scene of a new break");
+    if (option.state.over) throw std::invalid_argument("the game is over; there is no next shot");
+    const std::string cue = cue_ball(option.state);
+    const int index = index_of(record, cue);
+    if (!place && !is_back(option, cue) && index >= 0 &&
+        is_gone(record.state_at(index, record.duration).state))
+        throw std::invalid_argument("the cue ball is in hand; say where it is placed");
+    if (place && !may_place(record, option, *place))
+        throw std::invalid_argument(std::string("the cue ball may not be placed there (in hand: ") +
+                                    name(option.state.in_hand) + "), or the place is not free");
+    const Scene rest = scene_after(scene, record);
+    Scene next = rest;
+    next.ball.clear();
+    // In the order of the record.
+    for (const BallStart& start : scene.ball) {
+        const double R = scene.size_of(start).R;
+        const auto back = std::find_if(option.respots.begin(), option.respots.end(),
+                                       [&](const Respot& r) { return r.ball == start.id; });
+        const auto there = std::find_if(rest.ball.begin(), rest.ball.end(),
+                                        [&](const BallStart& ball) { return ball.id == start.id; });
+        if (place && start.id == cue)
+            next.ball.push_back(placed(start, R, *place));
+        else if (back != option.respots.end())
+            next.ball.push_back(placed(start, R, back->place));
+        else if (there != rest.ball.end())
+            next.ball.push_back(*there);
+    }
+    return next;
+}
+
+Scene next_scene(const Scene& scene, const Record& record, const Option& option, const Cue& cue,
+                 const std::optional<Vec2>& place) {
+    Scene next = table_after(scene, record, option, place);
+    next.cue = cue;
+    validate(next);
+    return next;
+}
+
+}  // namespace carom::games

@@ -1,0 +1,277 @@
+// Snooker by the World Professional Billiards and Snooker Association, section 3. Misses, which a referee judges, are not.
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "facts.h"
+
+namespace carom::games::detail {
+namespace {
+
+constexpr int kLeastPenalty = 4, kRedPoints = 1;
+
+int points_of(std::string_view ball) {
+    if (number_of(ball) > 0) return kRedPoints;
+    const auto colour = std::find(kColours.begin(), kColours.end(), ball);
+    return colour == kColours.end() ? 0 : 7 - static_cast<int>(colour - kColours.begin());
+}
+
+bool is_colour(std::string_view ball) {
+    return points_of(ball) > kRedPoints;
+}
+
+/// The balls that are on without a free ball.
+std::vector<std::string> balls_on(BallOn on, const std::vector<std::string>& balls) {
+    std::vector<std::string> list;
+    for (const std::string& ball : balls) {
+        const int points = points_of(ball);
+        const bool any = on == BallOn::kColour && points > kRedPoints;
+        if (any || (points > 0 && points == static_cast<int>(on))) list.push_back(ball);
+    }
+    return list;
+}
+
+/// What is on after a miss or a foul, or behind the colour that follows the last red.
+BallOn lowest_on(const std::vector<std::string>& balls) {
+    int least = static_cast<int>(BallOn::kBlack);
+    for (const std::string& ball : balls)
+        if (points_of(ball) > 0) least = std::min(least, points_of(ball));
+    return static_cast<BallOn>(least);
+}
+
+/// Whether from this place no ball on can be hit at both of its edges.
+bool snookered_at(const Vec2& from, double R, std::span<const Lying> on, std::span<const Lying> not_on) {
+    return std::none_of(on.begin(), on.end(), [&](const Lying& ball) {
+        const Vec2 to = ball.place - from;
+        const double distance = length(to), both = R + ball.R;
+        if (distance <= both) return true;
+        const double way = std::sqrt(distance * distance - both * both);
+        const double cos = way / distance, sin = both / distance;
+        const Vec2 unit = to / distance;
+        return std::ranges::all_of(std::array{sin, -sin}, [&](double side) {
+            const Vec2 edge(cos * unit.x() - side * unit.y(), side * unit.x() + cos * unit.y());
+            return is_clear(from, from + way * edge, R, not_on);
+        });
+    });
+}
+
+/// How a stroke stands: what was on, what was nominated, what fell.
+class Stroke {
+  public:
+    explicit Stroke(const Facts& facts);
+
+    int penalty() const { return fouls.empty() ? 0 : penalty_; }
+    int points() const;
+    std::vector<Respot> respots() const;
+    BallOn next_on(const std::vector<std::string>& on_table) const;
+
+    std::vector<Foul> fouls;
+
+  private:
+    void add(Foul foul, int value) {
+        fouls.push_back(foul);
+        penalty_ = std::max(penalty_, value);
+    }
+    void add_first_fouls();
+
+    const Facts& facts_;
+    std::vector<std::string> on_;  // balls on, with the free ball
+    std::string free_;             // the free ball, or ""
+    int penalty_ = kLeastPenalty;
+};
+
+Stroke::Stroke(const Facts& facts) : facts_(facts) {
+    const State& state = facts.state;
+    on_ = balls_on(state.on, facts.ids());
+    const std::string first = facts.shot.first_hits.empty() ? "" : facts.id(facts.shot.first_hits.front());
+    const std::string nominated = facts.call.ball.empty() ? first : facts.call.ball;
+    if (state.on == BallOn::kColour)
+        on_ = is_colour(nominated) ? std::vector{nominated} : std::vector<std::string>();
+    else if (state.free_ball && points_of(nominated) > 0 && !is_in(nominated, on_)) {
+        free_ = nominated;
+        on_.push_back(free_);
+    }
+    if (state.on != BallOn::kColour) penalty_ = std::max(penalty_, static_cast<int>(state.on));
+    if (state.on == BallOn::kColour && !facts.call.ball.empty())
+        penalty_ = std::max(penalty_, points_of(nominated));
+    if (facts.shot.fell(facts.shot.struck)) add(Foul::kCueBallPocketed, 0);
+    if (facts.shot.left(facts.shot.struck)) add(Foul::kCueBallOff, 0);
+    add_first_fouls();
+    for (const Shot::Fallen& f : facts.shot.pocketed)
+        if (f.ball != facts.shot.struck && !is_in(facts.id(f.ball), on_))
+            add(Foul::kWrongBallPocketed, points_of(facts.id(f.ball)));
+    for (const int ball : facts.shot.out)
+        if (ball != facts.shot.struck) add(Foul::kBallOff, points_of(facts.id(ball)));
+    const Vec2 start = planar(facts.record.state_at(facts.shot.struck, 0.0).position);
+    if (state.in_hand == InHand::kD && !in_area(facts.record.table, InHand::kD, start))
+        add(Foul::kPlacedOutside, 0);
+}
+
+void Stroke::add_first_fouls() {
+    const std::vector<int>& hits = facts_.shot.first_hits;
+    if (hits.empty()) {
+        add(Foul::kNoBallHit, 0);
+        return;
+    }
+    int most = 0;
+    bool all_on = true;
+    for (const int ball : hits) {
+        most = std::max(most, points_of(facts_.id(ball)));
+        all_on = all_on && is_in(facts_.id(ball), on_);
+    }
+    if (all_on) return;
+    add(hits.size() > 1 ? Foul::kTwoBallsAtOnce : Foul::kWrongBallFirst, most);
+}
+
+int Stroke::points() const {
+    if (!fouls.empty()) return 0;
+    int points = 0;
+    const BallOn on = facts_.state.on;
+    for (const Shot::Fallen& f : facts_.shot.pocketed) {
+        const std::string& ball = facts_.id(f.ball);
+        if (on == BallOn::kRed)
+            points += kRedPoints;
+        else if (on == BallOn::kColour)
+            points = points_of(ball);
+        else
+            points = static_cast<int>(on);
+    }
+    return points;
+}
+
+/// Colours come back, but for the one that is on in its turn and falls fairly. Those whose own spots are free first, then the highest.
+std::vector<Respot> Stroke::respots() const {
+    const BallOn on = facts_.state.on;
+    std::vector<std::string> back;
+    for (const std::string_view colour : kColours) {
+        const bool stays_down = fouls.empty() && points_of(colour) == static_cast<int>(on) && colour != free_;
+        if (facts_.gone(colour) && !stays_down) back.emplace_back(colour);
+    }
+    std::vector<Respot> respots;
+    std::vector<Lying> others = facts_.lying(kSpotGap, kSpotGap);
+    const Table& table = facts_.record.table;
+    for (const bool own_spots : {true, false}) {
+        for (const std::string& colour : back) {
+            const bool done = std::any_of(respots.begin(), respots.end(),
+                                          [&](const Respot& r) { return r.ball == colour; });
+            const double R = facts_.record.size(index_of(facts_.record, colour)).R;
+            if (done || (own_spots && !is_free(snooker_spot(table, colour), R, others))) continue;
+            respots.push_back({colour, spot_snooker(table, colour, R, others)});
+            others.push_back({respots.back().place, R, kSpotGap});
+        }
+    }
+    return respots;
+}
+
+BallOn Stroke::next_on(const std::vector<std::string>& on_table) const {
+    return facts_.state.on == BallOn::kRed && points() > 0 ? BallOn::kColour : lowest_on(on_table);
+}
+
+/// Whether the cue ball is snookered at the end: no ball on can be hit at both edges. In hand: from no place of a lattice in the D.
+bool is_snookered(const Facts& facts, const State& next, const std::vector<Respot>& respots,
+                  const std::vector<std::string>& on_table) {
+    const std::vector<std::string> on_ids = balls_on(next.on, on_table);
+    std::vector<Lying> on, not_on;
+    const auto add = [&](const std::string& ball, const Vec2& place) {
+        if (!facts.struck(ball))
+            (is_in(ball, on_ids) ? on : not_on)
+                .push_back({place, facts.record.size(index_of(facts.record, ball)).R, 0.0});
+    };
+    for (const Respot& r : respots) add(r.ball, r.place);
+    for (const std::string& ball : on_table) {
+        const bool back =
+            std::any_of(respots.begin(), respots.end(), [&](const Respot& r) { return r.ball == ball; });
+        if (!back)
+            add(ball,
+                planar(facts.record.state_at(index_of(facts.record, ball), facts.record.duration).position));
+    }
+    const double R = facts.record.size(facts.shot.struck).R;
+    if (next.in_hand != InHand::kD) {
+        const Vec2 cue = planar(facts.record.state_at(facts.shot.struck, facts.record.duration).position);
+        return snookered_at(cue, R, on, not_on);
+    }
+    constexpr int kAcross = 12;  // of the lattice, from the middle of the D to its edge
+    const Table& table = facts.record.table;
+    const double step = radius_of_d(table) / kAcross;
+    for (int i = -kAcross; i <= kAcross; ++i)
+        for (int j = 0; j <= kAcross; ++j) {
+            const Vec2 place = snooker_spot(table, "brown") + Vec2(i * step, -j * step);
+            if (!in_area(table, InHand::kD, place) || !is_free(place, R, on) || !is_free(place, R, not_on))
+                continue;
+            if (!snookered_at(place, R, on, not_on)) return false;
+        }
+    return true;
+}
+
+/// The frame ends with the first score or foul when only the black is left; with equal points the black comes back, and lots decide
+/// who plays it.
+Verdict end_of_frame(const Facts& facts, const Stroke& stroke, State next) {
+    Verdict verdict;
+    verdict.fouls = stroke.fouls;
+    if (next.points[0] != next.points[1]) {
+        verdict.options = {{Decision::kPlayOn, won_by(next, next.points[0] > next.points[1] ? 0 : 1), {}}};
+        return verdict;
+    }
+    next.on = BallOn::kBlack;
+    next.in_hand = InHand::kD;
+    std::vector<Respot> black;
+    black.push_back({"black", snooker_spot(facts.record.table, "black")});
+    verdict.options = {{Decision::kPlayOn, other_players(next, InHand::kD), black},
+                       {Decision::kPassBack, next, black}};
+    return verdict;
+}
+
+}  // namespace
+
+Legal legal_snooker(const State& state, const std::vector<std::string>& balls) {
+    Legal legal;
+    legal.cue_balls = {"cue"};
+    legal.first = balls_on(state.on, balls);
+    if (state.free_ball) {
+        legal.first.clear();
+        for (const std::string& ball : balls)
+            if (points_of(ball) > 0) legal.first.push_back(ball);
+    }
+    if (state.on == BallOn::kColour || state.free_ball) legal.callable = legal.first;
+    return legal;
+}
+
+Verdict judge_snooker(const Facts& facts) {
+    const State& state = facts.state;
+    const Stroke stroke(facts);
+    const auto me = static_cast<std::size_t>(state.turn);
+    State next = state;
+    next.opening = next.free_ball = false;
+    next.in_hand = facts.shot.gone(facts.shot.struck) ? InHand::kD : InHand::kNo;
+    next.points[me] += stroke.points();
+    next.points[1 - me] += stroke.penalty();
+    Verdict verdict;
+    if (state.on == BallOn::kBlack && (stroke.points() > 0 || !stroke.fouls.empty())) {
+        verdict = end_of_frame(facts, stroke, next);
+    } else {
+        const std::vector<Respot> respots = stroke.respots();
+        std::vector<std::string> on_table;
+        for (const std::string& ball : facts.ids())
+            if (!facts.gone(ball) ||
+                std::any_of(respots.begin(), respots.end(), [&](const Respot& r) { return r.ball == ball; }))
+                on_table.push_back(ball);
+        next.on = stroke.next_on(on_table);
+        verdict.fouls = stroke.fouls;
+        const State other = other_players(next, next.in_hand);
+        verdict.options = {{Decision::kPlayOn, stroke.points() > 0 ? next : other, respots}};
+        if (!stroke.fouls.empty()) {
+            verdict.options[0].state.free_ball = is_snookered(facts, other, respots, on_table);
+            verdict.options.push_back({Decision::kPassBack, next, respots});
+            verdict.chooser = other.turn;
+        }
+    }
+    verdict.points = stroke.points();
+    verdict.penalty = stroke.penalty();
+    return verdict;
+}
+
+}  // namespace carom::games::detail

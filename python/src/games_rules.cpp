@@ -1,0 +1,156 @@
+// Games: rules. Structs go over as tuples in the order of the package's named tuples, enumerations by their names.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "carom/games/rules.h"
+#include "carom/games/spots.h"
+#include "native.h"
+
+namespace carom::python {
+namespace {
+
+template <class T>
+using Two = std::pair<T, T>;
+using Place = Two<double>;
+/// In the order of carom.games.State.
+using StateRow = std::tuple<std::string, int, bool, std::string, Two<int>, int, bool, int, Two<std::string>,
+                            bool, Two<int>, std::string, bool>;
+using CallRow = std::tuple<std::string, std::string, bool, bool>;
+using RespotRow = std::pair<std::string, Place>;
+using OptionRow = std::tuple<std::string, StateRow, std::vector<RespotRow>>;
+/// Fouls with their rules, points, penalty, options, chooser.
+using VerdictRow = std::tuple<std::vector<Two<std::string>>, int, int, std::vector<OptionRow>, int>;
+/// Cue balls, what may be met first, what may be called, where the cue ball is in hand, push out.
+using LegalRow = std::tuple<std::vector<std::string>, std::vector<std::string>, std::vector<std::string>,
+                            std::string, bool>;
+
+/// The value of this name. @throws nb::value_error that lists those there are
+template <class E>
+E value_of(const char* what, const std::string& text) {
+    const auto names = names_of(E{});
+    const auto found = std::find(names.begin(), names.end(), text);
+    if (found != names.end()) return static_cast<E>(found - names.begin());
+    std::string known;
+    for (const char* each : names) known += (known.empty() ? "" : ", ") + std::string(each);
+    throw nb::value_error(
+        ("there is no " + std::string(what) + " \"" + text + "\"; there are: " + known).c_str());
+}
+
+StateRow row_of(const games::State& s) {
+    return {name(s.game),
+            s.turn,
+            s.opening,
+            name(s.in_hand),
+            {s.points[0], s.points[1]},
+            s.target,
+            s.over,
+            s.winner,
+            {name(s.group[0]), name(s.group[1])},
+            s.may_push_out,
+            {s.fouls[0], s.fouls[1]},
+            name(s.on),
+            s.free_ball};
+}
+
+games::State state_of(const StateRow& row) {
+    games::State s;
+    std::string game, in_hand, on;
+    Two<int> points, fouls;
+    Two<std::string> group;
+    std::tie(game, s.turn, s.opening, in_hand, points, s.target, s.over, s.winner, group, s.may_push_out,
+             fouls, on, s.free_ball) = row;
+    s.game = value_of<games::Game>("game", game);
+    s.in_hand = value_of<games::InHand>("place in hand", in_hand);
+    s.points = {points.first, points.second};
+    s.group = {value_of<games::Group>("group", group.first), value_of<games::Group>("group", group.second)};
+    s.fouls = {fouls.first, fouls.second};
+    s.on = value_of<games::BallOn>("ball on", on);
+    return s;
+}
+
+OptionRow row_of(const games::Option& option) {
+    std::vector<RespotRow> respots;
+    for (const games::Respot& r : option.respots) respots.push_back({r.ball, {r.place.x(), r.place.y()}});
+    return {name(option.decision), row_of(option.state), respots};
+}
+
+games::Option option_of(const OptionRow& row) {
+    games::Option option;
+    option.decision = value_of<games::Decision>("decision", std::get<0>(row));
+    option.state = state_of(std::get<1>(row));
+    for (const auto& [ball, place] : std::get<2>(row))
+        option.respots.push_back({ball, {place.first, place.second}});
+    return option;
+}
+
+LegalRow legal(const StateRow& state, const std::vector<std::string>& balls) {
+    const games::Legal l = games::legal(state_of(state), balls);
+    return {l.cue_balls, l.first, l.callable, name(l.in_hand), l.may_push_out};
+}
+
+VerdictRow judge(const StateRow& state, const NativeRecord& record, const CallRow& call) {
+    const games::State before = state_of(state);
+    const games::Verdict v = games::judge(
+        before, *record.record, {std::get<0>(call), std::get<1>(call), std::get<2>(call), std::get<3>(call)});
+    std::vector<Two<std::string>> fouls;
+    for (const games::Foul foul : v.fouls) fouls.emplace_back(name(foul), games::rule_of(before.game, foul));
+    std::vector<OptionRow> options;
+    for (const games::Option& option : v.options) options.push_back(row_of(option));
+    return {fouls, v.points, v.penalty, options, v.chooser};
+}
+
+std::optional<Vec2> vec2(const std::optional<Place>& place) {
+    return place ? std::optional(Vec2(place->first, place->second)) : std::nullopt;
+}
+
+bool may_place(const NativeRecord& record, const OptionRow& option, const Place& place) {
+    return games::may_place(*record.record, option_of(option), {place.first, place.second});
+}
+
+/// The table before the next shot, with `cue`: a section of a scene file, or nothing.
+NativeScene next_table(const NativeRecord& record, const NativeScene* other, const OptionRow& option,
+                       const std::optional<Place>& place, const std::string& cue) {
+    const Scene& scene = scene_of(record, other);
+    return parsed_with(cue, games::table_after(scene, *record.record, option_of(option), vec2(place)));
+}
+
+std::vector<std::pair<std::string, Place>> spots(const NativeRecord& record) {
+    const Table& table = record.record->table;
+    std::vector<std::pair<std::string, Vec2>> list = {
+        {"head", games::head_spot(table)}, {"center", games::center_spot(table)}, {"foot", foot_spot(table)}};
+    for (const std::string_view colour : games::kColours)
+        list.emplace_back(colour, games::snooker_spot(table, colour));
+    std::vector<std::pair<std::string, Place>> out;
+    for (const auto& [of, at] : list) out.push_back({of, {at.x(), at.y()}});
+    return out;
+}
+
+}  // namespace
+
+void add_games_rules(nb::module_& m) {
+    m.def("new_game", [](const std::string& game, int first, int target) {
+        return row_of(games::new_game(value_of<games::Game>("game", game), first, target));
+    });
+    m.def("legal", legal);
+    m.def("judge", judge);
+    m.def("cue_ball", [](const StateRow& state) { return std::string(games::cue_ball(state_of(state))); });
+    m.def("may_place", may_place);
+    m.def("next_table", next_table, nb::arg("record"), nb::arg("scene").none(), nb::arg("option"),
+          nb::arg("place").none(), nb::arg("cue"));
+    m.def("spots", spots);
+}
+
+}  // namespace carom::python

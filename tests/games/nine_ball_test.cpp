@@ -1,0 +1,146 @@
+// Nine-ball: the sentences of the WPA's Rules of Play (15 March 2016) as shots. A test has the number of its rule.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "carom/games/rules.h"
+#include "made_record.h"
+
+namespace carom::test {
+namespace {
+
+using games::Call;
+using games::Decision;
+using games::Foul;
+using games::Game;
+using games::InHand;
+using games::judge;
+using games::State;
+using games::Verdict;
+
+using Fouls = std::vector<Foul>;
+using Decisions = std::vector<Decision>;
+
+const Call kPush = {"", "", false, true};
+
+Told table(int lowest, double y = 0.3) {
+    Told told;
+    told.ball("cue", 0.6, y).balls(numbered(lowest, 9));
+    return told.strike("cue");
+}
+
+State nine_break() {
+    return games::new_game(Game::kNineBall);
+}
+
+State playing() {
+    State state = nine_break();
+    state.opening = false;
+    state.in_hand = InHand::kNo;
+    return state;
+}
+
+State second_shot() {
+    State state = playing();
+    state.may_push_out = true;
+    return state;
+}
+
+TEST(NineBall, Rule23OnTheBreakTheOneIsMetFirstAndSomethingFallsOrFourMeetACushion) {
+    EXPECT_EQ(judge(nine_break(), table(1).hit("cue", "2").pocket("3").record()).fouls,
+              (Fouls{Foul::kWrongBallFirst}));
+    const Told few = table(1).hit("cue", "1").cushion("1").cushion("2").cushion("3").cushion("cue");
+    const Verdict three = judge(nine_break(), few.record());
+    EXPECT_EQ(three.fouls, (Fouls{Foul::kFewCushionsOnBreak}));
+    EXPECT_EQ(three.next().in_hand, InHand::kAnywhere);
+    const Verdict four = judge(nine_break(), Told(few).cushion("4").record());
+    EXPECT_TRUE(four.fouls.empty());
+    EXPECT_EQ(four.next().turn, 1);
+    EXPECT_TRUE(four.next().may_push_out);
+    EXPECT_EQ(judge(nine_break(), table(1, 0.7).hit("cue", "1").pocket("3").record()).fouls,
+              (Fouls{Foul::kPlacedOutside}));
+}
+
+TEST(NineBall, Rule24AfterAFairBreakAPushOutNeedsNeitherBallNorCushion) {
+    const Verdict broke = judge(nine_break(), table(1).hit("cue", "1").pocket("5").record());
+    EXPECT_EQ(broke.next().turn, 0);
+    EXPECT_TRUE(broke.next().may_push_out);
+    EXPECT_TRUE(games::legal(broke.next(), numbered(1, 9)).may_push_out);
+    const Verdict push = judge(second_shot(), table(1).hit("cue", "4").record(), kPush);
+    EXPECT_TRUE(push.fouls.empty());
+    EXPECT_EQ(push.chooser, 1);
+    EXPECT_EQ(decisions(push), (Decisions{Decision::kPlayOn, Decision::kPassBack}));
+    EXPECT_EQ(push.options[0].state.turn, 1);
+    EXPECT_EQ(push.options[1].state.turn, 0);
+    EXPECT_FALSE(push.options[0].state.may_push_out);
+    EXPECT_TRUE(judge(second_shot(), table(1).record(), kPush).fouls.empty());
+    // Not announced, it is an ordinary shot; nor is there one later in the rack.
+    EXPECT_EQ(judge(second_shot(), table(1).hit("cue", "4").record()).fouls,
+              (Fouls{Foul::kWrongBallFirst, Foul::kNoCushion}));
+    EXPECT_EQ(judge(playing(), table(1).record(), kPush).fouls, (Fouls{Foul::kNoBallHit}));
+}
+
+TEST(NineBall, Rule24AFoulOnAPushOutIsAFoul) {
+    const Verdict v = judge(second_shot(), table(1).hit("cue", "4").pocket("cue").record(), kPush);
+    EXPECT_EQ(v.fouls, (Fouls{Foul::kCueBallPocketed}));
+    EXPECT_EQ(v.next().in_hand, InHand::kAnywhere);
+}
+
+TEST(NineBall, Rule25ABallThatFallsFairlyGoesOn) {
+    EXPECT_EQ(games::legal(playing(), std::vector<std::string>{"cue", "7", "3", "9"}).first,
+              (std::vector<std::string>{"3"}));
+    EXPECT_EQ(judge(playing(), table(3).hit("cue", "3").pocket("7").record()).next().turn, 0);
+    EXPECT_EQ(judge(playing(), table(3).hit("cue", "3").cushion("3").record()).next().turn, 1);
+}
+
+TEST(NineBall, Rule25TheNineWinsWheneverItFallsFairly) {
+    const Verdict v = judge(playing(), table(3).hit("cue", "3").pocket("9").record());
+    EXPECT_TRUE(v.next().over);
+    EXPECT_EQ(v.next().winner, 0);
+    EXPECT_TRUE(judge(nine_break(), table(1).hit("cue", "1").pocket("9").record()).next().over);
+}
+
+TEST(NineBall, Rule26TheNineComesBackAfterAFoulAndAPushOutAndOffTheTable) {
+    const Vec2 spot = foot_spot(make_table("nine_foot"));
+    for (const Verdict& v : {judge(playing(), table(3).hit("cue", "4").pocket("9").record()),
+                             judge(second_shot(), table(1).hit("cue", "4").pocket("9").record(), kPush),
+                             judge(playing(), table(3).hit("cue", "3").out("9").record())}) {
+        EXPECT_FALSE(v.next().over);
+        ASSERT_EQ(v.respots().size(), 1u);
+        EXPECT_EQ(v.respots()[0].ball, "9");
+        EXPECT_EQ(v.respots()[0].place, spot);
+    }
+    // No other ball does.
+    EXPECT_TRUE(judge(playing(), table(3).hit("cue", "4").pocket("5").out("6").record()).respots().empty());
+}
+
+TEST(NineBall, Rule27AFoulGivesTheCueBallInHandAnywhere) {
+    const Verdict v = judge(playing(), table(3).hit("cue", "4").pocket("3").record());
+    EXPECT_EQ(v.fouls, (Fouls{Foul::kWrongBallFirst}));
+    EXPECT_EQ(v.next().turn, 1);
+    EXPECT_EQ(v.next().in_hand, InHand::kAnywhere);
+}
+
+TEST(NineBall, Rule614ThreeFoulsInARowLoseTheRack) {
+    const Record foul = table(3).hit("cue", "4").record(),
+                 fair = table(3).hit("cue", "3").cushion("3").record();
+    State state = playing();
+    for (int k = 1; k <= 2; ++k) {
+        const Verdict v = judge(state, foul);
+        EXPECT_FALSE(v.next().over);
+        EXPECT_EQ(v.next().fouls[0], k);
+        // A fair shot of the other player is between, and does not count.
+        state = judge(v.next(), fair).next();
+        EXPECT_EQ(state.turn, 0);
+    }
+    const Verdict third = judge(state, foul);
+    EXPECT_TRUE(third.next().over);
+    EXPECT_EQ(third.next().winner, 1);
+    EXPECT_EQ(third.fouls.back(), Foul::kThirdFoul);
+    // A fair shot of one's own ends the row.
+    EXPECT_EQ(judge(state, fair).next().fouls[0], 0);
+}
+
+}  // namespace
+}  // namespace carom::test
