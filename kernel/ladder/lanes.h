@@ -5,7 +5,7 @@
 #pragma once
 
 #include "ladder/batch_arrays.h"
-#include "ladder/reduced.h"
+#include "march/reduced.h"
 #include "simd.h"
 
 namespace carom::kernel {

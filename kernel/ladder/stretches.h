@@ -7,8 +7,8 @@
 
 #include <immintrin.h>
 
-#include "ladder/reduced.h"
 #include "loop_marks.h"
+#include "march/reduced.h"
 
 namespace carom::kernel {
 namespace {

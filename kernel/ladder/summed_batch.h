@@ -1,31 +1,13 @@
-// A batch, impact by impact by the summed march. Where rounding decides the result (glancing impacts, chatter near
-// stick) the arithmetic of the published march takes over, eight lanes at once and with the same bits. A result
-// depends on its own impact alone and has the same bits on every instruction set; it has the step count of the
-// published march, or one beside it where the last step sits on a rounding tie, and differs from it by at most about
-// 1e-10 of the approach speed at N up to 1000 (docs/lab/2026-11-ladder.md).
+// A batch, impact by impact by the summed march of the kernel. Where that one gives up, the arithmetic of the published
+// march takes over, eight lanes at once and with the same bits: every impact has the bits of the kernel's summed march.
 #pragma once
 
 #include "ladder/batch_arrays.h"
 #include "ladder/exact_lanes.h"
-#include "ladder/summed.h"
+#include "march/summed.h"
 
 namespace carom::kernel {
 namespace {
-
-// Speed of a ball or of its surface, in approach speeds, above which the published arithmetic is kept. The baseline
-// rounds each velocity by up to half an ulp a step, often to one side: in all by up to 2^-53 N of the fastest speed,
-// which from here on is 1.1e-10 of the approach speed at N = 1000 (measured: 0.76e-10). No other order of the sums
-// could follow it more closely. Beyond N = 1000 the difference grows with N.
-constexpr double kFastestSurface = 1000.0;
-// Exact steps after which an impact counts as chattering (near stick, where rounding may decide the sign of a slip).
-constexpr long kChatter = 40;
-
-inline bool rounding_decides(const FrameState& s, double R) {
-    const double limit = kFastestSurface * (s.v1y - s.v2y);
-    const auto fast = [limit](double a) { return absolute(a) > limit; };
-    return fast(s.v1x) || fast(s.v1y) || fast(s.v2x) || fast(s.v2y) || fast(R * s.w1x) || fast(R * s.w1y) ||
-           fast(R * s.w1z) || fast(R * s.w2x) || fast(R * s.w2y) || fast(R * s.w2z);
-}
 
 template <int kSign>
 class SummedBatch {
@@ -48,13 +30,10 @@ class SummedBatch {
     void take(long i) {
         BatchImpact& in = waiting[count];
         if (!enter_impact(batch, i, n, in, result)) return;
-        if (!rounding_decides(in.state, in.params.R)) {
-            bool chatters = false;
-            const long steps = Summed::march<kSign>(in.state, in.params, n, kChatter, chatters);
-            if (!chatters) {
-                leave_impact(in, steps, result);
-                return;
-            }
+        const long steps = Summed::loop<kSign>(in.state, in.params, n);
+        if (steps >= 0) {
+            leave_impact(in, steps, result);
+            return;
         }
         if (++count == 8) march_waiting();
     }

@@ -77,6 +77,10 @@ MarchFunction march_function(Isa isa) noexcept {
     return entry(isa).kernels.march;
 }
 
+MarchFunction summed_march_function(Isa isa) noexcept {
+    return entry(isa).kernels.summed_march;
+}
+
 ToleranceFunction tolerance_function(Isa isa) noexcept {
     return entry(isa).kernels.tolerance;
 }

@@ -43,6 +43,13 @@ inline double cloth_slip_floor(const FrameState& s, double R, int sign) {
     return 8.0 * 0x1p-52 * (v + R * w);
 }
 
+// [m/s] The absolute values of all components of v and R w, added.
+inline double sum_of_speeds(const FrameState& s, double R) {
+    return absolute(s.v1x) + absolute(s.v1y) + absolute(s.v2x) + absolute(s.v2y) +
+           R * (absolute(s.w1x) + absolute(s.w1y) + absolute(s.w1z) + absolute(s.w2x) + absolute(s.w2y) +
+                absolute(s.w2z));
+}
+
 // The result where nothing is computed: the velocities before the impact.
 inline void copy_input(const Ball& b1, const Ball& b2, ImpactStatus status, ImpactResult& out) {
     for (int k = 0; k < 3; ++k) {
@@ -96,9 +103,7 @@ inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactPara
     s.w2y = b2.w[0] * f.yx + b2.w[1] * f.yy;
     s.w2z = b2.w[2];
     const double approach = s.v1y - s.v2y;
-    const double scale = absolute(s.v1x) + absolute(s.v1y) + absolute(s.v2x) + absolute(s.v2y) +
-                         p.R * (absolute(s.w1x) + absolute(s.w1y) + absolute(s.w1z) + absolute(s.w2x) +
-                                absolute(s.w2y) + absolute(s.w2z));
+    const double scale = sum_of_speeds(s, p.R);
     // Speeds whose squares overflow are a bad state, as a NaN is.
     if (!finite(scale) || !finite(scale * scale))
         status = ImpactStatus::kBadState;

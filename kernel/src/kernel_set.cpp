@@ -2,6 +2,6 @@
 
 namespace carom::kernel::CAROM_ISA_NAMESPACE {
 
-const KernelSet kKernels = {march, tolerance_single, tolerance_batch, contact_phase};
+const KernelSet kKernels = {march, summed_march, tolerance_single, tolerance_batch, contact_phase};
 
 }  // namespace carom::kernel::CAROM_ISA_NAMESPACE

@@ -13,6 +13,7 @@ namespace carom::kernel {
 
 struct KernelSet {
     MarchFunction march;
+    MarchFunction summed_march;
     ToleranceFunction tolerance;
     ToleranceBatchFunction tolerance_batch;
     ContactPhaseFunction contact_phase;
@@ -35,6 +36,8 @@ extern const KernelSet kKernels;
 namespace CAROM_ISA_NAMESPACE {
 void march(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
            ImpactResult& result) noexcept;
+void summed_march(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
+                  ImpactResult& result) noexcept;
 void tolerance_single(const Ball& ball1, const Ball& ball2, const ImpactParams& params, double tolerance,
                       ImpactResult& result) noexcept;
 void tolerance_batch(const ImpactBatch& batch, double tolerance, const ImpactBatchResult& result) noexcept;

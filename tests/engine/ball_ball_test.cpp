@@ -237,6 +237,21 @@ TEST(Unequal, TheCommonSizeIsNoSizeOfItsOwn) {
     EXPECT_EQ(simulate(plan_of(plain)).hash(), simulate(plan_of(written)).hash());
 }
 
+// [physics] march: the two forms are close to each other and each is the kernel's own.
+TEST(Substeps, AreSummedOrMarchedAsPublished) {
+    const std::string two =
+        "[[ball]]\nid = \"a\"\nposition = [0.5, 0.5]\nvelocity = [0.3, 2]\n[[ball]]\nid = \"b\"\nposition = "
+        "[0.56, 0.7]\n"
+        "[physics]\nsubsteps = 1000\n";
+    const Plan summed = plan_of(scene_of(two));
+    const Plan published = plan_of(scene_of(two + "march = \"published\"\n"));
+    EXPECT_EQ(summed.impact.march, kernel::summed_march_function(summed.isa));
+    EXPECT_EQ(published.impact.march, kernel::march_function(published.isa));
+    const Record one = simulate(summed), other = simulate(published);
+    EXPECT_NE(one.hash(), other.hash());
+    EXPECT_NEAR(one.duration, other.duration, 1e-8);
+}
+
 TEST(Unequal, ModelsWithoutAFormulaAreErrorsAtTheBall) {
     const std::string big =
         "[[ball]]\nid = \"a\"\nposition = [0.3, 0.5]\n[[ball]]\nid = \"b\"\nradius = 0.03\n";

@@ -127,6 +127,7 @@ TEST(Scenes, DefaultsAreWrittenOut) {
     EXPECT_STREQ(name(s.physics.clusters), "compliant");
     EXPECT_EQ(s.physics.tolerance, 1e-6);
     EXPECT_FALSE(s.physics.substeps);
+    EXPECT_STREQ(name(s.physics.march), "summed");
     EXPECT_FALSE(s.stop.time);
     EXPECT_FALSE(s.stop.events);
     EXPECT_EQ(s.render.fps, 60.0);
@@ -188,6 +189,7 @@ cushion = "smooth"
 cloth_slip = "as_published"
 clusters = "sequential"
 substeps = 20000
+march = "published"
 [stop]
 time = 3
 events = 40
@@ -225,6 +227,7 @@ camera = "top"
     EXPECT_STREQ(name(s.physics.cushion), "smooth");
     EXPECT_STREQ(name(s.physics.cloth_slip), "as_published");
     EXPECT_EQ(s.physics.substeps, 20000);
+    EXPECT_STREQ(name(s.physics.march), "published");
     EXPECT_EQ(s.stop.time.value(), 3.0);
     EXPECT_EQ(s.stop.events.value(), 40);
     EXPECT_EQ(s.render.fps, 25.0);

@@ -89,7 +89,7 @@ std::string hash_of(const Scene& scene) {
 
 TEST(SceneText, ReadsBackToTheSameScene) {
     std::vector<std::string> texts = {kEveryKey};
-    texts.push_back(with(kEveryKey, "tolerance = 1e-7", "substeps = 500"));
+    texts.push_back(with(kEveryKey, "tolerance = 1e-7", "substeps = 500\nmarch = \"published\""));
     texts.push_back(with(kEveryKey, "mu_b = 0.06", "mu_b_fit = [0.01, 0.1, 1.1]"));
     texts.push_back(
         with(kEveryKey, "e_c = 0.84\nf_c = 0.19", "e_c_fit = [0.9, 0.03, 0.5]\nf_c_fit = [0.1, 0.2, 0.4]"));
@@ -134,7 +134,8 @@ TEST(SceneText, WritesEveryKeyOfTheFormat) {
     ASSERT_GE(keys.size(), 40u);
     std::string text =
         scene_text(parse_scene(kEveryKey, "a.toml")) +
-        scene_text(parse_scene(with(kEveryKey, "tolerance = 1e-7", "substeps = 500"), "a.toml")) +
+        scene_text(parse_scene(with(kEveryKey, "tolerance = 1e-7", "substeps = 500\nmarch = \"published\""),
+                               "a.toml")) +
         scene_text(parse_scene(with(kEveryKey, "mu_b = 0.06", "mu_b_fit = [0, 0.1, 1]"), "a.toml")) +
         scene_text(parse_scene(with(kEveryKey, "e_c = 0.84\nf_c = 0.19",
                                     "e_c_fit = [0.9, 0.03, 0.5]\nf_c_fit = [0.1, 0.2, 0.4]"),

@@ -155,6 +155,7 @@ const std::map<std::string, Mistake>& mistakes() {
         {"same_id_by_default", [](Scene& s) { s.ball[1].id = "cue"; }},
         {"same_id_in_rack", [](Scene& s) { s = with_rack("\"eight_ball\""), s.ball[0].id = "7"; }},
         {"stop_negative", [](Scene& s) { s.stop.time = -1.0; }},
+        {"march_without_substeps", [](Scene& s) { s.physics.march = March::kPublished; }},
         {"substeps_zero", [](Scene& s) { s.physics.substeps = 0; }},
         {"table_unknown", [](Scene& s) { s.table.preset = "ten_foot"; }},
         {"too_far", [](Scene& s) { place(s, 0, 1e7, 0.5); }},

@@ -28,7 +28,8 @@ std::string kernel_line(const Plan& plan) {
     const Physics& physics = plan.scene.physics;
     if (!physics.ball_ball->reads_tolerance) return "closed form";
     if (physics.substeps)
-        return fmt::format("published march, {} substeps, cloth slip {}", *physics.substeps,
+        return fmt::format("published march, {} substeps, {}; cloth slip {}", *physics.substeps,
+                           physics.march == March::kPublished ? "step by step" : "summed",
                            name(physics.cloth_slip));
     return fmt::format("by tolerance {}: closed forms, else collocation; cloth slip {}", physics.tolerance,
                        name(physics.cloth_slip));

@@ -48,7 +48,7 @@ LOOPS = [
     ("pipelined", SINGLE.format(header="ladder/packed_march.h", loop="Pipelined"), "v3", 1),
     ("carried roots", SINGLE.format(header="ladder/packed_march.h", loop="CarriedRoots"), "v3", 1),
     ("decoupled roots", SINGLE.format(header="ladder/decoupled.h", loop="Decoupled"), "v3", 3),
-    ("summed, one sweep", SINGLE.format(header="ladder/summed.h", loop="Summed"), "v3", 1),
+    ("summed, one sweep", SINGLE.format(header="march/summed.h", loop="Summed"), "v3", 1),
     ("four lanes", BATCH.format(arguments="4, 1, LaneExactRoots, SeparateArithmetic"), "v3", 4),
     ("four lanes carried", BATCH.format(arguments="4, 1, LaneCarriedRoots, FusedArithmetic"), "v3", 4),
     ("2x4 lanes", BATCH.format(arguments="4, 2, LaneCarriedRoots, FusedArithmetic"), "v3", 8),

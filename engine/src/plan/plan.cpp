@@ -98,7 +98,9 @@ void fill(Plan& plan, const Geometry& geometry, ReachMemory& memory, const Words
     plan.impact = {};
     plan.impact.tolerance = scene.physics.tolerance;
     if (scene.physics.substeps) {
-        plan.impact.march = kernel::march_function(plan.isa);
+        plan.impact.march = scene.physics.march == March::kPublished
+                                ? kernel::march_function(plan.isa)
+                                : kernel::summed_march_function(plan.isa);
         plan.impact.substeps = *scene.physics.substeps;
     } else {
         plan.impact.by_tolerance = kernel::tolerance_function(plan.isa);

@@ -291,7 +291,7 @@ void check_scene(const Section& top, const Scene& scene) {
 }
 
 void check_again(const Section& top, const Scene& scene, Change change) {
-    check_friction(top, scene);
+    check_kernel(top, scene);
     if (scene.cue) check_cue(top, scene, *scene.cue);
     if (change >= Change::kTable)
         for (const Cushion& cushion : scene.table.cushions) check_cushion(top, cushion);

@@ -66,7 +66,12 @@ void check_cue(const Section& section, const Scene& scene, const Cue& cue) {
     }
 }
 
-void check_friction(const Section& top, const Scene& scene) {
+void check_kernel(const Section& top, const Scene& scene) {
+    if (scene.physics.march == March::kPublished && !scene.physics.substeps)
+        top.fail(top.where("physics", "march"),
+                 "physics.march = \"published\" says how substeps are done, and there are none; leave it "
+                 "out, or set "
+                 "physics.substeps = 1000");
     const BallParams& p = scene.balls;
     for (const auto& [key, value] :
          {std::pair{"mu_s", p.mu_s},

@@ -112,7 +112,7 @@ void read_physics(const Section& top, Scene& scene) {
     if (s && s->has("substeps") && s->has("tolerance"))
         s->fail("substeps",
                 "physics.substeps and physics.tolerance exclude each other; remove one of the two");
-    check_friction(top, scene);
+    check_kernel(top, scene);
 }
 
 void read_effects(const Section& top, Scene& scene) {

@@ -36,8 +36,8 @@ void check_fits(const Section& section, const BallParams& balls);
 void check_cushion(const Section& section, const Cushion& cushion);
 /// Also that the ball is there and at rest.
 void check_cue(const Section& section, const Scene& scene, const Cue& cue);
-/// Whether the kernel takes the friction of the balls.
-void check_friction(const Section& top, const Scene& scene);
+/// Whether the kernel takes the friction of the balls, and [physics] asks for one kernel.
+void check_kernel(const Section& top, const Scene& scene);
 void check_camera(const Section& section, const RenderSettings& render);
 
 /// What no single section can see: ids that are used twice, balls that overlap or reach into a cushion, noses

@@ -101,7 +101,7 @@ void check_all(const Scene& scene) {
     check_fits(balls, scene.balls);
     check_models(top, scene.physics);
     Section(scene.file, "physics").check(kPhysicsFields, scene.physics);
-    check_friction(top, scene);
+    check_kernel(top, scene);
     check_table(scene);
     check_balls(scene);
     check_heights(top, scene);

@@ -13,6 +13,7 @@
 #include "bench/rounds.h"
 #include "bench/timed_kernel.h"
 #include "carom/kernel/closed_forms.h"
+#include "carom/kernel/march.h"
 #include "carom/kernel/tolerance.h"
 #include "console.h"
 #include "page/page.h"
@@ -85,21 +86,21 @@ struct Subject : KernelCall {
     }
 };
 
-Subject march(const Rung& rung, const std::string& name, long n) {
-    Subject s(call_of(rung), static_cast<int>(n));
+Subject march(KernelCall call, const std::string& name, long n) {
+    Subject s(std::move(call), static_cast<int>(n));
     s.row.method = name;
     s.row.setting = fmt::format("N={}", n);
     s.row.value = static_cast<double>(n);
     return s;
 }
 
-/// The rung of one kind that is fastest here at N = 1000.
-const Rung& fastest_rung(Isa isa, bool batch, const std::vector<Impact>& impacts) {
+/// The rung of batches that is fastest here at N = 1000.
+const Rung& fastest_batch(Isa isa, const std::vector<Impact>& impacts) {
     const Rung* best = nullptr;
     double least = INFINITY;
     for (const Rung& rung : ladder()) {
-        if (rung.isa != isa || (rung.batch != nullptr) != batch) continue;
-        Subject s = march(rung, rung.name, 1000);
+        if (rung.isa != isa || rung.batch == nullptr) continue;
+        Subject s = march(call_of(rung), rung.name, 1000);
         s.prepare(impacts);
         double ns = INFINITY;
         for (int i = 0; i < 3; ++i) ns = std::min(ns, s.once(impacts));
@@ -108,24 +109,21 @@ const Rung& fastest_rung(Isa isa, bool batch, const std::vector<Impact>& impacts
             best = &rung;
         }
     }
-    if (best == nullptr) throw std::runtime_error("the ladder has no rung for this instruction set");
+    if (best == nullptr) throw std::runtime_error("the ladder has no batches for this instruction set");
     return *best;
 }
 
-const Rung& baseline_rung(Isa isa) {
-    for (const Rung& rung : ladder())
-        if (rung.isa == isa && rung.march != nullptr) return rung;
-    throw std::runtime_error("the ladder has no baseline");
+KernelCall call_of_march(MarchFunction f) {
+    return {[f](const Impact& i, int n, ImpactResult& out) { f(i.ball1, i.ball2, i.params, n, out); }, {}};
 }
 
 void add_marches(std::vector<Subject>& list, Isa isa, long most, const std::vector<Impact>& impacts) {
-    const Rung& fast = fastest_rung(isa, false, impacts);
-    const Rung& lanes = fastest_rung(isa, true, impacts);
+    const Rung& lanes = fastest_batch(isa, impacts);
     for (const long n : {10L, 30L, 100L, 300L, 1000L, 3000L, 10000L, 30000L, 100000L}) {
         if (n > most) break;
-        list.push_back(march(baseline_rung(isa), "march", n));
-        list.push_back(march(fast, std::string("march ") + fast.name, n));
-        list.push_back(march(lanes, std::string("march ") + lanes.name, n));
+        list.push_back(march(call_of_march(summed_march_function(isa)), "march", n));
+        list.push_back(march(call_of_march(march_function(isa)), "march published", n));
+        list.push_back(march(call_of(lanes), std::string("march ") + lanes.name, n));
     }
 }
 

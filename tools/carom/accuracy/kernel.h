@@ -23,7 +23,7 @@ struct AccuracyKernelArgs {
 /// One method at one setting. Times are per impact [ns], processor time of the thread; errors are the largest
 /// component of v and R w, as a share of the approach speed, from the converged solution.
 struct KernelAccuracyRow {
-    std::string method;        ///< "march", "march summed", "tolerance", ...
+    std::string method;        ///< "march", "march published", "tolerance", ...
     std::string kind;          ///< single, batch
     std::string setting;       ///< "N=1000", "1e-06", "" for a formula
     double value = 0.0;        ///< N or tolerance
@@ -44,7 +44,7 @@ struct KernelAccuracy {
     int count = 0;                 ///< impacts on which the two converged methods agree: these are judged
     int disagreeing = 0;           ///< the other impacts, for which no error is given
     double worst_agreement = 0.0;  ///< largest difference of the two, share of the approach speed
-    double slope = 0.0;            ///< of log median error over log N, plain march, N >= 100
+    double slope = 0.0;            ///< of log median error over log N, march, N >= 100
     std::vector<KernelAccuracyRow> rows;
     std::vector<KernelReach> reach;
 };

@@ -108,13 +108,15 @@ std::optional<double> deserved_tolerance(double gain, double target) {
 Plan with_tolerance(const Scene& scene, double tolerance) {
     Scene copy = scene;
     copy.physics.substeps.reset();
+    copy.physics.march = March::kSummed;
     copy.physics.tolerance = tolerance;
     return make_plan(copy, chosen_isa());
 }
 
-Plan with_substeps(const Scene& scene, int substeps) {
+Plan with_substeps(const Scene& scene, int substeps, March march) {
     Scene copy = scene;
     copy.physics.substeps = substeps;
+    copy.physics.march = march;
     return make_plan(copy, chosen_isa());
 }
 

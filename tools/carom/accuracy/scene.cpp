@@ -40,7 +40,10 @@ std::vector<SceneSubject> subjects(const Scene& scene, const AccuracySceneArgs& 
         s.row.setting = std::move(setting);
         s.row.value = value;
     };
-    for (const int n : args.march) add("march", fmt::format("N={}", n), n, with_substeps(scene, n));
+    for (const int n : args.march) {
+        add("march", fmt::format("N={}", n), n, with_substeps(scene, n));
+        add("march published", fmt::format("N={}", n), n, with_substeps(scene, n, March::kPublished));
+    }
     std::vector<double> tolerances = args.tolerances;
     if (recommended && std::find(tolerances.begin(), tolerances.end(), *recommended) == tolerances.end())
         tolerances.insert(std::find_if(tolerances.begin(), tolerances.end(),

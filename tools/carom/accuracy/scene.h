@@ -40,7 +40,7 @@ std::vector<Vec2> final_positions(const Record& record);
 
 /// One setting of one shot. Times are of the whole simulation [ns], processor time of the thread.
 struct SceneAccuracyRow {
-    std::string method;   ///< march, tolerance, box2d
+    std::string method;   ///< march, march published, tolerance, box2d
     std::string setting;  ///< "N=1000", "1e-06", "60 Hz"
     double value = 0.0;
     double ns_min = 0.0, ns_median = 0.0, ns_max = 0.0;
@@ -77,7 +77,7 @@ inline constexpr double kFlight = 1.0;
 
 /// A plan of the same scene with another setting; exactly one of the two.
 Plan with_tolerance(const Scene& scene, double tolerance);
-Plan with_substeps(const Scene& scene, int substeps);
+Plan with_substeps(const Scene& scene, int substeps, March march = March::kSummed);
 /// With every ball-ball impact solved by power series in extended precision, which shares no code with the
 /// kernels: the second converged method.
 Plan with_power_series(const Scene& scene);

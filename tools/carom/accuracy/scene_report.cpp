@@ -21,7 +21,7 @@ std::string error_text(double error, const SceneAccuracy& result) {
 }
 
 Table rows_of(const SceneAccuracy& result) {
-    Table table(Column("method", "method", "<11"), Column("setting", "setting", ">10"),
+    Table table(Column("method", "method", "<16"), Column("setting", "setting", ">10"),
                 Column("ns", "ms min", ">12"), Column("ns_median", "ms median", ">12"), Column("ns_max"),
                 Column("kernel_share", "kernel", ">9"), Column("cluster_share", "cluster", ">9"),
                 Column("", "error m", ">11"), Column("error_median", "median m", ">11"), Column("error_max"),
@@ -97,7 +97,7 @@ Plot scene_accuracy_plot(const SceneAccuracy& result, const std::string& scene) 
                                    : "the converged runs do not agree: distances, not errors"};
     plot.x = {"ms for the shot", true, {}, {}};
     plot.y = {"largest final distance from the converged run, m", true, {}, {}};
-    for (const char* method : {"march", "tolerance", "box2d"}) {
+    for (const char* method : {"march", "march published", "tolerance", "box2d"}) {
         Series series;
         series.name = method == std::string("box2d") ? "Box2D, 60 Hz to 10 kHz" : method;
         for (const SceneAccuracyRow& r : result.rows)

@@ -293,6 +293,11 @@ enum class Vertical : std::uint8_t { kKeep, kDrop };
 constexpr auto names_of(Vertical) {
     return std::array{"keep", "drop"};
 }
+/// How `substeps` are marched (kernel/march.h): summed exactly over many steps, or step by step as published.
+enum class March : std::uint8_t { kSummed, kPublished };
+constexpr auto names_of(March) {
+    return std::array{"summed", "published"};
+}
 enum class ClusterModel : std::uint8_t { kCompliant, kSequential, kRigid };
 constexpr auto names_of(ClusterModel) {
     return std::array{"compliant", "sequential", "rigid"};
@@ -319,6 +324,7 @@ struct Physics {
     ClusterModel clusters = ClusterModel::kCompliant;
     double tolerance = 1e-6;
     std::optional<int> substeps;  ///< set: the published march with N of them, instead of the tolerance
+    March march = March::kSummed;
     CushionTouch cushion_touch = CushionTouch::kRadius;
     PocketModel pocket = PocketModel::kFall;
     Vertical vertical = Vertical::kKeep;
@@ -345,6 +351,11 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
                                "speed; frictions up to 1"),
     field<&Physics::substeps>("substeps", at_least(1.0, kMaxSubsteps), "the published march with this N",
                               {.instead_of = "tolerance"}),
+    field<&Physics::march>("march",
+                           "how `substeps` are done: the same steps summed over many at once, or one after "
+                           "the other in the loop as "
+                           "published, to the bit",
+                           {.since = 2, .later = true}),
     field<&Physics::cushion_touch>(
         "cushion_touch",
         "distance of a ball's centre from a nose line that it touches: its `radius` R, as most simulators "

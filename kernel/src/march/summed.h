@@ -1,70 +1,100 @@
-// Past the march: its result without its steps. The explicit Euler march is the sequence y(m+1) = y(m) + h f(y(m)).
+// The result of the march without its steps. The explicit Euler march is the sequence y(m+1) = y(m) + h f(y(m)).
 // Over a block of K steps the rates are a smooth function of m: a polynomial through eight nodes represents them all,
 // and its sums over consecutive m are exact (sum_tables.h). The values at the nodes are found by fixed-point sweeps,
 // eight lanes at once. What is summed is the Euler sequence, not the continuous impact: step count, last step and
 // discretisation error are those of the march. Where the rates are not smooth (a change of the pressed side, a slip
 // near zero, a ball that starts rolling) exact steps are taken.
+//
+// Where rounding decides the published march, no other order of its sums can follow it, and this one gives up: where many
+// exact steps chatter near stick, and where the step that ends compression or the impact is a tie within rounding.
 #pragma once
 
-#include "ladder/reduced.h"
-#include "ladder/sum_tables.h"
 #include "loop_marks.h"
+#include "march/path.h"
+#include "march/reduced.h"
+#include "march/sum_tables.h"
 #include "simd.h"
 
 namespace carom::kernel {
 namespace {
 
-using Eight = Pack<8>;
-
 constexpr int kMostBlockSweeps = 24;
 // Largest change of a node in the last sweep, and largest highest modes of the rates, both relative to the approach
 // speed.
-constexpr double kSweepTolerance = 5e-13, kModeTolerance = 2e-10;
+constexpr double kSweepTolerance = 5e-13, kModeTolerance = 5e-11;
 // After two sweeps the modes may exceed kModeTolerance by this factor; a block in which they are larger is given up.
 constexpr double kEarlySlack = 10.0;
 // Rounding error of a sweep, summed over the nodes, relative to the slips.
 constexpr double kSweepRounding = 4e-15;
-// Distance of the poles that a block keeps, relative to the estimate that the tolerance asks for.
-constexpr double kPoleMargin = 0.35;
+// Exact steps, and the growth of a small difference over them, after which an impact is left to the published march: near
+// stick, or where a cloth slip comes next to zero, rounding may decide the sign of a slip.
+constexpr long kMostExactSteps = 40;
+constexpr double kMostGrowth = 10.0;
+// How close v_n and the work may come to the values that end a phase, relative to the approach speed; in addition the
+// published march rounds v_n by up to half an ulp of the fastest speed in each step.
+constexpr double kTie = 1e-9, kTieRounding = 0x1p-51;
 
 template <int kSign>
 class SummedMarch {
   public:
-    SummedMarch(const Reduced& start, const ReducedConstants& constants)
-        : r(start), k(constants), scale(absolute(start.v_n)) {}
+    // `close`: what v_n may differ by from that of the published march.
+    SummedMarch(const Reduced& start, const ReducedConstants& constants, double close)
+        : r(start),
+          k(constants),
+          scale(absolute(start.v_n)),
+          tie_v(close),
+          tie_W(close * absolute(start.v_n)) {}
 
-    // Returns the number of steps, or -1. After `most_exact` exact steps it gives up and sets `chatters`.
-    long run(long most_exact) {
-        long patience = 1;
+    // Returns the number of steps, or -1 where the published march has to be asked.
+    long run() {
+        long patience = 1, exact = 0;
         while (stop.goes_on(r.v_n)) {
-            if (steps > k.limit) return -1;
+            if (steps > k.limit || tied || enlarged > kMostGrowth || exact > kMostExactSteps) return -1;
             const FirstStep first = first_step();
             int level = widest(first);
             while (level >= 0 && !block(kSumTables[level], first)) --level;
             // Exact steps: more of them, the longer no block is smooth.
-            if (level >= 0) {
+            if (level >= 0)
                 patience = 1;
-                continue;
-            }
-            const long before = steps;
-            reduced_steps<kSign>(r, stop, steps, patience < kSmallestBlock ? patience *= 2 : patience, k);
-            most_exact -= steps - before;
-            if (most_exact < 0 && stop.goes_on(r.v_n)) {
-                chatters = true;
-                return -1;
-            }
+            else
+                exact += exact_steps(patience < kSmallestBlock ? patience *= 2 : patience);
         }
-        return steps;
+        return tied || enlarged > kMostGrowth ? -1 : steps;
     }
 
     Reduced r;
-    bool chatters = false;
 
   private:
     ReducedConstants k;
-    double scale;
+    double scale, tie_v, tie_W;
     StopTest stop;
     long steps = 0;
+    bool tied = false;
+    double enlarged = 1.0;
+
+    // The factor by which the next step enlarges a difference of a slip, at most: the step turns with the direction of the
+    // slip.
+    double growth_of_step() const {
+        const int pressed = r.z < 0.0;
+        const double c = largest(absolute(r.x), absolute(r.z)),
+                     u = largest(absolute(r.Ux[pressed]), absolute(r.Uy[pressed]));
+        // Without a direction there is no friction.
+        const double of_slip = c < kSlipCutoff ? 0.0 : 7.0 / c;
+        const double of_cloth = u > k.u_floor ? 3.5 * k.mu_s[pressed] / u : 0.0;
+        return 1.0 + k.mu_h * (of_slip + of_cloth);
+    }
+
+    // Takes exact steps until the march ends or `count` are done; returns how many. Each shows whether it is a tie.
+    long exact_steps(long count) {
+        const long before = steps;
+        while (count-- > 0 && stop.goes_on(r.v_n)) {
+            const bool compressing = stop.compressing;
+            enlarged *= growth_of_step();
+            reduced_steps<kSign>(r, stop, steps, 1, k);
+            tied = tied || (compressing ? absolute(r.v_n) <= tie_v : absolute(stop.W - stop.W_f) <= tie_W);
+        }
+        return steps - before;
+    }
 
     // The reciprocal lengths C and U and the rates at the present state. `cloth`: there is friction between the
     // pressed ball and the cloth.
@@ -99,39 +129,6 @@ class SummedMarch {
         return f;
     }
 
-    // How smooth the direction of a vector is along a block of K steps, from (a, b) with (da, db) a step. The
-    // direction has poles where the length vanishes, at complex t. If the path is taken as straight, they lie on the
-    // ellipse around the block whose half axes have the sum rho, and the modes fall as rho^-n. `amplitude` is the
-    // largest effect of the direction on a result.
-    struct Path {
-        double a, b, da, db, needed;  // needed: (rho + 1/rho) / 2
-    };
-
-    Path path(double a, double b, double da, double db, double amplitude) const {
-        const double sine =
-            absolute(a * db - b * da) / (square_root((a * a + b * b) * (da * da + db * db)) + 1e-300);
-        const double ratio = amplitude * sine / (kModeTolerance * scale);
-        const double rho = 1.0 + kPoleMargin * eighth_root(ratio);
-        return {a, b, da, db, 0.5 * (rho + 1.0 / rho)};
-    }
-
-    // With an error of a tenth, which is enough here: the bits of a double, divided by 8, are close to those of the
-    // root.
-    static double eighth_root(double x) {
-        long bits;
-        __builtin_memcpy(&bits, &x, sizeof x);
-        bits = bits / 8 + 0x3ff0000000000000L / 8 * 7;
-        __builtin_memcpy(&x, &bits, sizeof x);
-        return x;
-    }
-
-    // The slack of every block size at once: >= 0 where the direction is smooth enough.
-    static Eight slack(const Path& p, Eight K) {
-        const Eight a = p.a + K * p.da, b = p.b + K * p.db;
-        return square_root(p.a * p.a + p.b * p.b) + square_root(a * a + b * b) -
-               K * (p.needed * square_root(p.da * p.da + p.db * p.db));
-    }
-
     // The widest block that eight nodes probably resolve; -1 if there is none.
     int widest(const FirstStep& f) const {
         constexpr double kKappa = 1.0 - 2.5 * kSign;
@@ -139,10 +136,11 @@ class SummedMarch {
         int level = kBlockSizes - 1;
         if (!f.slips) return level;
         const double a = r.Ux[f.pressed], b = r.Uy[f.pressed], mu_s = k.mu_s[f.pressed];
+        const double allowed = kModeTolerance * scale;
         const Path slip =
-            path(r.x, f.size, f.q_x - 7.0 * f.xi, 2.5 * f.q_y - 5.0 * f.t, kLargestBlock * k.mu_h);
+            path(r.x, f.size, f.q_x - 7.0 * f.xi, 2.5 * f.q_y - 5.0 * f.t, kLargestBlock * k.mu_h / allowed);
         const Path cloth = path(a, b, f.xi - kKappa * f.q_x, k.h - 2.5 * kSign * f.t - kKappa * f.q_y,
-                                kLargestBlock * mu_s * f.t);
+                                kLargestBlock * mu_s * f.t / allowed);
         alignas(64) constexpr double kSizes[kNodes] = {16, 32, 64, 128, 256, 512, 1024, 1024};
         alignas(64) double of_slip[kNodes], of_cloth[kNodes];
         const Eight slip_slack = slack(slip, load<8>(kSizes)), cloth_slack = slack(cloth, load<8>(kSizes));
@@ -260,6 +258,8 @@ class SummedMarch {
         // The sum of (v(m) + v(m+1)) / 2 over the block.
         const double V = K * v0 + h * K * (K - 1.0) - total(table.double_total, f.q_y) + 0.5 * (v_end - v0);
         const bool crosses = stop.compressing && v_end > 0.0;
+        tied = tied ||
+               (stop.compressing ? absolute(v_end) <= tie_v : absolute(stop.W + h * V - stop.W_f) <= tie_W);
         if (!crosses && (stop.compressing || stop.W + h * V < stop.W_f)) {
             stop.W += stop.compressing ? -h * V : h * V;
             take(f, load<8>(table.total), K, pressed);
@@ -282,6 +282,7 @@ class SummedMarch {
                 v_before = at.v(from - 1.0);
                 v_from = at.v(from);
             }
+            tied = tied || absolute(v_before) <= tie_v || absolute(v_from) <= tie_v;
             const double last_step = 0.5 * (v_before + v_from), V_before = at.V(from - 1.0, v_before);
             V_from = V_before + last_step;
             stop.W += h * (absolute(last_step) - V_before);
@@ -289,7 +290,9 @@ class SummedMarch {
             stop.compressing = false;
         }
         double last = K;
-        if (stop.W + h * (V - V_from) >= stop.W_f) {
+        if (stop.W >= stop.W_f) {  // without restitution the march ends with compression
+            last = from;
+        } else if (stop.W + h * (V - V_from) >= stop.W_f) {
             // The first step with the work to reach: v is taken as linear, and one Newton step follows.
             const double missing = (stop.W_f - stop.W) / h, growth = (v_end - v_from) / (K - from + 1e-300);
             const double root = square_root(v_from * v_from + 2.0 * growth * missing);
@@ -303,6 +306,9 @@ class SummedMarch {
                 last = first_whole(
                     t, K, [&](double m) { return m >= from && at.V(m, at.v(m)) - V_from >= missing; });
             if (last < 0.0) last = K;
+            const double v_at_last = at.v(last), over = at.V(last, v_at_last) - V_from - missing;
+            const double short_of = over - 0.5 * (at.v(last - 1.0) + v_at_last);
+            tied = tied || h * absolute(over) <= tie_W || h * absolute(short_of) <= tie_W;
             stop.W = stop.W_f;
         } else {
             stop.W += h * (V - V_from);
@@ -376,22 +382,27 @@ class SummedMarch {
 };
 
 struct Summed {
-    template <int kSign>
-    static long loop(FrameState& s, const ImpactParams& p, int n) {
-        bool chatters = false;
-        return march<kSign>(s, p, n, kMarchStepLimit * static_cast<long>(n), chatters);
+    static constexpr int kFewestSubsteps = 100;  // below this the steps themselves cost no more than the sums
+
+    // Frictions beyond these are left to the published march. As published, the cloth feeds the slip, and beyond them the
+    // equations themselves enlarge a difference without limit.
+    static bool usual(const ImpactParams& p, int sign) {
+        const double mu_s = largest(p.mu_s1, p.mu_s2);
+        return sign > 0 ? p.mu_b <= 0.2 && mu_s <= 0.5 : p.mu_b <= 1.0 && mu_s <= 1.0;
     }
 
-    // After `most_exact` exact steps it gives up, sets `chatters` and leaves the state as it was.
+    // Returns the number of steps, or -1 where the published march has to be asked; the state is then as it was.
     template <int kSign>
-    static long march(FrameState& s, const ImpactParams& p, int n, long most_exact, bool& chatters) {
-        const ReducedConstants k = reduced_constants<kSign>(s, p, n);
+    static long loop(FrameState& s, const ImpactParams& p, int n) {
+        if (n < kFewestSubsteps || !usual(p, kSign)) return -1;
+        ReducedConstants k = reduced_constants<kSign>(s, p, n);
+        // Without friction between the balls the cloth is not felt, and its slips may not decide how the blocks lie.
+        if (p.mu_b == 0.0) k.mu_s[0] = k.mu_s[1] = 0.0;
         const Reduced start = reduce<kSign>(s, p.R);
-        SummedMarch<kSign> march(start, k);
-        const long steps = march.run(most_exact);
-        chatters = march.chatters;
-        if (steps < 0) return -1;
-        expand(s, sums_between<kSign>(start, march.r, static_cast<double>(steps) * k.h), p.R);
+        SummedMarch<kSign> march(start, k,
+                                 kTie * absolute(start.v_n) + kTieRounding * n * sum_of_speeds(s, p.R));
+        const long steps = march.run();
+        if (steps >= 0) expand(s, sums_between<kSign>(start, march.r, static_cast<double>(steps) * k.h), p.R);
         return steps;
     }
 };

@@ -1,0 +1,29 @@
+// The summed march, and the published one where rounding decides. Built once per instruction set.
+#include "march/summed.h"
+
+#include "kernel_set.h"
+
+namespace carom::kernel::CAROM_ISA_NAMESPACE {
+namespace {
+
+// Returns false where the published march has to be asked.
+bool summed(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n, ImpactResult& result) {
+    Frame frame;
+    FrameState state;
+    if (n < Summed::kFewestSubsteps) return false;
+    if (enter_frame(ball1, ball2, params, frame, state, result) != ImpactStatus::kOk) return true;
+    const long steps = params.cloth_slip == ClothSlip::kAsPublished
+                           ? Summed::loop<+1>(state, params, n)
+                           : Summed::loop<-1>(state, params, n);  // NOLINT(misc-redundant-expression): +1, -1
+    if (steps >= 0) leave_frame(ball1, ball2, frame, state, steps, result);
+    return steps >= 0;
+}
+
+}  // namespace
+
+void summed_march(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
+                  ImpactResult& result) noexcept {
+    if (!summed(ball1, ball2, params, n, result)) march(ball1, ball2, params, n, result);
+}
+
+}  // namespace carom::kernel::CAROM_ISA_NAMESPACE
