@@ -15,9 +15,9 @@ import carom.gym  # noqa: E402
 from gymnasium.utils.env_checker import check_env, data_equivalence  # noqa: E402
 from gymnasium.vector import AutoresetMode, SyncVectorEnv  # noqa: E402
 
-NAMES = sorted(carom.gym._GAMES)
+NAMES = sorted(carom.gym.GAMES)
 #: Options that reach every part of an observation, an action and an info.
-OPTIONS = [{}, {"aim": "ball", "observation": "dict", "elevation_deg": (0.0, 5.0), "hashes": True}]
+OPTIONS = [{}, {"aim": "ball", "observation": "dict", "elevation_deg": (0.0, 5.0), "hashes": True, "noise": "fastfiz"}]
 
 
 def same_bits(a, b):
@@ -161,6 +161,35 @@ def test_an_aim_at_a_ball_hits_it_as_full_as_it_says():
     assert (played.shots.first_hit == 1).all()
 
 
+def test_noise_is_that_of_the_seed():
+    env = carom.gym.make_env("Pot", noise="fastfiz", hashes=True)
+    meant = np.array([0.3, 0.9, 0.2, 0.1, -0.2], np.float32)
+
+    def strikes(seed):
+        made = []
+        for k in range(3):
+            env.reset(seed=seed if k == 0 else None)
+            made.append(env.step(meant)[4]["cue"])
+        return np.array(made)
+
+    made = strikes(5)
+    assert np.array_equal(made, strikes(5)) and len(np.unique(made[:, 1])) == 3 and not np.isin(strikes(6)[:, 1], made[:, 1]).any()
+    n = 2000
+    many = env.states.take([0] * n)
+    exact = env.rollout(many, np.tile(meant, (n, 1))).cue
+    assert (exact == exact[0]).all()
+    noisy = env.rollout(many, np.tile(meant, (n, 1)), noise_seed=3)
+    assert np.array_equal(noisy.cue, carom.games.noisy(exact, "fastfiz", 3))
+    # An elevation below 0 is a level cue, and so half of its errors are none.
+    level = [0, 1, 3, 4]
+    assert np.allclose((noisy.cue - exact).std(0)[level], np.array(carom.games.Noise.named("fastfiz"))[level], rtol=0.1)
+    assert (noisy.cue[:, 2] == 0).mean() == pytest.approx(0.5, abs=0.05)
+    own = carom.gym.make_env("Pot", noise=[0, 0.5, 0, 0, 0])
+    own.reset(seed=1)
+    cue = own.rollout(many, np.tile(meant, (n, 1)), noise_seed=3).cue
+    assert cue[:, 1].std() > 0.4 and (cue[:, [0, 2, 3, 4]] == exact[0, [0, 2, 3, 4]]).all()
+
+
 # Games, and shots without an end.
 
 
@@ -267,6 +296,8 @@ def test_reset_takes_a_scene_and_says_what_is_wrong():
         ({"elevation_deg": 90}, "elevation_deg=90"),
         ({"observation": "pixels"}, "observation='pixels'"),
         ({"render_mode": "human"}, "render_mode='human'"),
+        ({"noise": "loud"}, "loud"),
+        ({"noise": [0, -1, 0, 0, 0]}, "noise="),
     ]:
         with pytest.raises(ValueError, match=message):
             carom.gym.make_env("Pot", **wrong)

@@ -19,16 +19,16 @@ from carom.gym._strikes import Strikes
 from carom.gym._tables import Rollout
 from carom.gym._vector import TableVectorEnv
 
-__all__ = ["Game", "Judged", "Position", "Pot", "Rollout", "States", "Strikes", "TableEnv", "TableVectorEnv", "make_env", "make_vector_env"]
+__all__ = ["GAMES", "Game", "Judged", "Position", "Pot", "Rollout", "States", "Strikes", "TableEnv", "TableVectorEnv", "make_env", "make_vector_env"]
 
 #: The games by their names in "carom/NAME-v0", and the options that are the game's own.
-_GAMES: dict[str, type[Game]] = {"Pot": Pot, "Position": Position}
+GAMES: dict[str, type[Game]] = {"Pot": Pot, "Position": Position}
 _OWN = ("table", "scene")
 
 
 def _game(name: str, options: dict[str, Any]) -> Game:
     """Takes the game's own options out of the others."""
-    return _GAMES[name](**{key: options.pop(key) for key in _OWN if key in options})
+    return GAMES[name](**{key: options.pop(key) for key in _OWN if key in options})
 
 
 def make_env(game: str, **options: Any) -> TableEnv:
@@ -41,7 +41,7 @@ def make_vector_env(game: str, num_envs: int = 1, **options: Any) -> TableVector
     return TableVectorEnv(_game(game, options), num_envs, **options)
 
 
-for _name in _GAMES:
+for _name in GAMES:
     gymnasium.register(
         f"carom/{_name}-v0",
         entry_point="carom.gym:make_env",

@@ -10,11 +10,14 @@ from gymnasium import spaces
 
 from carom._record import Record
 from carom._render import render
+from carom.games import Noise
 from carom.gym._games import Game, States
 from carom.gym._strikes import Strikes
 from carom.gym._tables import Rollout, Rules, Tables
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
 Observation = Any  # an array, or with observation="dict" a dict of two
@@ -25,6 +28,7 @@ def rules_of(
     aim: str,
     speed: tuple[float, float],
     elevation_deg: float | tuple[float, float],
+    noise: str | Sequence[float],
     threads: int,
     hashes: bool,
 ) -> Rules:
@@ -33,7 +37,16 @@ def rules_of(
     strikes = Strikes(aim, (float(speed[0]), float(speed[1])), pair)
     if threads < 0:
         raise ValueError(f"threads={threads}: expected at least 0")
-    return Rules(game, strikes, threads=threads, hashes=hashes)
+    return Rules(game, strikes, noise_of(noise, game), threads=threads, hashes=hashes)
+
+
+def noise_of(noise: str | Sequence[float], game: Game) -> Noise:
+    """A name of `carom.games.Noise.named`, or five standard deviations."""
+    if isinstance(noise, str):
+        return Noise.named(noise, float(game.radii[game.cue_ball]))
+    if len(noise) != len(Noise._fields) or not all(0 <= sd < np.inf for sd in noise):
+        raise ValueError(f"noise={noise!r}: expected a name, or standard deviations of {', '.join(Noise._fields)}, at least 0")
+    return Noise(*map(float, noise))
 
 
 def spaces_of(rules: Rules, observation: str) -> tuple[spaces.Space[Any], spaces.Box]:
@@ -59,10 +72,19 @@ def plain(value: Any) -> Any:
     return bool(value) if isinstance(value, np.bool_) else value.copy() if isinstance(value, np.ndarray) else value
 
 
+def searched(rules: Rules, states: States, actions: ArrayLike, noise_seed: int | None, threads: int) -> Rollout:
+    """Shots of a search, on threads of its own."""
+    n = len(states.xy)
+    seeds = None if noise_seed is None else np.full(n, noise_seed, np.uint64)
+    search = Rules(rules.game, rules.strikes, rules.noise, threads=threads, hashes=rules.hashes)
+    return search.rollout(states, actions, seeds, np.arange(n))
+
+
 class TableEnv(gymnasium.Env[Observation, Any]):
     """One table. The subclasses in carom.gym say which game.
 
     aim, speed, elevation_deg: how an action is a strike (`carom.gym.Strikes`)
+    noise: errors of the strike: "fastfiz", "ai3603" (`carom.games.Noise.named`) or five standard deviations
     observation: "box", or "dict" with the mask of the balls that may be hit first beside it
     most_shots: an episode with as many shots is truncated
     hashes: info["hash"] is that of the shot's record
@@ -70,7 +92,7 @@ class TableEnv(gymnasium.Env[Observation, Any]):
     size: width and height of pictures [pixels]
 
     Info of a step: "status" (a number of `carom.ShotStatus`), "events", "duration" [s], "first_hit" (a ball's place in `ids`, or -1), "pocket"
-    and "cushions" of every ball, "cue" (the strike: speed, aim_deg, elevation_deg, side, height), "foul" (its name, or ""), and "message" for a shot
+    and "cushions" of every ball, "cue" (the strike that was made: speed, aim_deg, elevation_deg, side, height), "foul" (its name, or ""), and "message" for a shot
     without an end, which is truncated.
 
     Options of reset: "xy" (balls, 2) [m], NaN for a ball that is not there; or "scene", a `carom.Scene` with these places; and what the game
@@ -86,6 +108,7 @@ class TableEnv(gymnasium.Env[Observation, Any]):
         aim: str = "angle",
         speed: tuple[float, float] = (0.3, 6.0),
         elevation_deg: float | tuple[float, float] = 0.0,
+        noise: str | Sequence[float] = "none",
         observation: str = "box",
         most_shots: int = 1000,
         hashes: bool = False,
@@ -94,7 +117,7 @@ class TableEnv(gymnasium.Env[Observation, Any]):
     ) -> None:
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode={render_mode!r}: expected 'rgb_array' or None")
-        self._rules = rules_of(game, aim, speed, elevation_deg, 1, hashes)
+        self._rules = rules_of(game, aim, speed, elevation_deg, noise, 1, hashes)
         self.observation_space, self.action_space = spaces_of(self._rules, observation)
         self.render_mode, self._observation, self._size = render_mode, observation, (int(size[0]), int(size[1]))
         self._tables = Tables(1, self._rules, most_shots)
@@ -126,10 +149,12 @@ class TableEnv(gymnasium.Env[Observation, Any]):
         said |= {"message": text for text in played.shots.messages.values()}
         return self._observe(), float(played.reward[0]), bool(played.terminated[0]), bool(played.truncated[0]), said
 
-    def rollout(self, states: States, actions: ArrayLike, *, threads: int = 1) -> Rollout:
-        """Plays n actions on n tables at once, for search; this environment does not change. `env.states.take([0] * n)` is this table n times."""
-        rules = self._rules
-        return Rules(rules.game, rules.strikes, threads=threads, hashes=rules.hashes).rollout(states, actions)
+    def rollout(self, states: States, actions: ArrayLike, *, noise_seed: int | None = None, threads: int = 1) -> Rollout:
+        """Plays n actions on n tables at once, for search; this environment does not change. `env.states.take([0] * n)` is this table n times.
+
+        noise_seed: None plays the strikes as they are meant; otherwise shot i has the errors of shot i of this seed
+        """
+        return searched(self._rules, states, actions, noise_seed, threads)
 
     def record(self) -> Record:
         """The last shot with everything that happened, for pictures and pages. Raises RuntimeError before the first shot."""

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from carom import _carom
 from carom._scene import Scene
 from carom._simulate import Shots, simulate_many
+from carom.games import Noise
 from carom.gym._games import Game, Judged, States, failed
 from carom.gym._strikes import Strikes
 
@@ -34,17 +36,19 @@ class Rollout(NamedTuple):
 class Rules:
     """A game, and how actions are strikes."""
 
-    def __init__(self, game: Game, strikes: Strikes, *, threads: int, hashes: bool) -> None:
-        self.game, self.strikes, self.threads, self.hashes = game, strikes, threads, hashes
+    def __init__(self, game: Game, strikes: Strikes, noise: Noise, *, threads: int, hashes: bool) -> None:
+        self.game, self.strikes, self.noise, self.threads, self.hashes = game, strikes, noise, threads, hashes
 
-    def rollout(self, states: States, actions: ArrayLike) -> Rollout:
-        """Plays one action on each of the tables."""
+    def rollout(self, states: States, actions: ArrayLike, seeds: NDArray[np.uint64] | None, indices: NDArray[np.int64] | None = None) -> Rollout:
+        """Plays one action on each of the tables, with the errors of these shots of these seeds, or with none."""
         act = np.asarray(actions)
         wanted = (len(states.xy), self.strikes.size)
         if act.shape != wanted or not np.issubdtype(act.dtype, np.floating):
             raise ValueError(f"actions: expected floating-point numbers in the shape {wanted}, not {act.dtype} in {act.shape}")
         game = self.game
         cue = self.strikes.cue(act, states.xy, game.cue_ball, game.legal(states), game.radii)
+        if seeds is not None and any(self.noise):
+            _carom.add_noise_each(cue.reshape(-1), tuple(self.noise), seeds, np.zeros(len(cue), np.int64) if indices is None else indices)
         return self.play(states, cue)
 
     def play(self, states: States, cue: NDArray[np.float64]) -> Rollout:
@@ -66,12 +70,14 @@ class Tables:
         balls, k = len(rules.game.ids), len(rules.game.EXTRA)
         self.rules, self.most_shots = rules, most_shots
         self.states = States(np.full((n, balls, 2), np.nan), np.zeros((n, k)))
-        self.generators = np.zeros(n, np.uint64)
+        self.generators, self.noise_seeds = np.zeros(n, np.uint64), np.zeros(n, np.uint64)
         self.shots = np.zeros(n, np.int64)  # of this episode
-        self.before, self.cue = self.states.take(slice(None)), np.full((n, 5), np.nan)  # of the last shot
+        self.played = np.zeros(n, np.int64)  # since the table was seeded
+        self.before, self.cue = self.states.take(slice(None)), np.full((n, 5), np.nan)  # of the last shot of this episode
 
     def seed(self, row: int, generator: np.random.Generator) -> None:
-        self.generators[row] = generator.integers(0, 2**64, dtype=np.uint64)
+        self.generators[row], self.noise_seeds[row] = generator.integers(0, 2**64, 2, dtype=np.uint64)
+        self.played[row] = 0
 
     def reset(self, rows: NDArray[np.intp], options: Mapping[str, Any] | None) -> None:
         """New episodes on these tables. Raises ValueError for options that are none."""
@@ -88,11 +94,12 @@ class Tables:
         """One shot on each of these tables, and what an environment says about it."""
         whole = len(rows) == len(self.shots)
         before = self.states.take(rows)
-        played = self.rules.rollout(before, actions)
+        played = self.rules.rollout(before, actions, self.noise_seeds[rows], self.played[rows])
         self.before.put(rows, before)
         self.cue[rows] = played.cue
         self.states.put(rows, played.states)
         self.shots[rows] += 1
+        self.played[rows] += 1
         over = (self.shots if whole else self.shots[rows]) >= self.most_shots
         played = played._replace(truncated=played.truncated | (over & ~played.terminated))
         shots = played.shots

@@ -11,9 +11,9 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from carom._render import render
-from carom.gym._env import Observation, observed, plain, rules_of, spaces_of
+from carom.gym._env import Observation, observed, plain, rules_of, searched, spaces_of
 from carom.gym._games import Game, States
-from carom.gym._tables import Rollout, Rules, Tables
+from carom.gym._tables import Rollout, Tables
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -43,6 +43,7 @@ class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
         aim: str = "angle",
         speed: tuple[float, float] = (0.3, 6.0),
         elevation_deg: float | tuple[float, float] = 0.0,
+        noise: str | Sequence[float] = "none",
         observation: str = "box",
         most_shots: int = 1000,
         hashes: bool = False,
@@ -57,7 +58,7 @@ class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
         self.num_envs, self.render_mode, self._observation, self._size = num_envs, render_mode, observation, (int(size[0]), int(size[1]))
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = {**type(self).metadata, "autoreset_mode": self.autoreset_mode}
-        self._rules = rules_of(game, aim, speed, elevation_deg, threads, hashes)
+        self._rules = rules_of(game, aim, speed, elevation_deg, noise, threads, hashes)
         self.single_observation_space, self.single_action_space = spaces_of(self._rules, observation)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
@@ -120,10 +121,9 @@ class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
         self._over = terminated | truncated if mode != AutoresetMode.SAME_STEP else np.zeros(self.num_envs, bool)
         return self._observe(), reward, terminated, truncated, infos
 
-    def rollout(self, states: States, actions: ArrayLike, *, threads: int = 1) -> Rollout:
-        """Plays n actions on n tables at once, as many as you like, for search; this environment does not change."""
-        rules = self._rules
-        return Rules(rules.game, rules.strikes, threads=threads, hashes=rules.hashes).rollout(states, actions)
+    def rollout(self, states: States, actions: ArrayLike, *, noise_seed: int | None = None, threads: int = 1) -> Rollout:
+        """Plays n actions on n tables at once, as many as you like, for search, as `TableEnv.rollout`; this environment does not change."""
+        return searched(self._rules, states, actions, noise_seed, threads)
 
     def render(self) -> tuple[Any, ...] | None:
         """The tables as they are, from above."""

@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+"""Steps of the environment Pot per CPU second, beside the plain batch of the same shots, in one process, in turns.
+
+A step of a vector with the autoreset mode SameStep plays a shot on every table, judges it, and draws and observes a new layout. The plain batch
+is `simulate_many` with the arrays of the same strikes and places, and nothing else. CPU time of the thread, one thread; the least of the rounds, and the
+median of the ratios of a round. With --pooltool also an environment over pooltool 0.6.0 with the same actions and layouts on its own table and models, in
+a throw-away virtual environment (PyPI; side_by_side_shots.py knows what it needs). Neither the build nor a test needs this script.
+
+    tools/measure/gym_speed.py [--package build/release/python] [--rounds 15] [--pooltool]
+
+Needs gymnasium: run it with build/python-env/bin/python, which tools/test makes.
+"""
+import argparse
+import json
+import os
+import pathlib
+import platform
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+import side_by_side_shots as pooltool_shots
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+STEPS = 8
+
+
+def timed(work):
+    start = time.thread_time()
+    work()
+    return time.thread_time() - start
+
+
+def vector(game, tables, rounds):
+    """Steps per second of the vector and of the plain batch, and the median of their ratios."""
+    import carom
+    import carom.gym
+
+    env = carom.gym.make_vector_env(game, tables, autoreset_mode="SameStep")
+    env.reset(seed=1)
+    env.action_space.seed(1)
+    scene = env._rules.game.scene
+    rows = []
+    for _ in range(rounds):
+        actions = [env.action_space.sample() for _ in range(STEPS)]
+        ours = plain = 0.0
+        for act in actions:
+            states = env.states
+            cue = env.rollout(states, act).cue
+            ours += timed(lambda: env.step(act))
+            plain += timed(lambda: carom.simulate_many(scene, cue=cue, xy=states.xy))
+        rows.append((ours, plain))
+    count = tables * STEPS
+    return count / min(a for a, _ in rows), count / min(b for _, b in rows), statistics.median(b / a for a, b in rows)
+
+
+def single(game, rounds):
+    """Steps per second of one environment, each with the reset behind it."""
+    import carom.gym
+
+    env = carom.gym.make_env(game)
+    env.reset(seed=1)
+    env.action_space.seed(1)
+    actions = [env.action_space.sample() for _ in range(200)]
+
+    def play():
+        for action in actions:
+            _, _, terminated, truncated, _ = env.step(action)
+            if terminated or truncated:
+                env.reset()
+
+    return len(actions) / min(timed(play) for _ in range(rounds))
+
+
+def over_pooltool(shots):
+    """Runs inside the environment: steps per second of an environment over pooltool that does what Pot does."""
+    import numpy as np
+    import pooltool as pt
+
+    table = pt.Table.default()
+    random = np.random.default_rng(1)
+    width, length = float(table.w), float(table.l)
+
+    def layout():
+        while True:
+            places = random.uniform([0.05, 0.05], [width - 0.05, length - 0.05], (2, 2))
+            if np.hypot(*(places[0] - places[1])) > 0.06:
+                return places
+
+    def step(places, action):
+        balls = {name: pt.Ball.create(name, xy=tuple(place)) for name, place in zip(("cue", "1"), places)}
+        system = pt.System(cue=pt.Cue(cue_ball_id="cue"), table=pt.Table.default(), balls=balls)
+        side, height = 0.5 * action[3:] / np.sqrt(2)
+        system.cue.set_state(V0=3.15 + 2.85 * action[2], phi=np.degrees(np.arctan2(action[1], action[0])) % 360, a=side, b=height)
+        pt.simulate(system, inplace=True)
+        fallen = [name for name, ball in system.balls.items() if ball.state.s == pt.constants.pocketed]
+        reward = -1.0 if "cue" in fallen else float("1" in fallen)
+        observed = np.array([ball.state.rvw[0, :2] for ball in system.balls.values()], np.float32)
+        return observed, reward
+
+    step(layout(), random.uniform(-1, 1, 5))  # compiles
+    cpu = timed(lambda: [step(layout(), random.uniform(-1, 1, 5)) for _ in range(shots)])
+    print(json.dumps(shots / cpu))
+
+
+def pooltool_rate(shots):
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(["/usr/bin/python3", "-m", "venv", folder], check=True)
+        python = os.path.join(folder, "bin", "python")
+        pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+        subprocess.run(pip + pooltool_shots.NEEDED, check=True)
+        subprocess.run(pip + ["--no-deps"] + pooltool_shots.ALONE, check=True)
+        out = subprocess.run([python, __file__, "--inside", "--shots", str(shots)], check=True, capture_output=True, text=True).stdout
+    return json.loads(out.strip().splitlines()[-1])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--package", default=str(ROOT / "build" / "release" / "python"), help="folder of the built package")
+    parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--pooltool", action="store_true", help="also an environment over pooltool 0.6.0; downloads some hundred megabytes")
+    parser.add_argument("--shots", type=int, default=300, help="of pooltool (default: 300)")
+    parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
+    args = parser.parse_args()
+    if args.inside:
+        over_pooltool(args.shots)
+        return
+    sys.path.insert(0, args.package)
+    model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine())
+    print(f"{model}, Python {platform.python_version()}, CAROM_ISA={os.environ.get('CAROM_ISA', '(the widest)')}")
+    print(f"{'game':<16}{'tables':>7}{'steps/s':>12}{'plain batch':>14}   median of the ratio")
+    import carom.gym
+
+    for game in carom.gym.GAMES:
+        for tables in (16, 64, 256, 1024):
+            ours, plain, ratio = vector(game, tables, args.rounds)
+            print(f"{game:<16}{tables:>7}{ours:>10.0f}/s{plain:>12.0f}/s   {ratio:.2f}")
+        print(f"{game:<16}{'one':>7}{single(game, args.rounds):>10.0f}/s")
+    if args.pooltool:
+        print(f"{'over pooltool':<16}{'one':>7}{pooltool_rate(args.shots):>10.0f}/s")
+
+
+if __name__ == "__main__":
+    main()
