@@ -65,5 +65,6 @@ NB_MODULE(_carom, m) {
     add_frames(m);
     add_games(m);
     add_arrays(m);
+    add_judged(m);
     add_games_rules(m);
 }

@@ -40,13 +40,13 @@ def test_gymnasium_accepts_the_environment(name, options):
         warnings.simplefilter("error")
         env = gymnasium.make(f"carom/{name}-v0", **options).unwrapped
         check_env(env)
-        check_env(gymnasium.make(env.spec).unwrapped)
+        assert same_bits(gymnasium.make(env.spec).reset(seed=1), env.reset(seed=1))
 
 
 @pytest.mark.parametrize("mode", list(AutoresetMode))
 @pytest.mark.parametrize(("name", "options"), list(itertools.product(NAMES, OPTIONS)))
 def test_the_vector_is_so_many_single_environments(name, options, mode):
-    n, steps = 5, 8
+    n, steps = 5, 12 if name == "SumToThree" else 6
     single = SyncVectorEnv([lambda: gymnasium.make(f"carom/{name}-v0", **options)] * n, autoreset_mode=mode)
     many = gymnasium.make_vec(f"carom/{name}-v0", num_envs=n, autoreset_mode=mode.value, **options)
     assert isinstance(many.unwrapped, carom.gym.TableVectorEnv) and many.metadata["autoreset_mode"] is mode
@@ -81,8 +81,8 @@ def test_a_seed_repeats_to_the_bit_whatever_the_threads(name):
 
     one, two = run(1), run(3)
     assert all(same_bits(a, b) for a, b in zip(one, two))
-    hashes = np.concatenate([step[4]["final_info"]["hash"][step[2]] for step in one[1:] if step[2].any()])
-    assert len(set(hashes.tolist())) == len(hashes) > 30
+    hashes = np.concatenate([(step[4]["final_info"] if step[2][row] else step[4])["hash"][[row]] for step in one[1:] for row in range(40)])
+    assert len(set(hashes.tolist())) == len(hashes) == 160
 
 
 def test_what_is_returned_is_nobody_elses():
@@ -212,6 +212,69 @@ def test_position_takes_the_distance_to_the_target():
     played = play_one("Position", [[0.6, 0.6], [0.3, 0.3]], [1.0, -135, 0, 0, -0.3], **target)
     far = np.hypot(*(played.shots.xy[0, 0] - [0.9, 1.5])) / np.hypot(1.27, 2.54)
     assert played.shots.pocket[0, 1] >= 0 and abs(played.reward[0] - (1 - far)) < 1e-12
+
+
+@pytest.mark.parametrize("name", ["ThreeCushion", "SumToThree", "NineBallRun", "EightBallRun"])
+def test_what_a_shot_is_worth_is_what_the_rules_say(name):
+    """Every shot as a scene and a record of its own, judged by carom.games."""
+    env = carom.gym.make_vector_env(name, 60, autoreset_mode="SameStep", aim="ball", speed=(2.0, 6.0), hashes=True)
+    game = carom.gym.GAMES[name]()
+    env.reset(seed=2)
+    env.action_space.seed(3)
+    seen = {"goes on": 0, "foul": 0, "fair": 0}
+    for _ in range(3):
+        states, actions = env.states, env.action_space.sample()
+        played = env.rollout(states, actions)
+        legal = game.legal(states)
+        env.step(actions)
+        for row in range(60):
+            if name == "EightBallRun":
+                group = ("open", "solids", "stripes")[int(states.extra[row, 0])]
+                other = {"open": "open", "solids": "stripes", "stripes": "solids"}[group]
+                state = carom.games.new_game(game.RULES)._replace(opening=False, in_hand="no", group=(group, other))
+            else:
+                state = carom.games.new_game(game.RULES)._replace(opening=False, in_hand="no")
+            scene = game.scene_of(states.xy[row], played.cue[row])
+            may = carom.games.legal(state, scene)
+            assert set(may.first) == {ball for ball, is_legal in zip(game.ids, legal[row]) if is_legal}
+            record = carom.simulate(scene)
+            assert f"{played.shots.hash[row]:016x}" == record.hash()
+            fallen = [(event.a, event.b) for event in record.event_list() if event.type == "ball_pocket"]
+            call = next((carom.games.Call(*fell) for fell in fallen if fell[0] in may.callable), carom.games.Call())
+            verdict = carom.games.judge(state, record, call)
+            fair = not verdict.fouls
+            assert played.foul[row] == ("" if fair else verdict.fouls[0].name)
+            goes_on = verdict.next.turn == 0 and not verdict.next.over
+            assert played.terminated[row] == (not goes_on and name != "SumToThree")
+            points = verdict.points if "Run" not in name else sum(ball != "cue" for ball, _ in fallen) * fair
+            assert played.reward[row] == points
+            if goes_on:
+                there = {ball: place for ball, place in zip(game.ids, played.states.xy[row]) if place[0] == place[0]}
+                # Of a foul the next scene asks for a place of the cue ball, and here it is out of the game.
+                after = carom.games.next_scene(record, verdict)
+                assert sorted(there) == sorted(after.ids) and all(np.array_equal(there[ball], xy) for ball, xy in zip(after.ids, after.positions))
+            seen["goes on"] += goes_on
+            seen["fair" if fair else "foul"] += 1
+    assert seen["goes on"] > 0 and seen["fair"] > 0 and (seen["foul"] > 0 or name in ("ThreeCushion", "SumToThree")), seen
+
+
+def test_the_scene_of_a_point_is_a_point():
+    scene = carom.Scene.load(SOURCE / "scenes/three_cushion.toml")
+    cue = scene.to_dict()["cue"]
+    played = play_one("ThreeCushion", scene.positions, [cue["speed"], cue["aim_deg"], 0, *cue["offset"]])
+    assert played.reward.tolist() == [1.0] and not played.terminated[0] and played.foul[0] == ""
+
+
+def test_the_last_ball_ends_the_run():
+    env = carom.gym.make_env("NineBallRun")
+    xy = np.full((10, 2), np.nan)
+    cue, nine = env.ids.index("cue"), env.ids.index("9")
+    xy[[cue, nine]] = [0.6, 0.6], [0.3, 0.3]
+    env.reset(seed=1, options={"xy": xy})
+    assert env._rules.game.legal(env.states)[0].nonzero()[0].tolist() == [nine]
+    played = env._rules.play(env.states, np.array([[1.0, -135, 0, 0, -0.3]]))
+    assert played.reward[0] == 1 and played.terminated[0] and played.foul[0] == "" and np.isnan(played.states.xy[0, nine]).all()
+    assert not env._rules.game.legal(played.states).any()
 
 
 def test_a_shot_without_an_end_is_truncated_and_says_why():

@@ -14,15 +14,39 @@ except ImportError as error:
     raise ImportError("carom.gym needs Gymnasium: pip install 'carom-billiards[gym]'") from error
 
 from carom.gym._env import TableEnv
-from carom.gym._games import Game, Judged, Position, Pot, States
+from carom.gym._games import EightBallRun, Game, Judged, NineBallRun, Position, Pot, States, SumToThree, ThreeCushion
 from carom.gym._strikes import Strikes
 from carom.gym._tables import Rollout
 from carom.gym._vector import TableVectorEnv
 
-__all__ = ["GAMES", "Game", "Judged", "Position", "Pot", "Rollout", "States", "Strikes", "TableEnv", "TableVectorEnv", "make_env", "make_vector_env"]
+__all__ = [
+    "GAMES",
+    "EightBallRun",
+    "Game",
+    "Judged",
+    "NineBallRun",
+    "Position",
+    "Pot",
+    "Rollout",
+    "States",
+    "Strikes",
+    "SumToThree",
+    "TableEnv",
+    "TableVectorEnv",
+    "ThreeCushion",
+    "make_env",
+    "make_vector_env",
+]
 
 #: The games by their names in "carom/NAME-v0", and the options that are the game's own.
-GAMES: dict[str, type[Game]] = {"Pot": Pot, "Position": Position}
+GAMES: dict[str, type[Game]] = {
+    "Pot": Pot,
+    "Position": Position,
+    "ThreeCushion": ThreeCushion,
+    "SumToThree": SumToThree,
+    "NineBallRun": NineBallRun,
+    "EightBallRun": EightBallRun,
+}
 _OWN = ("table", "scene")
 
 

@@ -86,7 +86,7 @@ class TableEnv(gymnasium.Env[Observation, Any]):
     aim, speed, elevation_deg: how an action is a strike (`carom.gym.Strikes`)
     noise: errors of the strike: "fastfiz", "ai3603" (`carom.games.Noise.named`) or five standard deviations
     observation: "box", or "dict" with the mask of the balls that may be hit first beside it
-    most_shots: an episode with as many shots is truncated
+    most_shots: an episode with as many shots is truncated; None leaves it to the game
     hashes: info["hash"] is that of the shot's record
     render_mode: "rgb_array" or None
     size: width and height of pictures [pixels]
@@ -110,7 +110,7 @@ class TableEnv(gymnasium.Env[Observation, Any]):
         elevation_deg: float | tuple[float, float] = 0.0,
         noise: str | Sequence[float] = "none",
         observation: str = "box",
-        most_shots: int = 1000,
+        most_shots: int | None = None,
         hashes: bool = False,
         render_mode: str | None = None,
         size: tuple[int, int] = (640, 360),
@@ -120,7 +120,7 @@ class TableEnv(gymnasium.Env[Observation, Any]):
         self._rules = rules_of(game, aim, speed, elevation_deg, noise, 1, hashes)
         self.observation_space, self.action_space = spaces_of(self._rules, observation)
         self.render_mode, self._observation, self._size = render_mode, observation, (int(size[0]), int(size[1]))
-        self._tables = Tables(1, self._rules, most_shots)
+        self._tables = Tables(1, self._rules, game.SHOTS if most_shots is None else most_shots)
         self._seeded = False
 
     @property

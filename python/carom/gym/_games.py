@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from carom import _carom
 from carom._record import Record
 from carom._scene import Scene
 from carom._simulate import Shots, ShotStatus, simulate
@@ -50,8 +51,8 @@ class Game:
 
     #: Names of the columns of `States.extra`.
     EXTRA: tuple[str, ...] = ()
-    #: Whether an episode may have more than one shot.
-    RUN = False
+    #: An episode with as many shots is truncated, unless the environment's option says otherwise.
+    SHOTS = 1000
 
     def __init__(self, scene: Scene) -> None:
         record = simulate(scene, until=0.0)
@@ -76,8 +77,8 @@ class Game:
         legal[:, self.cue_ball] = False
         return legal
 
-    def judge(self, states: States, shots: Shots) -> Judged:
-        """What shots were worth that began with `states`; all of them have a result."""
+    def judge(self, states: States, cue: NDArray[np.float64], shots: Shots) -> Judged:
+        """What shots were worth that began with `states` and these strikes. What is said of a shot without an end counts for nothing."""
         raise NotImplementedError
 
     def points(self, states: States) -> NDArray[np.float64]:
@@ -160,7 +161,7 @@ class Pot(Game):
         xy = self.random_places(states, len(self.ids))
         return States(xy, self.no_extra(len(xy)))
 
-    def judge(self, states: States, shots: Shots) -> Judged:
+    def judge(self, states: States, cue: NDArray[np.float64], shots: Shots) -> Judged:
         foul = self.scratch(shots)
         potted = (np.delete(shots.pocket, self.cue_ball, axis=1) >= 0).any(1)
         reward = np.where(foul != "", -1.0, potted.astype(np.float64))
@@ -177,8 +178,8 @@ class Position(Pot):
         xy = self.random_places(states, len(self.ids))
         return States(xy, self.random_places(states, 1)[:, 0])
 
-    def judge(self, states: States, shots: Shots) -> Judged:
-        judged = super().judge(states, shots)
+    def judge(self, states: States, cue: NDArray[np.float64], shots: Shots) -> Judged:
+        judged = super().judge(states, cue, shots)
         to = shots.xy[:, self.cue_ball] - states.extra
         diagonal = np.sqrt(self.table.width**2 + self.table.length**2)
         far = np.sqrt((to * to).sum(-1)) / diagonal
@@ -186,6 +187,112 @@ class Position(Pot):
 
     def points(self, states: States) -> NDArray[np.float64]:
         return states.extra[:, None]
+
+
+class _Ruled(Game):
+    """A game whose shots are judged by `carom.games`. An episode is a player's turn."""
+
+    #: The name of the game in `carom.games`.
+    RULES = ""
+
+    def __init__(self, scene: Scene) -> None:
+        super().__init__(scene)
+        self._fouls = np.array([*_carom.foul_names(), ""], object)
+
+    def start(self, states: NDArray[np.uint64]) -> States:
+        xy = self.random_places(states, len(self.ids))
+        return States(xy, self.no_extra(len(xy)))
+
+    def legal(self, states: States) -> NDArray[np.bool_]:
+        out = np.empty(states.xy.shape[:2], np.uint8)
+        _carom.legal_many(self.scene._native, self.RULES, np.ascontiguousarray(states.xy).reshape(-1), self._group(states), out.reshape(-1))
+        return out.astype(bool)
+
+    def judge(self, states: States, cue: NDArray[np.float64], shots: Shots) -> Judged:
+        n = len(cue)
+        group = self._group(states)
+        plain = self.worth_nothing(shots)
+        xy = np.where(plain[:, None, None], shots.places, states.xy)
+        foul, points = np.full(n, -1, np.int32), np.zeros(n, np.int32)
+        goes_on, won = np.zeros(n, np.uint8), np.zeros(n, np.uint8)
+        played = (~failed(shots) & ~plain).astype(np.uint8)
+        _carom.judge_many(
+            self.scene._native, self.RULES, np.ascontiguousarray(cue).reshape(-1), xy.reshape(-1), played, group, foul, points, goes_on, won
+        )
+        extra = states.extra.copy()
+        if self.EXTRA:
+            extra[:, 0] = group
+        return self.worth(States(xy, extra), points, goes_on != 0, self._fouls[foul])
+
+    def worth_nothing(self, shots: Shots) -> NDArray[np.bool_]:
+        """(n,) shots of which the outcome already shows that the rules find no foul and no point, and that the turn passes. They need no record, which takes
+        longer than the shot."""
+        return np.zeros(len(shots.status), bool)
+
+    def worth(self, behind: States, points: NDArray[np.int32], goes_on: NDArray[np.bool_], foul: NDArray[np.object_]) -> Judged:
+        """Rewards: the points, until the turn is over."""
+        return Judged(behind, points.astype(np.float64), ~goes_on, foul)
+
+    def _group(self, states: States) -> NDArray[np.int32]:
+        return states.extra[:, 0].astype(np.int32) if self.EXTRA else np.zeros(len(states.xy), np.int32)
+
+
+class ThreeCushion(_Ruled):
+    """Three-cushion from a random layout, for as long as you score: 1 for a point. The cue ball is the white one."""
+
+    RULES = "three_cushion"
+
+    def __init__(self, *, table: str = "carom", scene: Scene | None = None) -> None:
+        places = {"white": (0.5, 0.7), "yellow": (0.7, 0.7), "red": (0.7, 2.1)}
+        super().__init__(scene or Scene(table=table, balls="carom", ball=_placed(places), cue={"ball": "white", "speed": 4.0, "aim_deg": 0.0}))
+
+    def worth_nothing(self, shots: Shots) -> NDArray[np.bool_]:
+        few = (shots.first_hit < 0) | (shots.cushions[:, self.cue_ball] < 3)
+        return np.asarray(few & (shots.pocket == -1).all(1))
+
+
+class SumToThree(_Ruled):
+    """Two balls on a table without pockets, ten shots: 1 for a shot that hits the other ball, and in which the two meet three cushions together."""
+
+    RULES = "sum_to_three"
+    SHOTS = 10
+
+    def __init__(self, *, table: str = "carom", scene: Scene | None = None) -> None:
+        places = {"cue": (0.5, 0.7), "object": (0.7, 2.1)}
+        super().__init__(scene or Scene(table=table, balls="carom", ball=_placed(places), cue={"speed": 4.0, "aim_deg": 0.0}))
+
+    def worth_nothing(self, shots: Shots) -> NDArray[np.bool_]:
+        other = (shots.first_hit < 0) | (shots.cushions.sum(1) < 3)
+        return np.asarray(other & (shots.pocket == -1).all(1))
+
+    def worth(self, behind: States, points: NDArray[np.int32], goes_on: NDArray[np.bool_], foul: NDArray[np.object_]) -> Judged:
+        return Judged(behind, points.astype(np.float64), np.zeros(len(points), bool), foul)
+
+
+def _pool(table: str, rack: str) -> Scene:
+    cue = {"id": "cue", "position": [0.6, 0.5]}
+    return Scene(table=table, rack=rack, ball=[cue], cue={"speed": 4.0, "aim_deg": 90.0})
+
+
+class NineBallRun(_Ruled):
+    """Nine-ball from a random layout of all balls, for as long as you stay at the table: 1 for every ball that falls in a fair shot. The episode ends with a
+    miss, a foul, or the nine."""
+
+    RULES = "nine_ball"
+
+    def __init__(self, *, table: str = "nine_foot", scene: Scene | None = None) -> None:
+        super().__init__(scene or _pool(table, "nine_ball"))
+
+
+class EightBallRun(_Ruled):
+    """Eight-ball from a random layout on an open table, for as long as you stay at the table: 1 for every ball that falls in a fair shot. The first of your balls
+    that falls is taken as called, so luck counts. The episode ends with a miss, a foul, or the eight."""
+
+    RULES = "eight_ball"
+    EXTRA = ("group",)  # 0: the table is open, 1: solids, 2: stripes
+
+    def __init__(self, *, table: str = "nine_foot", scene: Scene | None = None) -> None:
+        super().__init__(scene or _pool(table, "eight_ball"))
 
 
 def failed(shots: Shots) -> NDArray[np.bool_]:

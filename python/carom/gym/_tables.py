@@ -46,7 +46,8 @@ class Rules:
         if act.shape != wanted or not np.issubdtype(act.dtype, np.floating):
             raise ValueError(f"actions: expected floating-point numbers in the shape {wanted}, not {act.dtype} in {act.shape}")
         game = self.game
-        cue = self.strikes.cue(act, states.xy, game.cue_ball, game.legal(states), game.radii)
+        legal = game.legal(states) if self.strikes.aim == "ball" else np.zeros(states.xy.shape[:2], bool)
+        cue = self.strikes.cue(act, states.xy, game.cue_ball, legal, game.radii)
         if seeds is not None and any(self.noise):
             _carom.add_noise_each(cue.reshape(-1), tuple(self.noise), seeds, np.zeros(len(cue), np.int64) if indices is None else indices)
         return self.play(states, cue)
@@ -55,7 +56,7 @@ class Rules:
         """Plays one strike on each of the tables."""
         shots = simulate_many(self.game.scene, cue=cue, xy=states.xy, max_events=_MOST_EVENTS, threads=self.threads, hashes=self.hashes)
         bad = failed(shots)
-        judged = self.game.judge(states, shots)
+        judged = self.game.judge(states, cue, shots)
         if bad.any():
             kept = States(judged.states.xy.copy(), judged.states.extra.copy())
             kept.put(bad, states.take(bad))

@@ -45,7 +45,7 @@ class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
         elevation_deg: float | tuple[float, float] = 0.0,
         noise: str | Sequence[float] = "none",
         observation: str = "box",
-        most_shots: int = 1000,
+        most_shots: int | None = None,
         hashes: bool = False,
         render_mode: str | None = None,
         size: tuple[int, int] = (640, 360),
@@ -62,7 +62,7 @@ class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
         self.single_observation_space, self.single_action_space = spaces_of(self._rules, observation)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self._tables = Tables(num_envs, self._rules, most_shots)
+        self._tables = Tables(num_envs, self._rules, game.SHOTS if most_shots is None else most_shots)
         self._seeded = np.zeros(num_envs, bool)
         self._over = np.zeros(num_envs, bool)
 
