@@ -28,13 +28,15 @@ def blocks(page):
 
 
 def test_there_are_pages():
-    assert [page.name for page in PAGES] == ["classroom.md", "clusters.md", "python.md"]
+    assert [page.name for page in PAGES] == ["classroom.md", "clusters.md", "learning.md", "python.md", "search.md"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
 def test_blocks_print_what_the_page_says(page, tmp_path, monkeypatch):
     pytest.importorskip("pandas")
     pyplot = pytest.importorskip("matplotlib.pyplot")
+    for package in ("gymnasium", "pettingzoo") if "carom.gym" in page.read_text() else ():
+        pytest.importorskip(package, reason=f"{package} is not installed: pip install 'carom-billiards[gym]'")
     for name in ("scenes", "tests"):
         (tmp_path / name).symlink_to(SOURCE / name)
     monkeypatch.chdir(tmp_path)
