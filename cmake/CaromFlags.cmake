@@ -35,6 +35,20 @@ if(carom_sanitizers)
   target_compile_definitions(carom_flags INTERFACE CAROM_SANITIZED)
 endif()
 
+if(CAROM_HARDENED)
+  # Level 3 is 2 where compiler or C library know no more. It needs an optimising compiler.
+  target_compile_options(carom_flags INTERFACE
+    $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE> $<$<NOT:$<CONFIG:Debug>>:-D_FORTIFY_SOURCE=3> -fstack-protector-strong)
+  target_link_options(carom_flags INTERFACE LINKER:-z,relro,-z,now)
+endif()
+
+# Sources that read no input stay without stack protectors: in the loop these cost 2 to 4 % of its instructions.
+function(carom_without_stack_protector)
+  if(CAROM_HARDENED)
+    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -fno-stack-protector)
+  endif()
+endfunction()
+
 # What fuzz targets run: libFuzzer has to see which branches of TARGET an input takes.
 function(carom_fuzzed target)
   if(carom_fuzz)
