@@ -22,7 +22,7 @@ def navigation():
     paths.append(C_INTERFACE)
     sections = [{name.capitalize(): [f"docs/{path}" for path in paths if path.startswith(name + "/")]} for name in SECTIONS]
     return [{"carom": "README.md"}, {"Documents": "docs/README.md"}, *sections,
-            {"Contributing": "CONTRIBUTING.md"}, {"What is asserted": "tests/README.md"}, {"Changes": "CHANGELOG.md"}]
+            {"Contributing": "CONTRIBUTING.md"}, {"What is asserted": "tests/README.md"}, {"Changes": "CHANGELOG.md"}, {"Security": "SECURITY.md"}]
 
 
 def configure(path):

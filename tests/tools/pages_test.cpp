@@ -34,7 +34,8 @@ Pages pages_of(const std::string& folder) {
 
 Pages all_pages() {
     Pages pages = pages_of("");
-    for (const char* name : {"README.md", "CONTRIBUTING.md", "tests/README.md"})
+    for (const char* name : {"README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md",
+                             ".github/CODE_OF_CONDUCT.md", "tests/README.md"})
         pages[name] = read_source(name);
     return pages;
 }
@@ -173,13 +174,13 @@ TEST(Pages, NotesOfTheLabSayWhenWhereAndAtWhichCommit) {
 // sweeps on many machines, by the 828 of theirs, and masses that differ, clusters in space and four pictures, by 395, and
 // the shot after a record, by 7, and the row of tools/slow, by 23, and the library of games, by 24,
 // and the summed march of scenes, by 308, and
-// learning environments and search, by 1085.
+// learning environments and search, by 1085, and what is promised, by 521.
 TEST(Pages, GuideReferenceAndDesignAreNoLongerThanAnAfternoon) {
     EXPECT_EQ(words_of("| a | 1.5 m |\n|---|---|\n"), 3u);
     std::size_t words = 0;
     for (const char* folder : {"guide", "reference", "design"})
         for (const auto& [name, text] : pages_of(folder)) words += words_of(text);
-    EXPECT_LT(words, 26354u) << "cut, or move what was measured to a note in docs/lab";
+    EXPECT_LT(words, 26875u) << "cut, or move what was measured to a note in docs/lab";
 }
 
 }  // namespace

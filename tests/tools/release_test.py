@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+"""tools/release, on a copy of what it reads: it sees every kind of fault, and what it cuts has none. Usage: release_test.py (finds the repository by itself)."""
+import datetime
+import importlib.machinery
+import importlib.util
+import pathlib
+import re
+import shutil
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.dont_write_bytecode = True
+loader = importlib.machinery.SourceFileLoader("release", str(ROOT / "tools/release"))
+release = importlib.util.module_from_spec(importlib.util.spec_from_loader("release", loader))
+loader.exec_module(release)
+READ = {name for name, _ in release.PLACES} | {"CHANGELOG.md", release.PROMISED, "capi/include/carom/carom.h", "docs/reference/record.schema.json",
+                                               "tests/data/engine/golden_hashes.json"}
+
+
+class Release(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        for name in READ:
+            (self.root / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, self.root / name)
+
+    def change(self, name, pattern, by, count=1):
+        text = (self.root / name).read_text()
+        new = re.sub(pattern, by, text, count=count)
+        self.assertNotEqual(new, text, f"{name} has no {pattern}")
+        (self.root / name).write_text(new)
+
+    def one_fault(self, words):
+        faults = release.faults_of(self.root)
+        self.assertEqual(len(faults), 1, faults)
+        self.assertIn(words, faults[0])
+
+    def test_the_repository_has_no_fault(self):
+        self.assertEqual(release.faults_of(ROOT), [])
+
+    def test_a_version_that_differs_is_seen_in_every_place(self):
+        for name, pattern in release.PLACES[1:]:
+            with self.subTest(name=name):
+                text = (self.root / name).read_text()
+                (self.root / name).write_text(re.sub(pattern, lambda m: m.group(0).replace(m.group(1), "9.9.9" if release.FULL in m.re.pattern else "9.9"), text))
+                self.one_fault(f"{name} has 9.9")
+                (self.root / name).write_text("nothing\n")
+                self.assertTrue(any("no version is found" in fault for fault in release.faults_of(self.root)))
+                (self.root / name).write_text(text)
+
+    def test_the_changelog_keeps_its_form(self):
+        self.change("CHANGELOG.md", "### Added", "### News")
+        self.one_fault("### News: expected one of")
+
+    def test_a_heading_stands_once(self):
+        self.change("CHANGELOG.md", "### Fixed", "### Changed")
+        self.one_fault("has ### Changed twice")
+
+    def test_an_entry_has_a_heading(self):
+        self.change("CHANGELOG.md", "(?m)^## \\[Unreleased\\]$", "## [Unreleased]\n\n* Lost.")
+        self.one_fault("an entry stands above the first heading")
+
+    def test_a_declaration_that_goes_is_a_fault_and_one_that_comes_is_none(self):
+        self.change("capi/include/carom/carom.h", r"CAROM_API double carom_record_duration", "CAROM_API int carom_new(void);\nCAROM_API double carom_record_duration")
+        self.assertEqual(release.faults_of(self.root), [])
+        self.change("capi/include/carom/carom.h", r"double restitution;", "float restitution;")
+        self.one_fault("no longer declares")
+
+    def test_a_comment_is_no_declaration(self):
+        self.change("capi/include/carom/carom.h", r"/\* of the cue \[m/s\] \*/", "/* quite another; word */")
+        self.assertEqual(release.faults_of(self.root), [])
+
+    def test_bits_that_change_are_a_fault(self):
+        self.change("tests/data/engine/golden_hashes.json", r'("draw": ")[0-9a-f]{4}', r"\g<1>0000")
+        self.one_fault('the bits of "draw" changed')
+
+    def test_a_record_version_that_changes_is_a_fault(self):
+        self.change("docs/reference/record.schema.json", r'("version":\s*\{[^}]*"const":\s*)2', r"\g<1>3")
+        self.one_fault("records have version 3 in place of 2")
+
+    def test_what_is_cut_has_no_fault(self):
+        date = datetime.datetime(2030, 1, 2, 3, 4, 5, tzinfo=datetime.timezone.utc)
+        major, minor, patch = map(int, release.version_here(self.root).split("."))
+        for version in (f"{major}.{minor}.{patch + 1}", f"{major}.{minor + 1}.0", f"{major + 1}.0.0"):
+            with self.subTest(version=version):
+                self.change("CHANGELOG.md", r"(?s)## \[Unreleased\]\n.*?(?=\n## |\Z)", "## [Unreleased]\n\n### Added\n\n* New in " + version + ".\n")
+                release.set_version(self.root, version, date)
+                self.assertEqual(release.faults_of(self.root), [])
+                self.assertEqual(release.version_here(self.root), version)
+                self.assertIn(f"## [{version}] - 2030-01-02", (self.root / "CHANGELOG.md").read_text())
+                self.assertEqual((self.root / "CITATION.cff").read_text().count("date-released: 2030-01-02"), 1)
+                self.assertIn(f"* New in {version}.", release.notes(self.root))
+
+    def test_a_patch_may_not_renew_a_promise(self):
+        self.change("capi/include/carom/carom.h", r"double restitution;", "float restitution;")
+        major, minor, patch = map(int, release.version_here(self.root).split("."))
+        release.set_version(self.root, f"{major}.{minor}.{patch + 1}", datetime.datetime(2030, 1, 2, tzinfo=datetime.timezone.utc))
+        self.one_fault("no longer declares")
+
+
+if __name__ == "__main__":
+    unittest.main()
