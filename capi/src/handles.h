@@ -3,6 +3,7 @@
 
 #include "carom/engine/batch.h"
 #include "carom/engine/record.h"
+#include "carom/games/rules.h"
 
 struct carom_scene {
     carom::Scene scene;
@@ -11,6 +12,11 @@ struct carom_scene {
 struct carom_record {
     carom::Record record;
     carom::Scene scene;  // that was played
+};
+
+struct carom_verdict {
+    carom::games::Verdict verdict;
+    carom::games::Game game;
 };
 
 struct carom_batch {

@@ -12,6 +12,7 @@
 
 #include "carom/engine/next_scene.h"
 #include "carom/engine/simulate.h"
+#include "cue.h"
 #include "guard.h"
 #include "handles.h"
 
@@ -20,6 +21,7 @@ namespace {
 using carom::c::BadArgument;
 using carom::c::check_index;
 using carom::c::chosen_isa;
+using carom::c::cue_of;
 using carom::c::guarded;
 using carom::c::made;
 using carom::c::need;
@@ -36,30 +38,10 @@ const carom::Field<carom::BallParams>& ball_field(std::string_view name) {
                       known.replace(known.rfind(", "), 2, " or "));
 }
 
-/// What both structs of a cue have.
-constexpr std::pair<double carom_cue::*, double carom::Cue::*> kCueNumbers[] = {
-    {&carom_cue::speed, &carom::Cue::speed},
-    {&carom_cue::aim_deg, &carom::Cue::aim_deg},
-    {&carom_cue::elevation_deg, &carom::Cue::elevation_deg},
-    {&carom_cue::side, &carom::Cue::side},
-    {&carom_cue::height, &carom::Cue::height},
-    {&carom_cue::mass, &carom::Cue::mass},
-    {&carom_cue::end_mass, &carom::Cue::end_mass},
-    {&carom_cue::restitution, &carom::Cue::restitution}};
-static_assert(sizeof(carom_cue) == std::size(kCueNumbers) * sizeof(double));
-
 carom::BallStart* find_ball(carom::Scene& scene, const std::string& id) {
     const auto it = std::find_if(scene.ball.begin(), scene.ball.end(),
                                  [&](const carom::BallStart& ball) { return ball.id == id; });
     return it == scene.ball.end() ? nullptr : &*it;
-}
-
-/// What the caller's cue comes to, striking this ball.
-carom::Cue cue_of(const char* id, const carom_cue& cue) {
-    carom::Cue c;
-    c.ball = id;
-    for (const auto& [theirs, ours] : kCueNumbers) c.*ours = cue.*theirs;
-    return c;
 }
 
 }  // namespace
@@ -130,7 +112,7 @@ carom_status carom_scene_set_ball(carom_scene* scene, const char* id, const doub
 void carom_cue_init(carom_cue* cue) {
     if (cue == nullptr) return;
     const carom::Cue c;
-    for (const auto& [theirs, ours] : kCueNumbers) cue->*theirs = c.*ours;
+    for (const auto& [theirs, ours] : carom::c::kCueNumbers) cue->*theirs = c.*ours;
 }
 
 carom_status carom_scene_set_cue(carom_scene* scene, const char* id, const carom_cue* cue) {

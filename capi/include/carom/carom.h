@@ -211,6 +211,104 @@ CAROM_API carom_status carom_scene_from_record(const carom_record* record, carom
 CAROM_API carom_status carom_next_scene(const carom_record* record, const char* id, const carom_cue* cue,
                                         carom_scene** scene);
 
+/* ---- Games ---- */
+
+typedef enum carom_game {
+    CAROM_EIGHT_BALL = 0,    /* World Pool-Billiard Association */
+    CAROM_NINE_BALL = 1,     /* the same */
+    CAROM_THREE_CUSHION = 2, /* Union Mondiale de Billard */
+    CAROM_SNOOKER = 3,       /* World Professional Billiards and Snooker Association */
+    CAROM_SUM_TO_THREE = 4
+} carom_game;
+
+/* Where the cue ball may be placed: not at all, anywhere, behind the head string, in the D. */
+typedef enum carom_in_hand {
+    CAROM_NOT_IN_HAND = 0,
+    CAROM_ANYWHERE = 1,
+    CAROM_HEAD_STRING = 2,
+    CAROM_IN_THE_D = 3
+} carom_in_hand;
+
+/* All that a game remembers between two shots, beside where the balls lie. Players are 0 and 1. */
+typedef struct carom_game_state {
+    int32_t game;    /* a carom_game */
+    int32_t turn;    /* whose shot it is */
+    int32_t opening; /* 1: the break, or the first shot of a game of carom */
+    int32_t in_hand; /* a carom_in_hand */
+    int32_t points[2];
+    int32_t target;       /* points that win a game of carom; 0: no end */
+    int32_t over;         /* 1: the game is over */
+    int32_t winner;       /* -1: none, or not yet */
+    int32_t group[2];     /* eight-ball, of each player: 0 open, 1 solids, 2 stripes */
+    int32_t may_push_out; /* nine-ball: 1 for the shot after the break */
+    int32_t fouls[2];     /* nine-ball: of each player, without a legal shot between */
+    int32_t on;           /* snooker: 0 any colour, 1 red, 2 yellow, ..., 7 black */
+    int32_t free_ball;    /* snooker: 1: any ball may be nominated as the ball on */
+} carom_game_state;
+
+/* The state before the first shot; `first` is the player who begins. */
+CAROM_API carom_status carom_game_new(carom_game game, int first, int target, carom_game_state* state);
+
+/* What the next shot may do with `count` balls, named by their ids: `strike`, `first` and `callable` receive 1 or 0 for each: the
+ * ball may be struck, may be the first that the cue ball meets, may be called. Each may be NULL. */
+CAROM_API carom_status carom_legal(const carom_game_state* state, size_t count, const char* const* ids,
+                                   uint8_t* strike, uint8_t* first, uint8_t* callable);
+
+/* What a player says before a shot. NULL as a text: nothing. */
+typedef struct carom_call {
+    const char* ball;   /* eight-ball: that will fall; snooker: the nominated colour or free ball */
+    const char* pocket; /* eight-ball: "p1", ... */
+    int32_t safety;     /* eight-ball: 1: the turn ends whatever falls */
+    int32_t push_out;   /* nine-ball: 1 for a push out */
+} carom_call;
+
+typedef struct carom_verdict carom_verdict;
+
+/* Judges a shot by the state before it. `call` may be NULL. On failure *verdict is NULL: the record does not end at rest, no cue
+ * strikes in it, it lacks the game's balls, or the game is over. */
+CAROM_API carom_status carom_judge(const carom_game_state* state, const carom_record* record,
+                                   const carom_call* call, carom_verdict** verdict);
+CAROM_API void carom_verdict_free(carom_verdict* verdict); /* NULL is allowed */
+
+/* A foul and the rule that it breaks ("WPA 6.1"); NULL if the index is out of range. Valid until the program ends. */
+CAROM_API size_t carom_verdict_foul_count(const carom_verdict* verdict);
+CAROM_API const char* carom_verdict_foul(const carom_verdict* verdict, size_t index);
+CAROM_API const char* carom_verdict_rule(const carom_verdict* verdict, size_t index);
+
+CAROM_API int carom_verdict_points(const carom_verdict* verdict); /* scored by the shot */
+CAROM_API int carom_verdict_penalty(
+    const carom_verdict* verdict); /* snooker: what the other player receives */
+/* The player who chooses among the options; -1 where there is one, and where lots decide. */
+CAROM_API int carom_verdict_chooser(const carom_verdict* verdict);
+
+/* How the game may go on: at least one option. The first one is what happens unless the chooser takes another. */
+typedef struct carom_option {
+    const char*
+        decision; /* "play on", "take in hand", "pass back", "rerack", ...; valid until the program ends */
+    carom_game_state state; /* of the next shot */
+    int32_t rerack;         /* 1: the balls are racked anew */
+    size_t respots;         /* balls that come back to the table */
+} carom_option;
+CAROM_API size_t carom_verdict_option_count(const carom_verdict* verdict);
+CAROM_API carom_status carom_verdict_option(const carom_verdict* verdict, size_t index, carom_option* option);
+/* A ball that comes back: its id, valid as long as the verdict exists, and its place [m]. */
+CAROM_API carom_status carom_verdict_respot(const carom_verdict* verdict, size_t option, size_t index,
+                                            const char** ball, double place[2]);
+
+/* The next shot: what is gone is gone, what is respotted is back, the cue ball of the state is placed and struck. `place` is
+ * needed where the cue ball is gone and allowed where it is in hand; otherwise NULL. On failure *scene is NULL. */
+CAROM_API carom_status carom_next_shot(const carom_record* record, const carom_verdict* verdict,
+                                       size_t option, const carom_cue* cue, const double* place,
+                                       carom_scene** scene);
+
+/* The strike that a player makes who means `cue`: with normal errors of these standard deviations, of speed [m/s], aim, elevation
+ * [degrees], side and height [ball radii]. The same seed and index give the same errors. The result is always a strike that a
+ * scene takes. `out` may be `cue`. */
+CAROM_API carom_status carom_noisy_cue(const carom_cue* cue, const double deviations[5], uint64_t seed,
+                                       uint64_t index, carom_cue* out);
+/* The deviations of "none", "fastfiz" or "ai3603" for a ball of this radius [m]. */
+CAROM_API carom_status carom_noise(const char* name, double radius, double deviations[5]);
+
 /* ---- Many shots ---- */
 
 typedef struct carom_batch carom_batch;

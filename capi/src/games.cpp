@@ -1,0 +1,223 @@
+// The C interface: rules of games, and noise.
+#include "carom/games/rules.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "carom/games/noise.h"
+#include "cue.h"
+#include "guard.h"
+#include "handles.h"
+
+namespace {
+
+using carom::c::BadArgument;
+using carom::c::check_index;
+using carom::c::guarded;
+using carom::c::made;
+using carom::c::need;
+namespace games = carom::games;
+
+static_assert(CAROM_SUM_TO_THREE == static_cast<int>(games::Game::kSumToThree));
+static_assert(CAROM_IN_THE_D == static_cast<int>(games::InHand::kD));
+
+/// A value of an enumeration. @throws BadArgument
+template <class E>
+E value_of(const char* what, int32_t value) {
+    const auto count = static_cast<int32_t>(carom::games::names_of(E{}).size());
+    if (value < 0 || value >= count)
+        throw BadArgument(std::string(what) + " is " + std::to_string(value) + "; it is 0 to " +
+                          std::to_string(count - 1));
+    return static_cast<E>(value);
+}
+
+games::State state_of(const carom_game_state& s) {
+    games::State state;
+    state.game = value_of<games::Game>("game", s.game);
+    state.turn = s.turn;
+    state.opening = s.opening != 0;
+    state.in_hand = value_of<games::InHand>("in_hand", s.in_hand);
+    state.points = {s.points[0], s.points[1]};
+    state.target = s.target;
+    state.over = s.over != 0;
+    state.winner = s.winner;
+    state.group = {value_of<games::Group>("group", s.group[0]), value_of<games::Group>("group", s.group[1])};
+    state.may_push_out = s.may_push_out != 0;
+    state.fouls = {s.fouls[0], s.fouls[1]};
+    state.on = value_of<games::BallOn>("on", s.on);
+    state.free_ball = s.free_ball != 0;
+    return state;
+}
+
+carom_game_state state_of(const games::State& s) {
+    carom_game_state state{};
+    state.game = static_cast<int32_t>(s.game);
+    state.turn = s.turn;
+    state.opening = s.opening ? 1 : 0;
+    state.in_hand = static_cast<int32_t>(s.in_hand);
+    state.target = s.target;
+    state.over = s.over ? 1 : 0;
+    state.winner = s.winner;
+    for (std::size_t player = 0; player < 2; ++player) {
+        state.points[player] = s.points[player];
+        state.group[player] = static_cast<int32_t>(s.group[player]);
+        state.fouls[player] = s.fouls[player];
+    }
+    state.may_push_out = s.may_push_out ? 1 : 0;
+    state.on = static_cast<int32_t>(s.on);
+    state.free_ball = s.free_ball ? 1 : 0;
+    return state;
+}
+
+/// The library's refusals of arguments are the caller's bad arguments.
+template <class Work>
+auto asked(Work&& work) {
+    try {
+        return work();
+    } catch (const std::invalid_argument& error) {
+        throw BadArgument(error.what());
+    }
+}
+
+std::string text_of(const char* text) {
+    return text != nullptr ? text : "";
+}
+
+const games::Option& option_of(const carom_verdict* verdict, size_t index) {
+    need({verdict});
+    check_index(index, verdict->verdict.options.size(), "option");
+    return verdict->verdict.options[index];
+}
+
+}  // namespace
+
+carom_status carom_game_new(carom_game game, int first, int target, carom_game_state* state) {
+    return guarded([&] {
+        need({state});
+        const auto of = value_of<games::Game>("game", static_cast<int32_t>(game));
+        *state = asked([&] { return state_of(games::new_game(of, first, target)); });
+    });
+}
+
+carom_status carom_legal(const carom_game_state* state, size_t count, const char* const* ids, uint8_t* strike,
+                         uint8_t* first, uint8_t* callable) {
+    return guarded([&] {
+        need({state});
+        if (count > 0) need({ids});
+        std::vector<std::string> balls;
+        for (size_t i = 0; i < count; ++i) {
+            need({ids[i]});
+            balls.emplace_back(ids[i]);
+        }
+        const games::Legal legal = asked([&] { return games::legal(state_of(*state), balls); });
+        const auto fill = [&](uint8_t* out, const std::vector<std::string>& list) {
+            for (size_t i = 0; out != nullptr && i < count; ++i)
+                out[i] = std::find(list.begin(), list.end(), balls[i]) != list.end() ? 1 : 0;
+        };
+        fill(strike, legal.cue_balls);
+        fill(first, legal.first);
+        fill(callable, legal.callable);
+    });
+}
+
+carom_status carom_judge(const carom_game_state* state, const carom_record* record, const carom_call* call,
+                         carom_verdict** verdict) {
+    return made(verdict, [&](carom_verdict& v) {
+        need({state, record});
+        games::Call said;
+        if (call != nullptr)
+            said = {text_of(call->ball), text_of(call->pocket), call->safety != 0, call->push_out != 0};
+        const games::State before = state_of(*state);
+        v.game = before.game;
+        v.verdict = asked([&] { return games::judge(before, record->record, said); });
+    });
+}
+
+void carom_verdict_free(carom_verdict* verdict) {
+    delete verdict;
+}
+
+size_t carom_verdict_foul_count(const carom_verdict* verdict) {
+    return verdict != nullptr ? verdict->verdict.fouls.size() : 0;
+}
+
+const char* carom_verdict_foul(const carom_verdict* verdict, size_t index) {
+    return index < carom_verdict_foul_count(verdict) ? carom::name(verdict->verdict.fouls[index]) : nullptr;
+}
+
+const char* carom_verdict_rule(const carom_verdict* verdict, size_t index) {
+    if (index >= carom_verdict_foul_count(verdict)) return nullptr;
+    return games::rule_of(verdict->game, verdict->verdict.fouls[index]);
+}
+
+int carom_verdict_points(const carom_verdict* verdict) {
+    return verdict != nullptr ? verdict->verdict.points : 0;
+}
+
+int carom_verdict_penalty(const carom_verdict* verdict) {
+    return verdict != nullptr ? verdict->verdict.penalty : 0;
+}
+
+int carom_verdict_chooser(const carom_verdict* verdict) {
+    return verdict != nullptr ? verdict->verdict.chooser : -1;
+}
+
+size_t carom_verdict_option_count(const carom_verdict* verdict) {
+    return verdict != nullptr ? verdict->verdict.options.size() : 0;
+}
+
+carom_status carom_verdict_option(const carom_verdict* verdict, size_t index, carom_option* option) {
+    return guarded([&] {
+        need({option});
+        const games::Option& of = option_of(verdict, index);
+        *option = {carom::name(of.decision), state_of(of.state), of.rerack() ? 1 : 0, of.respots.size()};
+    });
+}
+
+carom_status carom_verdict_respot(const carom_verdict* verdict, size_t option, size_t index,
+                                  const char** ball, double place[2]) {
+    return guarded([&] {
+        need({ball, place});
+        const games::Option& of = option_of(verdict, option);
+        check_index(index, of.respots.size(), "respot");
+        *ball = of.respots[index].ball.c_str();
+        std::copy_n(of.respots[index].place.data(), 2, place);
+    });
+}
+
+carom_status carom_next_shot(const carom_record* record, const carom_verdict* verdict, size_t option,
+                             const carom_cue* cue, const double* place, carom_scene** scene) {
+    return made(scene, [&](carom_scene& s) {
+        need({record, cue});
+        const games::Option& of = option_of(verdict, option);
+        std::optional<carom::Vec2> put;
+        if (place != nullptr) put = carom::Vec2(place[0], place[1]);
+        const carom::Cue strike = carom::c::cue_of(games::cue_ball(of.state), *cue);
+        s.scene = asked([&] { return games::next_scene(record->scene, record->record, of, strike, put); });
+    });
+}
+
+carom_status carom_noisy_cue(const carom_cue* cue, const double deviations[5], uint64_t seed, uint64_t index,
+                             carom_cue* out) {
+    return guarded([&] {
+        need({cue, deviations, out});
+        const games::Noise sd = {deviations[0], deviations[1], deviations[2], deviations[3], deviations[4]};
+        const carom::Cue struck =
+            asked([&] { return games::with_noise(carom::c::cue_of("cue", *cue), sd, seed, index); });
+        for (const auto& [theirs, ours] : carom::c::kCueNumbers) out->*theirs = struck.*ours;
+    });
+}
+
+carom_status carom_noise(const char* name, double radius, double deviations[5]) {
+    return guarded([&] {
+        need({name, deviations});
+        const games::Noise sd = asked([&] { return games::noise_by_name(name, radius); });
+        const double numbers[] = {sd.speed, sd.aim_deg, sd.elevation_deg, sd.side, sd.height};
+        std::copy_n(numbers, 5, deviations);
+    });
+}
