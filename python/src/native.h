@@ -68,6 +68,7 @@ void add_frames(nb::module_& m);
 void add_games(nb::module_& m);
 void add_arrays(nb::module_& m);
 void add_judged(nb::module_& m);
+void add_games_aim(nb::module_& m);
 void add_games_rules(nb::module_& m);
 
 }  // namespace carom::python

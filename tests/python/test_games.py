@@ -1,4 +1,4 @@
-"""carom.games: the noise of a strike, and rules."""
+"""carom.games: the noise of a strike, rules, and aim help."""
 
 from __future__ import annotations
 
@@ -143,3 +143,31 @@ def test_whole_games_of_random_strikes(game):
                 place = random.uniform(0.0, 1.0, 2) * (record.table.width, record.table.length)
         scene = games.next_scene(record, option, place=place)
     assert state.game == game
+
+
+def pool(*balls, **cue):
+    return carom.Scene(table="nine_foot", balls="pool", ball=[{"id": ball, "position": place} for ball, place in balls], cue={"offset": [0.0, 0.0]} | cue)
+
+
+def test_an_aim_pots_the_ball():
+    scene = pool(("cue", [0.4, 0.9]), ("1", [0.8, 1.6]), speed=2.0)
+    lines = {line.pocket: line for line in games.pocket_lines(scene, "1")}
+    assert list(lines) == ["p1", "p2", "p3", "p4", "p5", "p6"] and lines["p4"].open
+    ghost = games.ghost_ball([0.8, 1.6], lines["p4"].towards)
+    aim = games.aim_pot(scene, "1", "p4")
+    assert aim.aim_deg is not None and aim.why == "" and 0 < aim.shots < 30
+    assert aim.geometric_deg == pytest.approx(np.degrees(np.arctan2(ghost[1] - 0.9, ghost[0] - 0.4)))
+    assert aim.cut_deg == pytest.approx(games.cut_angle_deg([0.4, 0.9], ghost, lines["p4"].towards))
+    events = carom.simulate(scene.replace(**{"cue.aim_deg": aim.aim_deg})).event_list()
+    assert ("ball_pocket", "1", "p4") in [event[1:] for event in events]
+    for route in games.bank_routes(scene.replace(**{"cue.speed": 4.0}), "1", "p1"):
+        events = carom.simulate(scene.replace(**{"cue.speed": 4.0, "cue.aim_deg": route.aim_deg})).event_list()
+        assert ("ball_pocket", "1", "p1") in [event[1:] for event in events] and ("ball_cushion", "1", route.cushion) in [event[1:] for event in events]
+
+
+def test_an_aim_that_is_none_says_why():
+    scene = pool(("cue", [0.4, 0.4]), ("1", [0.7, 1.4]), ("2", [0.55, 0.9]), speed=3.0)
+    assert games.aim_pot(scene, "1", "p4")[0] is None and games.aim_pot(scene, "1", "p4").why == "the cue ball meets ball 2 first"
+    for bad in (lambda: games.aim_pot(scene, "7", "p4"), lambda: games.aim_pot(scene, "1", "p9"), lambda: games.aim_pot(scene.replace(cue=None), "1", "p4")):
+        with pytest.raises(ValueError):
+            bad()

@@ -1,9 +1,10 @@
-"""Games on the table: rules, and the noise of a player's strike.
+"""Games on the table: rules, aim help, and the noise of a player's strike.
 
 Pure functions, the same as in C++ (`carom/games/*.h`). A game is a loop: `new_game`, then for every shot `legal`, `carom.simulate`, `judge`, a choice
 among the options of the verdict, and `next_scene`.
 """
 
+from carom.games._aim import Aim, PocketLine, aim_pot, bank_routes, cut_angle_deg, ghost_ball, pocket_lines
 from carom.games._noise import STRIKE, Noise, noisy
 from carom.games._rules import (
     GAMES,
@@ -25,19 +26,26 @@ from carom.games._rules import (
 __all__ = [
     "GAMES",
     "STRIKE",
+    "Aim",
     "Call",
     "Foul",
     "Legal",
     "Noise",
     "Option",
+    "PocketLine",
     "Respot",
     "State",
     "Verdict",
+    "aim_pot",
+    "bank_routes",
+    "cut_angle_deg",
+    "ghost_ball",
     "judge",
     "legal",
     "may_place",
     "new_game",
     "next_scene",
     "noisy",
+    "pocket_lines",
     "spots",
 ]

@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from carom import _carom, _toml
 from carom._errors import SceneError
 from carom._scene import Scene, _placeless, _section
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from carom._record import Record
 
 GAMES = ("eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three")
@@ -146,13 +150,13 @@ def _option(decision: str, state: Any, respots: list[tuple[str, tuple[float, flo
     return Option(decision, State(*state), [Respot(*respot) for respot in respots])
 
 
-def may_place(record: Record, option: Option, place: Sequence[float]) -> bool:
+def may_place(record: Record, option: Option, place: ArrayLike) -> bool:
     """Whether the cue ball may be placed there [m] before the next shot: it is in hand there, lies between the cushions, and overlaps no ball."""
     return _carom.may_place(record._native, option, _two(place))
 
 
 def next_scene(
-    record: Record, option: Option | Verdict, cue: Mapping[str, Any] | str | None = None, *, place: Sequence[float] | None = None, scene: Scene | None = None
+    record: Record, option: Option | Verdict, cue: Mapping[str, Any] | str | None = None, *, place: ArrayLike | None = None, scene: Scene | None = None
 ) -> Scene:
     """The next shot: what is gone is gone, what is respotted is back, the cue ball is placed, the cue strikes.
 
@@ -179,6 +183,6 @@ def spots(record: Record) -> dict[str, tuple[float, float]]:
     return dict(_carom.spots(record._native))
 
 
-def _two(place: Sequence[float]) -> tuple[float, float]:
-    x, y = place
-    return float(x), float(y)
+def _two(place: ArrayLike) -> tuple[float, float]:
+    x, y = np.asarray(place, np.float64).tolist()
+    return x, y

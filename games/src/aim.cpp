@@ -1,0 +1,228 @@
+// Aim by geometry.
+#include "carom/games/aim.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "carom/engine/math.h"
+#include "carom/games/spots.h"
+#include "lines.h"
+
+namespace carom::games {
+namespace {
+
+using detail::cross;
+using detail::kDegrees;
+
+/// [-] Directions that are tried over the width of a pocket, before the ends of the widest run are looked for.
+constexpr int kDirections = 144;
+/// [-] Halvings of the gap between a direction that enters and one that does not: to 1e-11 of it.
+constexpr int kHalvings = 36;
+/// [-] Cosine of the angle between a way and the middle of a pocket's mouth, beyond which a ball that rubs a facing is not expected to
+/// fall: 50 degrees. Along a rail into the corner it is 45.
+constexpr double kSteepest = 0.643;
+/// [ball radii] A ball that lies against a cushion may run along it: the rounding of places.
+constexpr double kAlongCushion = 1e-9;
+
+/// Distance of a point from a segment.
+double to_segment(const Vec2& p, const Vec2& from, const Vec2& to) {
+    const Vec2 way = to - from;
+    const double way2 = way.squaredNorm();
+    const double share = way2 > 0.0 ? std::clamp(dot(p - from, way) / way2, 0.0, 1.0) : 0.0;
+    return length(from + share * way - p);
+}
+
+double between_segments(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+    const bool parted_by_ab = cross(b - a, c - a) * cross(b - a, d - a) > 0.0;
+    const bool parted_by_cd = cross(d - c, a - c) * cross(d - c, b - c) > 0.0;
+    if (!parted_by_ab && !parted_by_cd && cross(b - a, d - c) != 0.0) return 0.0;
+    return std::min({to_segment(a, c, d), to_segment(b, c, d), to_segment(c, a, b), to_segment(d, a, b)});
+}
+
+/// Way to the edge of a pocket's circle; infinite where the line passes it.
+double way_to_circle(const Pocket& pocket, const Vec2& from, const Vec2& towards) {
+    const Vec2 to = pocket.center - from;
+    const double along = dot(to, towards), aside = cross(towards, to);
+    if (along <= 0.0 || std::abs(aside) >= pocket.radius) return std::numeric_limits<double>::infinity();
+    return std::max(0.0, along - std::sqrt(pocket.radius * pocket.radius - aside * aside));
+}
+
+/// The mouth of a pocket, from one jaw to the other: the two that are nearest to it. Nothing where there are none.
+std::optional<std::pair<Vec2, Vec2>> mouth_of(const Table& table, const Pocket& pocket) {
+    if (table.jaws.size() < 2) return std::nullopt;
+    std::vector<Vec2> jaws;
+    for (const Jaw& jaw : table.jaws) jaws.push_back(jaw.center);
+    std::partial_sort(jaws.begin(), jaws.begin() + 2, jaws.end(), [&](const Vec2& a, const Vec2& b) {
+        return (a - pocket.center).squaredNorm() < (b - pocket.center).squaredNorm();
+    });
+    return std::pair(jaws[0], jaws[1]);
+}
+
+/// Way through the mouth of a pocket to the circle's edge or beside it; infinite where the line passes the mouth, or is too flat to it.
+double way_through_mouth(const Table& table, const Pocket& pocket, const Vec2& from, const Vec2& towards) {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    const auto mouth = mouth_of(table, pocket);
+    if (!mouth) return kNever;
+    const Vec2 across = mouth->second - mouth->first, to = mouth->first - from;
+    const double turn = cross(towards, across);
+    if (std::abs(turn) < kSteepest * length(across)) return kNever;
+    const double way = cross(to, across) / turn, share = cross(to, towards) / turn;
+    return way > 0.0 && share > 0.0 && share < 1.0 ? way : kNever;
+}
+
+/// Where a line into a pocket is looked for: in its circle, or, by way of a facing, in its mouth.
+enum class Goal : std::uint8_t { kCircle, kMouth };
+
+double way_into(const Table& table, const Pocket& pocket, Goal goal, const Vec2& from, const Vec2& towards) {
+    return goal == Goal::kCircle ? way_to_circle(pocket, from, towards)
+                                 : way_through_mouth(table, pocket, from, towards);
+}
+
+/// Whether a cushion is the facing of a pocket: an end of it lies behind the noses. What rubs there still falls.
+bool is_facing(const Table& table, const Cushion& cushion) {
+    const auto behind = [&](const Vec2& end) {
+        const Vec2 in = end - table.corner;
+        return in.x() < 0.0 || in.y() < 0.0 || in.x() > table.width || in.y() > table.length;
+    };
+    return behind(cushion.from) || behind(cushion.to);
+}
+
+/// Whether a ball reaches this pocket and touches neither noses nor jaws on its way.
+bool enters(const Table& table, const Pocket& pocket, Goal goal, const Vec2& from, const Vec2& towards,
+            double R) {
+    const double way = way_into(table, pocket, goal, from, towards);
+    if (!std::isfinite(way)) return false;
+    const Vec2 end = from + way * towards;
+    const double least = R * (1.0 - kAlongCushion);
+    return std::all_of(table.cushions.begin(), table.cushions.end(),
+                       [&](const Cushion& c) {
+                           return is_facing(table, c) || between_segments(from, end, c.from, c.to) >= least;
+                       }) &&
+           std::all_of(table.jaws.begin(), table.jaws.end(),
+                       [&](const Jaw& j) { return to_segment(j.center, from, end) >= j.radius + least; }) &&
+           std::none_of(table.pockets.begin(), table.pockets.end(), [&](const Pocket& other) {
+               return &other != &pocket && way_to_circle(other, from, towards) < way;
+           });
+}
+
+/// A direction at an angle [degrees] to another one.
+Vec2 turned(const Vec2& direction, double deg) {
+    const auto [sin, cos] = sin_cos_deg(deg);
+    return {cos * direction.x() - sin * direction.y(), sin * direction.x() + cos * direction.y()};
+}
+
+/// The end of the directions that enter, between one that does and one that does not [degrees].
+template <class Enters>
+double edge(double in, double out, const Enters& enters_at) {
+    for (int k = 0; k < kHalvings; ++k) {
+        const double middle = 0.5 * (in + out);
+        (enters_at(middle) ? in : out) = middle;
+    }
+    return in;
+}
+
+}  // namespace
+
+double direction_deg(const Vec2& direction) {
+    const double size = std::sqrt(direction.x() * direction.x() + direction.y() * direction.y());
+    if (!(size > 0.0)) return size;
+    // Of the cosine and the sine the smaller one says the angle: there the arc cosine is as exact as its argument. Below 1e-154
+    // squares lose digits, and a quotient may pass 1.
+    const double cosine = std::clamp(direction.x() / size, -1.0, 1.0),
+                 sine = std::clamp(direction.y() / size, -1.0, 1.0);
+    if (std::abs(direction.x()) <= std::abs(direction.y()))
+        return std::copysign(arc_cos(cosine) * kDegrees, direction.y());
+    const double off = 90.0 - arc_cos(sine) * kDegrees;
+    return direction.x() > 0.0 ? off : std::copysign(180.0, direction.y()) - off;
+}
+
+Vec2 ghost_ball(const Vec2& object, const Vec2& towards, double both) {
+    return object - both * towards;
+}
+
+double cut_angle_deg(const Vec2& cue, const Vec2& ghost, const Vec2& towards) {
+    const Vec2 way = ghost - cue;
+    const double size = length(way);
+    return size > 0.0 ? arc_cos(std::clamp(dot(way, towards) / size, -1.0, 1.0)) * kDegrees : 0.0;
+}
+
+namespace detail {
+
+const BallStart& ball_of(const Scene& scene, std::string_view id) {
+    for (const BallStart& ball : scene.ball)
+        if (ball.id == id) return ball;
+    throw std::invalid_argument("there is no ball \"" + std::string(id) + "\" in the scene");
+}
+
+const Pocket& pocket_of(const Scene& scene, std::string_view id) {
+    for (const Pocket& pocket : scene.table.pockets)
+        if (pocket.id == id) return pocket;
+    throw std::invalid_argument("there is no pocket \"" + std::string(id) + "\" on the table");
+}
+
+PocketLine line_from(const Table& table, const Pocket& pocket, const Vec2& from, double R) {
+    PocketLine line;
+    line.pocket = static_cast<int>(&pocket - table.pockets.data());
+    const Vec2 to = pocket.center - from;
+    const double distance = length(to);
+    if (!(distance > pocket.radius)) return line;
+    line.towards = to / distance;
+    // A mouth is a little wider than its circle.
+    const double half = 90.0 - arc_cos(std::min(1.0, 1.5 * pocket.radius / distance)) * kDegrees;
+    const double step = 2.0 * half / kDirections;
+    for (const Goal goal : {Goal::kCircle, Goal::kMouth}) {
+        const auto enters_at = [&](double deg) {
+            return enters(table, pocket, goal, from, turned(to / distance, deg), R);
+        };
+        int best_first = 0, best_count = 0, count = 0;
+        for (int k = 0; k <= kDirections; ++k) {
+            count = enters_at(k * step - half) ? count + 1 : 0;
+            if (count <= best_count) continue;
+            best_count = count;
+            best_first = k - count + 1;
+        }
+        if (best_count == 0) continue;
+        const double first = best_first * step - half, last = first + (best_count - 1) * step;
+        const double low = edge(first, first - step, enters_at), high = edge(last, last + step, enters_at);
+        line.width_deg = high - low;
+        line.towards = turned(to / distance, 0.5 * (low + high));
+        line.distance = way_into(table, pocket, goal, from, line.towards);
+        break;
+    }
+    return line;
+}
+
+}  // namespace detail
+
+std::vector<PocketLine> pocket_lines(const Scene& scene, std::string_view ball, std::string_view cue_ball) {
+    const BallStart& start = detail::ball_of(scene, ball);
+    const Vec2 from = planar(start.position);
+    const double R = scene.size_of(start).R;
+    std::vector<PocketLine> lines;
+    for (const Pocket& pocket : scene.table.pockets) {
+        PocketLine line = detail::line_from(scene.table, pocket, from, R);
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const BallStart& other : scene.ball) {
+            if (line.width_deg == 0.0 || other.id == ball || other.id == cue_ball) continue;
+            const Lying there = {planar(other.position), scene.size_of(other).R, 0.0};
+            const double away = length(there.place - from);
+            if (away >= nearest ||
+                is_clear(from, from + line.distance * line.towards, R, std::span(&there, 1)))
+                continue;
+            nearest = away;
+            line.in_the_way = other.id;
+        }
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+}  // namespace carom::games

@@ -1,0 +1,318 @@
+// Aim by playing the shot.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "carom/engine/math.h"
+#include "carom/engine/simulate.h"
+#include "carom/games/aim.h"
+#include "carom/games/shot.h"
+#include "carom/games/spots.h"
+#include "lines.h"
+
+namespace carom::games {
+namespace {
+
+using detail::cross;
+using detail::kDegrees;
+
+/// [-] Steps that double, to put the wanted aim between two others; and then steps that narrow it down.
+constexpr int kBrackets = 14, kNarrow = 40;
+/// [-] Corrections of a strike that misses the ball.
+constexpr int kCorrections = 3;
+/// [-] Of the width of the ways: an aim that keeps the ball this near to their middle is found.
+constexpr double kNearMiddle = 1e-3;
+/// [-] Aims over which banks are looked for, from one edge of the ball to the other.
+constexpr int kBankAims = 240;
+
+/// What one strike does to the ball that is to fall.
+struct Played {
+    /// Sine of the angle by which it leaves the wanted direction, to the left is positive; nothing where the strike misses
+    std::optional<double> off;
+    bool potted = false;  ///< in the wanted pocket
+    int cushion = -1;     ///< the only cushion that it met before, or -1
+    std::string why;      ///< why `off` is nothing
+};
+
+/// A strike at one ball for one pocket, with any aim.
+class Player {
+  public:
+    Player(const Scene& scene, const Cue& how, std::string_view ball, std::string_view pocket)
+        : scene_(scene),
+          ball_id_(ball),
+          pocket_(static_cast<int>(&detail::pocket_of(scene, pocket) - scene.table.pockets.data())) {
+        scene_.cue = how;
+        cue_place_ = planar(detail::ball_of(scene, how.ball).position);
+        const BallStart& object = detail::ball_of(scene, ball);
+        place_ = planar(object.position);
+        R_ = scene.size_of(object).R;
+        both_ = R_ + scene.size_of(detail::ball_of(scene, how.ball)).R;
+        if (ball == how.ball) throw std::invalid_argument("the ball to pot is the one that is struck");
+    }
+
+    Record play(double aim_deg) {
+        scene_.cue->aim_deg = aim_deg;
+        validate(scene_);
+        ++shots;
+        return simulate(make_plan(scene_, kernel::best_isa()));
+    }
+
+    Cue cue() const { return *scene_.cue; }
+    const Vec2& cue_place() const { return cue_place_; }
+    const Vec2& place() const { return place_; }
+    double both() const { return both_; }
+    double R() const { return R_; }
+    int pocket() const { return pocket_; }
+    int ball(const Record& record) const { return index_of(record, ball_id_); }
+    const std::string& ball_id() const { return ball_id_; }
+    const Pocket& pocket_there() const { return scene_.table.pockets[static_cast<std::size_t>(pocket_)]; }
+
+    int shots = 0;
+
+  private:
+    Scene scene_;
+    std::string ball_id_;
+    int pocket_;
+    Vec2 cue_place_, place_;
+    double R_ = 0.0, both_ = 0.0;
+};
+
+/// Why the cue ball does not meet this ball first; "" where it does.
+std::string missed(const Record& record, const Shot& shot, int ball) {
+    if (shot.first_hits.empty()) return "the cue ball meets no ball";
+    if (shot.first_hits.size() > 1) return "the cue ball meets two balls at once";
+    if (shot.first_hits[0] != ball)
+        return "the cue ball meets ball " + record.tracks[static_cast<std::size_t>(shot.first_hits[0])].id +
+               " first";
+    for (const Touch& t : shot.touches)
+        if (t.cushion() && t.ball == shot.struck && t.time < shot.first_time)
+            return "the cue ball meets a cushion first";
+    return "";
+}
+
+/// The first thing that stops a ball from running straight on after `time`: a cushion, a ball, a pocket, or its rest.
+const Event* next_stop(const Record& record, int ball, double time) {
+    for (const Event& e : record.events) {
+        const EventKind& of = kind(e.type);
+        const bool other = of.partner == Partner::kBall && e.b == ball;
+        const bool mine = e.a == ball && (of.partner != Partner::kNone || e.type == EventType::kBallOut);
+        if (e.time > time && (mine || other)) return &e;
+    }
+    return nullptr;
+}
+
+Vec2 place_at(const Record& record, int ball, double time) {
+    return planar(record.state_at(ball, time).position);
+}
+
+bool fell_into(const Shot& shot, int ball, int pocket) {
+    return std::find(shot.pocketed.begin(), shot.pocketed.end(), Shot::Fallen{ball, pocket}) !=
+           shot.pocketed.end();
+}
+
+/// How a ball leaves the direction `towards` between two events.
+std::optional<double> off_line(const Record& record, int ball, double from, const Event* stop,
+                               const Vec2& towards) {
+    const Vec2 way =
+        place_at(record, ball, stop != nullptr ? stop->time : record.duration) - place_at(record, ball, from);
+    const double size = length(way);
+    if (!(size > 0.0)) return std::nullopt;
+    return cross(towards, way) / size;
+}
+
+/// One strike for a direct pot: the ball is to run along `towards`.
+Played play_direct(Player& player, double aim_deg, const Vec2& towards) {
+    const Record record = player.play(aim_deg);
+    const Shot shot = shot_of(record);
+    const int ball = player.ball(record);
+    Played played;
+    played.why = missed(record, shot, ball);
+    if (!played.why.empty()) return played;
+    played.off = off_line(record, ball, shot.first_time, next_stop(record, ball, shot.first_time), towards);
+    if (!played.off) played.why = "the ball does not move";
+    played.potted = fell_into(shot, ball, player.pocket());
+    return played;
+}
+
+/// One strike for a bank: the ball is to run into the pocket after its first cushion.
+Played play_bank(Player& player, double aim_deg) {
+    const Record record = player.play(aim_deg);
+    const Shot shot = shot_of(record);
+    const int ball = player.ball(record);
+    Played played;
+    played.why = missed(record, shot, ball);
+    if (!played.why.empty()) return played;
+    const Event* bounce = next_stop(record, ball, shot.first_time);
+    if (bounce == nullptr || bounce->type != EventType::kBallCushion) return played;
+    played.cushion = bounce->b;
+    const Vec2 at = place_at(record, ball, bounce->time);
+    const PocketLine line = detail::line_from(record.table, player.pocket_there(), at, player.R());
+    if (line.width_deg == 0.0) return played;
+    const Event* stop = next_stop(record, ball, bounce->time);
+    played.off = off_line(record, ball, bounce->time, stop, line.towards);
+    played.potted = fell_into(shot, ball, player.pocket());
+    return played;
+}
+
+/// An aim and how the ball then runs.
+struct Tried {
+    double aim_deg = 0.0;
+    double off = 0.0;
+};
+
+/// Narrows two aims with different signs down to one that is near enough (regula falsi, Illinois).
+template <class Play>
+Tried narrowed(Tried a, Tried b, double near, const Play& play) {
+    Tried best = std::abs(a.off) < std::abs(b.off) ? a : b;
+    double weight_a = a.off, weight_b = b.off;
+    for (int k = 0; k < kNarrow && std::abs(best.off) > near; ++k) {
+        const double aim = (a.aim_deg * weight_b - b.aim_deg * weight_a) / (weight_b - weight_a);
+        const std::optional<double> off = play(aim);
+        if (!off) break;
+        const Tried tried = {aim, *off};
+        if (std::abs(tried.off) < std::abs(best.off)) best = tried;
+        if ((tried.off > 0.0) == (a.off > 0.0)) {
+            a = tried;
+            weight_a = tried.off;
+            weight_b *= 0.5;
+        } else {
+            b = tried;
+            weight_b = tried.off;
+            weight_a *= 0.5;
+        }
+    }
+    return best;
+}
+
+/// Half of the angle under which the cue ball sees the ball that it is to meet [degrees].
+double half_view_deg(const Player& player) {
+    const double distance = length(player.place() - player.cue_place());
+    return 90.0 - arc_cos(std::min(1.0, player.both() / distance)) * kDegrees;
+}
+
+/// By how much a cue ball that misses leaves its way to the ghost ball, by squirt and swerve [degrees], left is positive.
+double strays_deg(const Player& player, const Record& record, const Vec2& ghost) {
+    const Vec2 way = ghost - player.cue_place();
+    const int cue_ball = shot_of(record).struck;
+    const Event* stop = next_stop(record, cue_ball, 0.0);
+    double late = stop != nullptr ? stop->time : record.duration, early = 0.0;
+    // Where it is as far away as the ghost ball, or as far as it comes.
+    for (int k = 0; k < kNarrow; ++k) {
+        const double middle = 0.5 * (early + late);
+        (length(place_at(record, cue_ball, middle) - player.cue_place()) < length(way) ? early : late) =
+            middle;
+    }
+    const Vec2 went = place_at(record, cue_ball, late) - player.cue_place();
+    return direction_deg({dot(way, went), cross(way, went)});
+}
+
+/// Why geometry already says no; "" where it does not.
+std::string refused(const Player& player, const PocketLine& line, double cut_deg) {
+    const std::string& id = player.ball_id();
+    if (line.width_deg == 0.0) return "no straight way of ball " + id + " into the pocket passes the jaws";
+    if (!line.in_the_way.empty()) return "ball " + line.in_the_way + " is in the way of ball " + id;
+    if (!(cut_deg < 90.0)) return "the cut would be 90 degrees or more";
+    return "";
+}
+
+}  // namespace
+
+Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::string_view pocket) {
+    Player player(scene, how, ball, pocket);
+    const PocketLine line = pocket_lines(scene, ball, how.ball)[static_cast<std::size_t>(player.pocket())];
+    const Vec2 ghost = ghost_ball(player.place(), line.towards, player.both());
+    Aim aim;
+    aim.geometric_deg = direction_deg(ghost - player.cue_place());
+    aim.cut_deg = cut_angle_deg(player.cue_place(), ghost, line.towards);
+    aim.why = refused(player, line, aim.cut_deg);
+    if (!aim.why.empty()) return aim;
+    const double near = kNearMiddle * line.width_deg / kDegrees;
+    const auto play = [&](double aim_deg) {
+        const Played played = play_direct(player, aim_deg, line.towards);
+        aim.why = played.why;
+        return played.off;
+    };
+    // Squirt and swerve may lead the cue ball past the ball altogether: by as much as it strays the aim goes the other way.
+    Tried start = {aim.geometric_deg, 0.0};
+    std::optional<double> first = play(start.aim_deg);
+    for (int k = 0; k < kCorrections && !first; ++k) {
+        start.aim_deg -= strays_deg(player, player.play(start.aim_deg), ghost);
+        first = play(start.aim_deg);
+    }
+    // A ball that runs too far to the left is met too far on its right: the aim goes left, in steps that double.
+    if (first) {
+        start.off = *first;
+        Tried a = start, b = a;
+        double step = 0.02 * half_view_deg(player) * (a.off > 0.0 ? 1.0 : -1.0);
+        std::optional<double> miss;  // an aim that passes the ball: what is wanted lies before it
+        for (int k = 0; k < kBrackets && (a.off > 0.0) == (b.off > 0.0) && std::abs(b.off) > near; ++k) {
+            const double next = miss ? 0.5 * (b.aim_deg + *miss) : b.aim_deg + step;
+            const std::optional<double> off = play(next);
+            if (off) {
+                a = b;
+                b = {next, *off};
+                step *= 2.0;
+            } else {
+                miss = next;
+            }
+        }
+        const bool between = (a.off > 0.0) != (b.off > 0.0);
+        const Tried best = between ? narrowed(a, b, near, play) : b;
+        const Played played = play_direct(player, best.aim_deg, line.towards);
+        aim.why = played.why;
+        if (played.potted)
+            aim.cue = player.cue();
+        else if (aim.why.empty())
+            aim.why = std::abs(best.off) > near ? "no aim sends the ball there"
+                                                : "the ball runs towards the pocket and does not fall";
+    }
+    if (aim.cue) aim.why.clear();
+    aim.shots = player.shots;
+    return aim;
+}
+
+std::vector<Aim> bank_routes(const Scene& scene, const Cue& how, std::string_view ball,
+                             std::string_view pocket) {
+    Player player(scene, how, ball, pocket);
+    const double middle = direction_deg(player.place() - player.cue_place()), half = half_view_deg(player);
+    std::vector<Aim> routes;
+    std::optional<Tried> last;
+    int last_cushion = -1;
+    for (int k = 0; k <= kBankAims; ++k) {
+        const double aim_deg = middle + half * (2.0 * k / kBankAims - 1.0);
+        const Played played = play_bank(player, aim_deg);
+        const std::optional<Tried> here =
+            played.off ? std::optional(Tried{aim_deg, *played.off}) : std::nullopt;
+        const bool crossed =
+            here && last && last_cushion == played.cushion && (here->off > 0.0) != (last->off > 0.0);
+        const std::string cushion =
+            played.cushion < 0 ? "" : scene.table.cushions[static_cast<std::size_t>(played.cushion)].id;
+        const bool known =
+            std::any_of(routes.begin(), routes.end(), [&](const Aim& r) { return r.cushion == cushion; });
+        if (crossed && !known) {
+            const Tried best = narrowed(*last, *here, 1e-6, [&](double aim) {
+                const Played next = play_bank(player, aim);
+                return next.cushion == played.cushion ? next.off : std::nullopt;
+            });
+            if (play_bank(player, best.aim_deg).potted) {
+                Aim route;
+                route.cue = player.cue();
+                route.cushion = cushion;
+                routes.push_back(route);
+            }
+        }
+        last = here;
+        last_cushion = played.cushion;
+    }
+    for (Aim& route : routes) route.shots = player.shots;
+    return routes;
+}
+
+}  // namespace carom::games
