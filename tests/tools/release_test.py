@@ -1,14 +1,18 @@
 #!/usr/bin/env python3
 """tools/release, on a copy of what it reads: it sees every kind of fault, and what it cuts has none. Usage: release_test.py (finds the repository by itself)."""
+import contextlib
 import datetime
 import importlib.machinery
 import importlib.util
+import io
 import pathlib
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.dont_write_bytecode = True
@@ -100,6 +104,48 @@ class Release(unittest.TestCase):
         major, minor, patch = map(int, release.version_here(self.root).split("."))
         release.set_version(self.root, f"{major}.{minor}.{patch + 1}", datetime.datetime(2030, 1, 2, tzinfo=datetime.timezone.utc))
         self.one_fault("no longer declares")
+
+    @unittest.skipUnless(shutil.which("git"), "git is not installed")
+    def test_cutting_brings_commit_and_tag_only_when_all_went_well(self):
+        def git(*words):
+            return subprocess.run(["git", "-C", self.root, *words], check=True, text=True, stdout=subprocess.PIPE).stdout.strip()
+
+        def files(root, out, skip, jobs):
+            out.mkdir(parents=True)
+            (out / f"carom-{release.version_here(root)}-notes.md").write_text(release.notes(root))
+            self.assertEqual(skip, ())
+            if fails:
+                release.fail("two builds differ")
+
+        git("init", "--quiet", "--initial-branch=main")
+        git("config", "user.name", "somebody")
+        git("config", "user.email", "somebody@example.org")
+        (self.root / ".gitignore").write_text("/build/\n")
+        git("add", "--all")
+        git("commit", "--quiet", "-m", "start")
+        start = git("rev-parse", "HEAD")
+        major, minor, _ = release.version_here(self.root).split(".")
+        version = f"{major}.{int(minor) + 1}.0"
+        with unittest.mock.patch.object(release, "ROOT", self.root), unittest.mock.patch.object(release, "make_files", files), \
+                unittest.mock.patch.object(release, "sections", lambda root=self.root, sections=release.sections: sections(root)), \
+                unittest.mock.patch.object(release, "version_here", lambda root=self.root, here=release.version_here: here(root)), \
+                contextlib.redirect_stderr(io.StringIO()):
+            fails = True
+            with self.assertRaisesRegex(SystemExit, "two builds differ"):
+                release.cut(version, 1)
+            self.assertEqual((git("rev-parse", "HEAD"), git("tag")), (start, ""))
+            shutil.rmtree(self.root / "build")
+            fails = False
+            release.cut(version, 1)
+            self.assertEqual(git("tag"), f"v{version}")
+            self.assertEqual(git("rev-parse", f"v{version}^{{commit}}~1"), start)
+            self.assertEqual(git("status", "--porcelain"), "")
+            self.assertIn(f"carom [{version}]", git("tag", "-n1"))
+            with self.assertRaisesRegex(SystemExit, "is not later than"):
+                release.cut(version, 1)
+            (self.root / "CHANGELOG.md").write_text((self.root / "CHANGELOG.md").read_text() + "\n")
+            with self.assertRaisesRegex(SystemExit, "not committed"):
+                release.cut(f"{major}.{int(minor) + 2}.0", 1)
 
 
 if __name__ == "__main__":
