@@ -379,3 +379,32 @@ def test_places_know_balls_that_left_the_table():
     shots = carom.simulate_many(scene, params={"cue.speed": np.linspace(1, 12, 60), "cue.elevation_deg": np.full(60, 40.0)})
     out = shots.pocket == -2
     assert out.any() and np.isnan(shots.places[out]).all()
+
+
+def test_planes_have_their_balls_where_they_are():
+    env = carom.gym.FeaturePlanes(carom.gym.make_env("NineBallRun"), 30, 60)
+    seen, _ = env.reset(seed=3)
+    assert env.observation_space.contains(seen)
+    states, table, ids = env.unwrapped.states, env.unwrapped._rules.game.table, env.unwrapped.ids
+    assert seen.shape == (4, 30, 60) and same_bits(env.planes(states)[0], seen)
+    for ball, (x, y) in zip(ids, states.xy[0]):
+        plane = {"cue": 0, "1": 1}.get(ball, 2)
+        at = seen[:, int(30 * (x - table.corner[0]) / table.width), int(60 * (y - table.corner[1]) / table.length)]
+        assert at[plane] > 0.6
+    # One cone each; the plane of targets is empty, and that of Position has one.
+    assert seen[0].sum() == pytest.approx(seen[1].sum(), rel=0.1) and seen[2].sum() > 5 * seen[1].sum() and (seen[3] == 0).all()
+    other = carom.gym.FeaturePlanes(carom.gym.make_env("Position"))
+    assert other.reset(seed=1)[0][3].max() > 0.6
+    gone = states.take([0, 0])
+    gone.xy[1, ids.index("cue")] = np.nan
+    assert (env.planes(gone)[1, 0] == 0).all() and env.planes(gone)[0, 0].any()
+    with pytest.raises(ValueError, match="height=0"):
+        carom.gym.FeaturePlanes(carom.gym.make_env("Pot"), 0)
+
+
+def test_pixels_are_those_of_gymnasiums_wrapper():
+    from gymnasium.wrappers import AddRenderObservation
+
+    env = AddRenderObservation(gymnasium.make("carom/Pot-v0", render_mode="rgb_array", size=(64, 36)), render_only=True)
+    seen, _ = env.reset(seed=1)
+    assert seen.shape == (36, 64, 3) and seen.dtype == np.uint8 and env.observation_space.contains(seen)

@@ -39,6 +39,21 @@ def sweep_command(*arguments, **options):
     return process.returncode, out, err
 
 
+def sweep_in_process(capsys, monkeypatch, *arguments):
+    """The same without a process of its own, for many calls that end at once."""
+    from carom.sweep.__main__ import main
+
+    monkeypatch.setattr(sys, "argv", ["carom.sweep", *map(str, arguments)])
+    handler = signal.getsignal(signal.SIGTERM)
+    try:
+        code = main()
+    except SystemExit as end:
+        code = end.code
+    finally:
+        signal.signal(signal.SIGTERM, handler)
+    return code, *capsys.readouterr()
+
+
 class Cluster:
     """A scheduler and workers, each a command of its own."""
 
@@ -301,7 +316,7 @@ def test_an_array_of_slurm_and_another_one_for_what_is_missing(tmp_path, once):
     assert (code, err) == (1, "carom.sweep: sbatch failed with the status 1: sbatch: error: invalid partition\n")
 
 
-def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path):
+def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path, capsys, monkeypatch):
     file = tmp_path / "p.json"
     arguments = ["--scene", SOURCE / "scenes/draw.toml", "--vary", "cue.aim_deg=normal(2)", "--vary", "cue.speed=uniform(1,4)", "--seed", 4, "--shard", 20]
     assert sweep_command(file, *arguments, "--shots", 60) == (0, f"{file}: 60 shots in 3 shards\n", "")
@@ -318,7 +333,9 @@ def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path):
         ([file, "--thread", "1"], 2, "unrecognized arguments: --thread 1; see python -m carom.sweep --help"),
         ([file, "--slurm"], 1, "sbatch: there is no such program; this is no machine of a Slurm cluster"),
     ]:
-        assert sweep_command(*words) == (code, "", f"carom.sweep: {message}\n")
+        assert sweep_in_process(capsys, monkeypatch, *words) == (code, "", f"carom.sweep: {message}\n")
+    # As a process: the status is the code.
+    assert sweep_command(*words) == (code, "", f"carom.sweep: {message}\n")
     folder = tmp_path / "p"
     code, out, err = sweep_command(file, "--part", "1/2")
     assert code == 0 and re.search(r"^1 of 1 shards, 0 left, 20 rows, \d+ shots/s, 0 failed$", err, re.MULTILINE), err

@@ -11,6 +11,7 @@ on PyPI (sources: github.com/ekiefl/FastFiz); it is not compared. Needs PyPI; ne
     tools/measure/side_by_side_shots.py [--package build/release/python] [--shots 10]
 """
 import argparse
+import contextlib
 import json
 import os
 import pathlib
@@ -127,6 +128,18 @@ def compare(count):
     print(json.dumps(out))
 
 
+@contextlib.contextmanager
+def pooltool_environment():
+    """The Python of a throw-away environment with pooltool 0.6.0."""
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(["/usr/bin/python3", "-m", "venv", folder], check=True)
+        python = os.path.join(folder, "bin", "python")
+        pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+        subprocess.run(pip + NEEDED, check=True)
+        subprocess.run(pip + ["--no-deps"] + ALONE, check=True)
+        yield python
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--package", default=str(ROOT / "build" / "release" / "python"), help="folder of the built package")
@@ -136,12 +149,7 @@ def main():
     if args.inside:
         compare(args.shots)
         return
-    with tempfile.TemporaryDirectory() as folder:
-        subprocess.run(["/usr/bin/python3", "-m", "venv", folder], check=True)
-        python = os.path.join(folder, "bin", "python")
-        pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-        subprocess.run(pip + NEEDED, check=True)
-        subprocess.run(pip + ["--no-deps"] + ALONE, check=True)
+    with pooltool_environment() as python:
         out = subprocess.run([python, __file__, "--inside", "--shots", str(args.shots)], check=True,
                              capture_output=True, text=True, env={**os.environ, "PYTHONPATH": args.package, "CAROM_ISA": os.environ.get("CAROM_ISA", "v3")}).stdout
     print(f"{'':<18}{'pooltool':>12}{'carom':>12}{'ratio':>8}{'in a batch':>12}   events, theirs and ours (medians)")

@@ -13,7 +13,7 @@ try:
 except ImportError as error:
     raise ImportError("carom.gym needs Gymnasium: pip install 'carom-billiards[gym]'") from error
 
-from carom.gym._env import TableEnv
+from carom.gym._env import FeaturePlanes, TableEnv
 from carom.gym._games import EightBallRun, Game, Judged, NineBallRun, Position, Pot, States, SumToThree, ThreeCushion
 from carom.gym._strikes import Strikes
 from carom.gym._tables import Rollout
@@ -22,6 +22,7 @@ from carom.gym._vector import TableVectorEnv
 __all__ = [
     "GAMES",
     "EightBallRun",
+    "FeaturePlanes",
     "Game",
     "Judged",
     "NineBallRun",

@@ -171,3 +171,43 @@ class TableEnv(gymnasium.Env[Observation, Any]):
     def _observe(self) -> Observation:
         all_of = observed(self._rules.game, self._tables.states, self._observation)
         return {key: values[0] for key, values in all_of.items()} if isinstance(all_of, dict) else all_of[0]
+
+
+class FeaturePlanes(gymnasium.ObservationWrapper[Any, Any, Any]):
+    """Observes a `TableEnv` as planes for a convolution: float32 (4, height, width), y of the table along the width. One each for the cue ball, the balls that may be hit
+    first, the other balls, and what the game shows beside them (a target). A ball is a cone over two radii.
+
+    `planes(env.states)` makes those of any number of tables: (n, 4, height, width). For pixels there is Gymnasium's own wrapper AddRenderObservation.
+    """
+
+    def __init__(self, env: gymnasium.Env[Any, Any], height: int = 32, width: int = 64) -> None:
+        super().__init__(env)
+        table = env.unwrapped
+        if not isinstance(table, TableEnv):
+            raise ValueError(f"FeaturePlanes: expected an environment of carom.gym, not {table!r}")
+        if height < 1 or width < 1:
+            raise ValueError(f"FeaturePlanes: height={height}, width={width}: expected at least 1")
+        self._table, self._game = table, table._rules.game
+        self.observation_space = spaces.Box(0.0, 1.0, (4, height, width), np.float32)
+        corner = self._game.table.corner
+        self._x = corner[0] + self._game.table.width * (np.arange(height) + 0.5) / height
+        self._y = corner[1] + self._game.table.length * (np.arange(width) + 0.5) / width
+
+    def observation(self, observation: Any) -> NDArray[np.float32]:
+        return np.asarray(self.planes(self._table.states)[0])
+
+    def planes(self, states: States) -> NDArray[np.float32]:
+        game = self._game
+        out = np.zeros((len(states.xy), 4, len(self._x), len(self._y)), np.float32)
+        kind = np.where(game.legal(states), 1, 2)
+        kind[:, game.cue_ball] = 0
+        marks = game.points(states)
+        kind = np.concatenate((kind, np.full(marks.shape[:2], 3)), axis=1)
+        # As wide as two pixels at least, so that no ball falls between them.
+        reach = max(2 * float(game.radii.max()), 2 * game.table.width / len(self._x), 2 * game.table.length / len(self._y))
+        for ball, place in enumerate(np.moveaxis(np.concatenate((states.xy, marks), axis=1), 1, 0)):
+            far = np.sqrt((self._x[:, None] - place[:, 0, None, None]) ** 2 + (self._y - place[:, 1, None, None]) ** 2)
+            cone = np.nan_to_num(np.maximum(1.0 - far / reach, 0.0)).astype(np.float32)
+            rows = np.arange(len(cone))
+            out[rows, kind[:, ball]] = np.maximum(out[rows, kind[:, ball]], cone)
+        return out
