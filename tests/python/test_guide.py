@@ -60,8 +60,8 @@ def test_the_example_plays_the_shot_that_it_says(tmp_path):
 
 
 def test_blocks_and_examples_pass_a_strict_check_of_types(tmp_path):
-    pytest.importorskip("mypy")
-    pytest.importorskip("matplotlib")
+    for package in ("mypy", "matplotlib", "gymnasium", "pettingzoo"):
+        pytest.importorskip(package)
     files = sorted((SOURCE / "examples").glob("*/*.py"))
     for page in PAGES:
         files.append(tmp_path / f"{page.stem}_page.py")

@@ -49,6 +49,11 @@ def noise_of(noise: str | Sequence[float], game: Game) -> Noise:
     return Noise(*map(float, noise))
 
 
+def check_render_mode(mode: str | None) -> None:
+    if mode not in (None, "rgb_array"):
+        raise ValueError(f"render_mode={mode!r}: expected 'rgb_array' or None")
+
+
 def spaces_of(rules: Rules, observation: str) -> tuple[spaces.Space[Any], spaces.Box]:
     """What is observed, and what is done."""
     game = rules.game
@@ -115,8 +120,7 @@ class TableEnv(gymnasium.Env[Observation, Any]):
         render_mode: str | None = None,
         size: tuple[int, int] = (640, 360),
     ) -> None:
-        if render_mode not in (None, "rgb_array"):
-            raise ValueError(f"render_mode={render_mode!r}: expected 'rgb_array' or None")
+        check_render_mode(render_mode)
         self._rules = rules_of(game, aim, speed, elevation_deg, noise, 1, hashes)
         self.observation_space, self.action_space = spaces_of(self._rules, observation)
         self.render_mode, self._observation, self._size = render_mode, observation, (int(size[0]), int(size[1]))

@@ -11,7 +11,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from carom._render import render
-from carom.gym._env import Observation, observed, plain, rules_of, searched, spaces_of
+from carom.gym._env import Observation, check_render_mode, observed, plain, rules_of, searched, spaces_of
 from carom.gym._games import Game, States
 from carom.gym._tables import Rollout, Tables
 
@@ -53,8 +53,7 @@ class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
         super().__init__()
         if num_envs < 1:
             raise ValueError(f"num_envs={num_envs}: expected at least 1")
-        if render_mode not in (None, "rgb_array"):
-            raise ValueError(f"render_mode={render_mode!r}: expected 'rgb_array' or None")
+        check_render_mode(render_mode)
         self.num_envs, self.render_mode, self._observation, self._size = num_envs, render_mode, observation, (int(size[0]), int(size[1]))
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = {**type(self).metadata, "autoreset_mode": self.autoreset_mode}

@@ -20,7 +20,7 @@ from carom._record import Record
 from carom._render import render
 from carom._scene import Scene
 from carom._simulate import ShotStatus, simulate
-from carom.gym._env import noise_of
+from carom.gym._env import check_render_mode, noise_of
 from carom.gym._games import Game, States
 from carom.gym._strikes import Strikes
 
@@ -36,6 +36,7 @@ _GAMES = {
     "Snooker": ("snooker", "snooker", (0.43, 0.19)),
 }
 _MOST_EVENTS = 1_000_000
+#: What observation["phase"] says.
 _PHASES = ("strike", "place")
 
 
@@ -81,8 +82,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         super().__init__()
         if game not in _GAMES:
             raise ValueError(f"game={game!r}: expected {', '.join(_GAMES)}")
-        if render_mode not in (None, "rgb_array"):
-            raise ValueError(f"render_mode={render_mode!r}: expected 'rgb_array' or None")
+        check_render_mode(render_mode)
         if called and game != "EightBall":
             raise ValueError("called: only eight-ball has calls")
         self._rules, self._table, self._break_from = _GAMES[game]
@@ -294,8 +294,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         for ring in itertools.count():
             if ring * radius / 4 > table.width + table.length:
                 raise RuntimeError("no place is free for the cue ball in hand")
-            around = 2 * np.pi * np.arange(max(1, 6 * ring)) / max(1, 6 * ring)
-            for place in wanted + ring * radius / 4 * np.column_stack((np.cos(around), np.sin(around))):
+            for place in wanted + radius / 4 * _ring(ring):
                 if games.may_place(self._record, self._option, place.tolist()):
                     return float(place[0]), float(place[1])
         raise AssertionError
@@ -306,3 +305,13 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         place = [plain.corner[0] + self._break_from[0] * plain.width, plain.corner[1] + self._break_from[1] * plain.length]
         rack = {"game": self._rules} | ({} if self._rules == "snooker" else {"seed": seed})
         return Scene(table=self._table, balls=balls, rack=rack, ball=[{"id": "cue", "position": place}], cue={"speed": 4.0, "aim_deg": 90.0})
+
+
+def _ring(number: int) -> NDArray[np.float64]:
+    """Whole numbers (n, 2) that are farther than number - 1 from the origin and not farther than number, the nearest first. Sine and cosine of numpy have other bits on
+    other processors."""
+    side = np.arange(-number, number + 1)
+    all_of = np.stack(np.meshgrid(side, side, indexing="ij"), -1).reshape(-1, 2)
+    far = (all_of * all_of).sum(1)
+    ring = all_of[(far > (number - 1) ** 2) & (far <= number**2)] if number else all_of
+    return np.array(ring[np.argsort((ring * ring).sum(1), kind="stable")], np.float64)
