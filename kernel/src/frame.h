@@ -28,8 +28,13 @@ inline bool finite(const double (&a)[3]) {
     return finite(a[0]) && finite(a[1]) && finite(a[2]);
 }
 
-inline bool finite(const Ball& ball) {
-    return finite(ball.r) && finite(ball.v) && finite(ball.w);
+// In one question for both balls: a difference is 0, or a NaN where a number is not finite.
+inline bool finite(const Ball& a, const Ball& b) {
+    double wrong[3];
+    for (int k = 0; k < 3; ++k)
+        wrong[k] = ((a.r[k] - a.r[k]) + (a.v[k] - a.v[k])) + ((a.w[k] - a.w[k]) + (b.r[k] - b.r[k])) +
+                   ((b.v[k] - b.v[k]) + (b.w[k] - b.w[k]));
+    return wrong[0] + wrong[1] + wrong[2] == 0.0;
 }
 
 // A cloth slip [m/s] up to this floor is rounding noise of the v and R w of a rolling ball. It has no direction, and
@@ -77,7 +82,7 @@ inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactPara
                                 FrameState& s, ImpactResult& out) {
     ImpactStatus status = ImpactStatus::kOk;
     if (!in_range<kAnyMasses>(p)) status = ImpactStatus::kBadParameter;
-    if (status == ImpactStatus::kOk && !(finite(b1) && finite(b2))) status = ImpactStatus::kBadState;
+    if (status == ImpactStatus::kOk && !finite(b1, b2)) status = ImpactStatus::kBadState;
     if (status == ImpactStatus::kOk) {
         const double dx = b2.r[0] - b1.r[0], dy = b2.r[1] - b1.r[1], dz = b2.r[2] - b1.r[2];
         const double d = square_root(dx * dx + dy * dy);

@@ -31,6 +31,142 @@ CAROM_INLINE Problem problem_of(const HardPool& pool, int i, double tolerance, C
     return problem;
 }
 
+// The impacts under way, one a lane: Adaptive, with a lane for each.
+struct WideRuns {
+    WideModel m;
+    WideStart at;
+    Wide v, p, xi, zeta, g_a, g_b;
+    Wide S, shortest, compressed, left, shrink, sweeps, stretches;
+    Wide end, asked, root_s;
+    WideMask compressing, from_rest, last;
+    WideMask busy;  // lanes that have an impact
+};
+
+// Where both scalar forms below and lanes choose, they choose alike, NaN included.
+CAROM_INLINE Wide wide_smallest(Wide a, Wide b) {
+    return select(a < b, a, b);
+}
+
+CAROM_INLINE Wide wide_largest(Wide a, Wide b) {
+    return select(a > b, a, b);
+}
+
+// As plan(), operation by operation; returns the lanes whose slip has all but vanished.
+CAROM_INLINE WideMask wide_plan(WideRuns& r, double tolerance) {
+    const WideModel& m = r.m;
+    const Wide zero = {}, one = broadcast<kWidth>(1.0);
+    const Wide root = square_root(r.v * r.v + 4.0 * r.left);
+    r.end = select(r.compressing, -0.5 * r.v, 2.0 * r.left / (r.v + root));
+    const Wide total_left = select(r.compressing, r.end * (1.0 + m.e_b), r.end);
+    const Wide s = square_root(r.at.x * r.at.x + r.at.z * r.at.z);
+    r.root_s = 1.0 / s;
+    const Wide cx = r.at.x * r.root_s, cz = r.at.z * r.root_s;
+    const Wide fall = m.mu_b * ((7.0 * cx * cx + 5.0 * cz * cz) + 2.7 * (m.mu_s * cz));
+    const Wide fx0 = m.mu_b * cx, fy0 = 1.0 - m.sigma * (m.mu_b * cz);
+    const Wide u = square_root(r.at.a * r.at.a + r.at.b * r.at.b);
+    const WideMask surely_sticks = total_left * m.mu_b * 2.0 > s;
+    const Wide vanished2 = select(surely_sticks, tolerance * m.mu_b * wide_smallest(u, one), zero);
+    const WideMask vanished = (s * s <= vanished2) | (s <= 0.25 * tolerance);
+    const Wide by_slip = 4.0 * s / (fall * (r.S + 2.0));
+    const Wide drag = select(u > 0.0, m.kappa * (m.mu_s * (m.mu_b * (r.at.z * r.root_s))) / u, zero);
+    const Wide fx = fx0 - drag * r.at.a, fy = fy0 - drag * r.at.b, f2 = fx * fx + fy * fy;
+    const Wide along = -(r.at.a * fx + r.at.b * fy) / f2;
+    const Wide by_cloth = (r.S * (u / square_root(f2)) - 2.0 * along) / (0.25 * r.S * r.S - 1.0);
+    Wide h = select(r.from_rest, by_slip, wide_smallest(by_slip, by_cloth));
+    h = wide_largest(r.shrink * wide_smallest(h, 1.25 * r.end), r.shortest);
+    r.last = h >= 1.1 * r.end;
+    r.asked = select(r.last, r.end, wide_smallest(h, 0.6 * r.end));
+    return vanished;
+}
+
+// As add_stretch() and advance(), for the lanes that converged and for those that can be shortened. Returns the lanes that are
+// through; `frozen` are those that neither converged nor can be shortened, which are left as they were.
+CAROM_INLINE WideMask wide_advance(WideRuns& r, const WideStretchResult& result, WideMask& frozen) {
+    const WideModel& m = r.m;
+    const WideResult& t = result.t;
+    const Wide zero = {};
+    const WideMask ok = r.busy & t.converged, failed = r.busy & ~t.converged;
+    const WideMask shorter = failed & (r.asked > r.shortest);
+    frozen = failed & ~shorter;
+    r.sweeps += select(r.busy, t.sweeps, zero);
+    const Wide raised = 1.6 * r.shrink, one = broadcast<kWidth>(1.0);
+    r.shrink = select(ok, wide_smallest(one, raised), select(shorter, 0.4 * r.shrink, r.shrink));
+    r.at.x = select(ok, r.at.x + (t.g_a - 7.0 * t.xi), r.at.x);
+    r.at.z = select(ok, r.at.z + (2.5 * t.g_b - 5.0 * t.zeta), r.at.z);
+    r.at.a = select(ok, r.at.a + (t.xi - m.kappa * t.g_a), r.at.a);
+    r.at.b = select(ok, r.at.b + (t.p - (m.sigma * t.zeta + m.kappa * t.g_b)), r.at.b);
+    r.v = select(ok, r.v + (2.0 * t.p - t.g_b), r.v);
+    r.p += select(ok, t.p, zero);
+    r.xi += select(ok, t.xi, zero);
+    r.zeta += select(ok, t.zeta, zero);
+    r.g_a += select(ok, t.g_a, zero);
+    r.g_b += select(ok, t.g_b, zero);
+    const WideMask compressing = ok & r.compressing, restoring = ok & ~r.compressing;
+    r.compressed = select(compressing, r.compressed - result.done, r.compressed);
+    r.left = select(restoring, r.left - result.done, r.left);
+    const WideMask turns = compressing & ((r.v >= 0.0) | r.last);
+    r.compressing &= ~turns;
+    r.left = select(turns, m.e_b * m.e_b * r.compressed, r.left);
+    r.v = select(turns, zero, r.v);
+    const WideMask ends = restoring & (~(r.left > 0.0) | r.last);
+    const WideMask through = ends | (turns & ~(r.left > 0.0));
+    r.left = select(ends, zero, r.left);
+    r.stretches += select(r.busy & ~through, one, zero);
+    return through;
+}
+
+// One lane as an impact by itself, and back.
+inline Adaptive run_of(const WideRuns& r, int i, double tolerance) {
+    Adaptive run;
+    run.m = {lane(r.m.mu_b, i), lane(r.m.mu_s, i), r.m.sigma, r.m.kappa, lane(r.m.e_b, i)};
+    run.tolerance = tolerance;
+    run.S = lane(r.S, i);
+    run.shortest = lane(r.shortest, i);
+    run.at = {lane(r.at.x, i), lane(r.at.z, i), lane(r.at.a, i), lane(r.at.b, i), lane(r.v, i)};
+    run.total = {lane(r.p, i), lane(r.xi, i), lane(r.zeta, i), lane(r.g_a, i), lane(r.g_b, i)};
+    run.compressed = lane(r.compressed, i);
+    run.left = lane(r.left, i);
+    run.shrink = lane(r.shrink, i);
+    run.compressing = lane(r.compressing, i) != 0;
+    run.from_rest = lane(r.from_rest, i) != 0;
+    run.sweeps = static_cast<int>(lane(r.sweeps, i));
+    run.stretches = static_cast<int>(lane(r.stretches, i));
+    run.end = lane(r.end, i);
+    run.asked = lane(r.asked, i);
+    run.root_s = lane(r.root_s, i);
+    run.last = lane(r.last, i) != 0;
+    return run;
+}
+
+inline void set_run(WideRuns& r, int i, const Adaptive& run) {
+    set_lane(r.m.mu_b, i, run.m.mu_b);
+    set_lane(r.m.mu_s, i, run.m.mu_s);
+    set_lane(r.m.e_b, i, run.m.e_b);
+    set_lane(r.S, i, run.S);
+    set_lane(r.shortest, i, run.shortest);
+    set_lane(r.at.x, i, run.at.x);
+    set_lane(r.at.z, i, run.at.z);
+    set_lane(r.at.a, i, run.at.a);
+    set_lane(r.at.b, i, run.at.b);
+    set_lane(r.v, i, run.at.v);
+    set_lane(r.p, i, run.total.p);
+    set_lane(r.xi, i, run.total.xi);
+    set_lane(r.zeta, i, run.total.zeta);
+    set_lane(r.g_a, i, run.total.g_a);
+    set_lane(r.g_b, i, run.total.g_b);
+    set_lane(r.compressed, i, run.compressed);
+    set_lane(r.left, i, run.left);
+    set_lane(r.shrink, i, run.shrink);
+    set_lane(r.sweeps, i, static_cast<double>(run.sweeps));
+    set_lane(r.stretches, i, static_cast<double>(run.stretches));
+    set_lane(r.end, i, run.end);
+    set_lane(r.asked, i, run.asked);
+    set_lane(r.root_s, i, run.root_s);
+    set_lane(r.compressing, i, run.compressing ? -1 : 0);
+    set_lane(r.from_rest, i, run.from_rest ? -1 : 0);
+    set_lane(r.last, i, run.last ? -1 : 0);
+}
+
 CAROM_INLINE void keep_result(const Adaptive& run, int i, HardPool& pool) {
     pool.p[i] = run.total.p;
     pool.xi[i] = run.total.xi;
@@ -41,70 +177,101 @@ CAROM_INLINE void keep_result(const Adaptive& run, int i, HardPool& pool) {
     pool.solved[i] = run.stretches < kMostStretches;
 }
 
-// Solves the first `count` impacts of the pool.
+// Solves the first `count` impacts of a pool. A lane begins the next impact as soon as it has finished one.
 template <int N>
-inline void run_stretches(int count, double tolerance, ClothSlip cloth_slip, HardPool& pool) {
-    Adaptive runs[kWidth];
-    int impact[kWidth];
-    int next = 0;
-    WideStretch w = {};
-    w.m.sigma = cloth_slip == ClothSlip::kAsPublished ? 2.5 : -2.5;
-    w.m.kappa = cloth_slip == ClothSlip::kAsPublished ? -1.5 : 3.5;
-    w.tolerance = tolerance;
-    for (int i = 0; i < kWidth; ++i) impact[i] = -1;
-    WideStretchResult result;
-    for (;;) {
-        bool busy = false;
-        for (int i = 0; i < kWidth; ++i) {
-            Adaptive& run = runs[i];
-            for (;;) {  // until the lane has a stretch to solve or no impact is left
-                if (impact[i] < 0) {
-                    if (next == count) break;
-                    begin_adaptive<N>(problem_of(pool, next, tolerance, cloth_slip), run);
-                    impact[i] = next++;
-                    set_lane(w.m.mu_b, i, run.m.mu_b);
-                    set_lane(w.m.mu_s, i, run.m.mu_s);
-                }
-                if (run.stretches < kMostStretches && plan(run)) break;
-                finish(run);
-                keep_result(run, impact[i], pool);
-                impact[i] = -1;
+class StretchLanes {
+  public:
+    StretchLanes(int impacts, double asked_tolerance, ClothSlip slip, HardPool& impacts_and_results)
+        : count(impacts), tolerance(asked_tolerance), cloth_slip(slip), pool(impacts_and_results) {
+        r.m.sigma = cloth_slip == ClothSlip::kAsPublished ? 2.5 : -2.5;
+        r.m.kappa = cloth_slip == ClothSlip::kAsPublished ? -1.5 : 3.5;
+    }
+
+    void solve() {
+        for (int i = 0; i < kWidth; ++i) begin(i);
+        WideStretchResult result;
+        while (any(r.busy)) {
+            const WideStretch w = {r.m,
+                                   r.at,
+                                   r.v,
+                                   r.asked,
+                                   r.left,
+                                   r.root_s,
+                                   r.busy & r.last & r.compressing,
+                                   r.busy & r.last & ~r.compressing,
+                                   r.shrink < 1.0,
+                                   r.busy,
+                                   tolerance};
+            wide_stretch<N>(w, result);
+            WideMask frozen;
+            WideMask ended = wide_advance(r, result, frozen);
+            if (any(frozen)) [[unlikely]]
+                ended |= freeze(frozen);
+            const WideMask goes_on = r.busy & ~ended;
+            const WideMask stops = (wide_plan(r, tolerance) | ~(r.stretches < kMostStretches)) & goes_on;
+            const int through = bits(ended), stopped = bits(stops);
+            if ((through | stopped) == 0) continue;
+            for (int i = 0; i < kWidth; ++i) {
+                if (((through | stopped) >> i & 1) == 0) continue;
+                Adaptive run = run_of(r, i, tolerance);
+                // The scalar form ends the slip, if that is why the lane stops.
+                if ((stopped >> i & 1) != 0 && run.stretches < kMostStretches) plan(run);
+                end(i, run);
+                begin(i);
             }
-            set_lane(w.wanted, i, impact[i] < 0 ? 0 : -1);
-            if (impact[i] < 0) continue;
-            busy = true;
-            set_lane(w.start.x, i, run.at.x);
-            set_lane(w.start.z, i, run.at.z);
-            set_lane(w.start.a, i, run.at.a);
-            set_lane(w.start.b, i, run.at.b);
-            set_lane(w.v, i, run.at.v);
-            set_lane(w.h, i, run.asked);
-            set_lane(w.work, i, run.left);
-            set_lane(w.root_s, i, run.root_s);
-            set_lane(w.to_zero, i, run.last && run.compressing ? -1 : 0);
-            set_lane(w.to_work, i, run.last && !run.compressing ? -1 : 0);
-            set_lane(w.exact, i, run.shrink < 1.0 ? -1 : 0);
-        }
-        if (!busy) break;
-        wide_stretch<N>(w, result);
-        for (int i = 0; i < kWidth; ++i) {
-            if (impact[i] < 0) continue;
-            Adaptive& run = runs[i];
-            State at = run.at;
-            Impulses total = run.total;
-            const Impulses add = {lane(result.t.p, i), lane(result.t.xi, i), lane(result.t.zeta, i),
-                                  lane(result.t.g_a, i), lane(result.t.g_b, i)};
-            add_stretch(run.m, add, at, total);
-            run.sweeps += static_cast<int>(lane(result.t.sweeps, i));
-            if (advance(run, lane(result.t.converged, i) != 0, at, total, lane(result.done, i))) {
-                ++run.stretches;
-                continue;
-            }
-            finish(run);
-            keep_result(run, impact[i], pool);
-            impact[i] = -1;
         }
     }
+
+  private:
+    WideRuns r = {};
+    const int count;
+    const double tolerance;
+    const ClothSlip cloth_slip;
+    HardPool& pool;
+    int impact[kWidth];
+    int next = 0;
+
+    void end(int i, Adaptive& run) {
+        finish(run);
+        keep_result(run, impact[i], pool);
+    }
+
+    // Begins impacts in lane i until one has a stretch to solve or none is left.
+    void begin(int i) {
+        Adaptive run;
+        while (next < count) {
+            begin_adaptive<N>(problem_of(pool, next, tolerance, cloth_slip), run);
+            impact[i] = next++;
+            if (plan(run)) {
+                set_run(r, i, run);
+                set_lane(r.busy, i, -1);
+                return;
+            }
+            end(i, run);
+        }
+        set_lane(r.busy, i, 0);
+    }
+
+    // Steps that are too short to be shortened are taken as they come. Returns the lanes that are then through.
+    WideMask freeze(WideMask lanes) {
+        WideMask through = {};
+        for (int i = 0; i < kWidth; ++i) {
+            if (lane(lanes, i) == 0) continue;
+            Adaptive run = run_of(r, i, tolerance);
+            --run.stretches;  // wide_advance() has counted this one
+            if (advance(run, false, run.at, run.total, 0.0))
+                ++run.stretches;
+            else
+                set_lane(through, i, -1);
+            set_run(r, i, run);
+        }
+        return through;
+    }
+};
+
+template <int N>
+inline void run_stretches(int count, double tolerance, ClothSlip cloth_slip, HardPool& pool) {
+    StretchLanes<N>(count, tolerance, cloth_slip, pool).solve();
 }
 
 }  // namespace
