@@ -69,12 +69,17 @@ function(carom_count_lines target)
   endif()
 endfunction()
 
+# Plain C++ for any processor, and on x86-64 its two higher levels.
+set(carom_instruction_sets scalar)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+  list(APPEND carom_instruction_sets v3 v4)
+endif()
 # Compiles the sources behind TARGET once for every instruction set, with the options of TARGET and in the namespace that
-# CAROM_ISA_NAMESPACE names (scalar is plain x86-64), and adds the objects to TARGET. Such sources include no Eigen and no
+# CAROM_ISA_NAMESPACE names (scalar is what the compiler builds by default), and adds the objects to TARGET. Such sources include no Eigen and no
 # std templates with code: a weak symbol built for a higher instruction set could win at link time and stop the program on
 # an older processor.
 function(carom_per_instruction_set target)
-  foreach(isa scalar v3 v4)
+  foreach(isa ${carom_instruction_sets})
     set(objects ${target}_${isa})
     add_library(${objects} OBJECT EXCLUDE_FROM_ALL ${ARGN})
     set_target_properties(${objects} PROPERTIES

@@ -4,16 +4,18 @@
 #include "kernel_set.h"
 #include "ladder/branch_hints.h"
 #include "ladder/branch_order.h"
-#include "ladder/combined.h"
 #include "ladder/fewer_roots.h"
 #include "ladder/masks.h"
-#include "ladder/packed_blocks.h"
 #include "ladder/precomputed.h"
 #include "ladder/reduced.h"
-#include "ladder/rsqrt.h"
-#include "ladder/simd_ssa.h"
 #include "ladder/summed_batch.h"
 #include "ladder/unconditional_roots.h"
+#ifdef __x86_64__
+#include "ladder/combined.h"
+#include "ladder/packed_blocks.h"
+#include "ladder/rsqrt.h"
+#include "ladder/simd_ssa.h"
+#endif
 #ifdef __AVX2__
 #include "ladder/batch_driver.h"
 #include "ladder/decoupled.h"
@@ -47,8 +49,10 @@ constexpr Rung batch(const char* name, const char* section, BatchFunction batch,
 constexpr Rung kList[] = {
     single("baseline", "3.1", march, true, 0.0, 0.0, "the published march in double, equation by equation"),
     single("fewer square roots", "3.2", one<drive<FewerRoots>>, true, 1e-14, 1e-09, "cutoffs tested on squares, no root where its friction is zero"),
+#ifdef __x86_64__
     single("rsqrt", "3.2", one<drive<RsqrtRaw>>, false, 1e-04, 1e-03, "rsqrtss as it comes, 12 bits: the loss that motivates the refinement"),
     single("rsqrt newton", "3.2", one<drive<RsqrtNewton>>, false, 1e-14, 1e-09, "rsqrtss and two Newton steps"),
+#endif
     single("branch hints", "3.3", one<drive<BranchHints>>, true, 0.0, 0.0, "[[likely]] on slip and cloth slip"),
     single("branch order", "3.3", one<drive<BranchOrder>>, true, 0.0, 0.0, "the pressed ball is asked for first, the exceptions last"),
     single("unconditional roots", "3.3", one<drive<UnconditionalRoots>>, true, 1e-14, 1e-09, "inverted branches: all roots before any question"),
@@ -58,13 +62,17 @@ constexpr Rung kList[] = {
 #ifdef __AVX2__
     single("fma", "3.4", one<drive<ExplicitFma>>, false, 1e-14, 1e-09, "fused multiply-add where the step has product and sum"),
 #endif
+#ifdef __x86_64__
     single("packed blocks", "3.5", one<drive<PackedBlocks>>, true, 1e-12, 1e-09, "register relief: pairs (ball 1, ball 2) in scoped blocks"),
+#endif
 #ifdef __AVX2__
     single("simd around", "3.7", one<simd_outside>, false, 0.0, 0.0, "SIMD for the frame, the scalar loop inside"),
     single("simd loop", "3.7", one<drive<SimdLoop>>, false, 1e-14, 1e-09, "one register a vector, the whole loop"),
 #endif
+#ifdef __x86_64__
     single("simd ssa", "3.7", one<drive<SimdSsa>>, true, 1e-12, 1e-09, "pairs, both sides computed, every value assigned once"),
     single("combined", "4", one<drive<Combined>>, false, 1e-12, 1e-09, "the paper's best: rsqrt, no waiting branch, two stages, precomputed"),
+#endif
 #ifdef __AVX2__
     single("paper flags", "4", one<drive<PaperFlags>>, false, 1e-12, 1e-09, "the baseline's loop under -Ofast -march=znver3"),
 #endif

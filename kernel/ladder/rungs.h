@@ -10,11 +10,13 @@ namespace carom::kernel {
 namespace scalar {
 extern const std::span<const Rung> kRungs;
 }
+#if defined(__x86_64__)
 namespace v3 {
 extern const std::span<const Rung> kRungs;
 }
 namespace v4 {
 extern const std::span<const Rung> kRungs;
 }
+#endif
 
 }  // namespace carom::kernel

@@ -23,6 +23,7 @@ namespace scalar {
 constexpr Isa kIsa = Isa::kScalar;
 extern const KernelSet kKernels;
 }  // namespace scalar
+#if defined(__x86_64__)
 namespace v3 {
 constexpr Isa kIsa = Isa::kV3;
 extern const KernelSet kKernels;
@@ -31,6 +32,7 @@ namespace v4 {
 constexpr Isa kIsa = Isa::kV4;
 extern const KernelSet kKernels;
 }  // namespace v4
+#endif
 
 #ifdef CAROM_ISA_NAMESPACE
 namespace CAROM_ISA_NAMESPACE {

@@ -14,7 +14,9 @@
 // link time and stop the program on an older processor.
 #pragma once
 
+#if defined(__x86_64__)
 #include <immintrin.h>
+#endif
 
 // No vector crosses a function call: all functions below are inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -195,6 +197,7 @@ CAROM_INLINE Halves<Half> absolute(Halves<Half> v) {
     return {absolute(v.lo), absolute(v.hi)};
 }
 
+#if defined(__x86_64__)
 CAROM_INLINE Pack<2> square_root(Pack<2> v) {
     return (Pack<2>)_mm_sqrt_pd((__m128d)v);
 }
@@ -203,6 +206,15 @@ CAROM_INLINE Pack<2> square_root(Pack<2> v) {
 CAROM_INLINE int bits(Mask<2> mask) {
     return _mm_movemask_pd((__m128d)mask);
 }
+#else
+CAROM_INLINE Pack<2> square_root(Pack<2> v) {
+    return Pack<2>{__builtin_sqrt(v[0]), __builtin_sqrt(v[1])};
+}
+
+CAROM_INLINE int bits(Mask<2> mask) {
+    return static_cast<int>(mask[0] & 1) | static_cast<int>(mask[1] & 2);
+}
+#endif
 
 // Bit i says whether a < b in lane i.
 CAROM_INLINE int bits_less(Pack<2> a, Pack<2> b) {

@@ -39,7 +39,7 @@ const Scene& scene_of(const NativeRecord& record, const NativeScene* other);
 /// A scene built in code with one more section of a file, or "". @throws SceneError
 NativeScene parsed_with(const std::string& section, const Scene& scene);
 
-/// The instruction set that CAROM_ISA names, or else the widest one. @throws nb::value_error
+/// The instruction set that CAROM_ISA names, or else for every kernel the fastest one. @throws nb::value_error
 kernel::Isa chosen_isa();
 
 /// Of two limits the smaller one; nothing where there is none.

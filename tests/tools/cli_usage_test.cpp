@@ -184,6 +184,11 @@ TEST(CliCheck, PrintsThePlan) {
           "isa       scalar (available: scalar", "\ncushions  ", "\njaws      ", "\npockets   "}) {
         EXPECT_TRUE(contains(result.out, part)) << part << "\n" << result.out;
     }
+    // Where none is named, every kernel has its own.
+    const std::string free = carom_isa("", {"check", scene}).out;
+    const std::string impacts = kernel::name(kernel::fastest_isa(kernel::KernelKind::kTolerance)),
+                      clusters = kernel::name(kernel::fastest_isa(kernel::KernelKind::kContactPhase));
+    EXPECT_TRUE(contains(free, "\nisa       impacts " + impacts + ", clusters " + clusters + ": ")) << free;
     for (const char* effect : {"sliding", "rolling", "spin_decay", "throw", "cloth_in_impact", "cushions",
                                "cushion_friction", "pockets", "squirt", "clusters", "airborne"}) {
         EXPECT_TRUE(contains(result.out, std::string("\n  ") + effect + " ")) << effect << "\n" << result.out;

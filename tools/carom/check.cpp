@@ -4,6 +4,7 @@
 #include <iterator>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "carom/engine/ball_ball.h"
 #include "console.h"
@@ -33,6 +34,23 @@ std::string kernel_line(const Plan& plan) {
                            name(physics.cloth_slip));
     return fmt::format("by tolerance {}: closed forms, else collocation; cloth slip {}", physics.tolerance,
                        name(physics.cloth_slip));
+}
+
+/// Which instruction set each kernel of the plan runs on. Of kernels that are not in the plan nothing is said.
+std::string isa_line(const Plan& plan) {
+    const auto with = [&plan](std::string_view text) {
+        return fmt::format("{} (available: {})", text, kernel::available_isas());
+    };
+    if (plan.isa != kernel::Isa::kFastest) return with(kernel::name(plan.isa));
+    const kernel::KernelKind impact = plan.impact.march == nullptr ? kernel::KernelKind::kTolerance
+                                      : plan.scene.physics.march == March::kPublished
+                                          ? kernel::KernelKind::kMarch
+                                          : kernel::KernelKind::kSummedMarch;
+    const char* known = kernel::measured_processor();
+    return with(fmt::format("impacts {}, clusters {}: {}", kernel::name(kernel::fastest_isa(impact)),
+                            kernel::name(kernel::fastest_isa(kernel::KernelKind::kContactPhase)),
+                            known != nullptr ? fmt::format("measured on {}", known)
+                                             : "the widest, this processor was not measured"));
 }
 
 std::string stop_line(const Stop& stop) {
@@ -77,7 +95,7 @@ std::string report(const Plan& plan) {
                    name(scene.physics.ball_ball), name(scene.physics.cushion),
                    name(scene.physics.jaw_model()), name(scene.physics.clusters), plan.gravity);
     fmt::format_to(line, "kernel    {}\n", kernel_line(plan));
-    fmt::format_to(line, "isa       {} (available: {})\n", kernel::name(plan.isa), kernel::available_isas());
+    fmt::format_to(line, "isa       {}\n", isa_line(plan));
     fmt::format_to(line, "search    balls {}, table {}{}\n", name(plan.ball_search), name(plan.table_search),
                    plan.box_travel < std::numeric_limits<double>::infinity()
                        ? fmt::format("; boxes cover {} ball radii at first", plan.box_travel)

@@ -57,8 +57,9 @@ std::string synopsis_of(const Options& command, const std::string& name) {
 }
 
 constexpr const char* kIsaText =
-    "scalar, v3 or v4 forces the instruction set; all give the same bits. Left out, the widest one that the "
-    "processor has.";
+    "scalar, v3 or v4 forces the instruction set; all give the same bits. Left out, "
+    "every kernel runs on the one that was measured to be fastest on this processor, or on the widest one; "
+    "`carom check` shows it.";
 constexpr struct {
     int status;
     const char* meaning;

@@ -32,8 +32,8 @@ int run(int argc, char** argv) {
     program.version = CAROM_VERSION;
     program.option("--version", {}, "", "Display program version information and exit");
     program.footer =
-        "CAROM_ISA=scalar|v3|v4 in the environment forces the instruction set (default: the widest "
-        "available).\n"
+        "CAROM_ISA=scalar|v3|v4 in the environment forces the instruction set (default: for "
+        "each kernel the fastest one).\n"
         "Exit status: 0, 1 failed while running, 2 bad usage or bad scene, 130 interrupted.";
     add_simulate(program);
     add_render(program);

@@ -24,7 +24,7 @@ void add_cloth_slip(Options& command, std::string& name, std::string description
 void add_reports(Options& command, std::string& csv, std::string& plot, bool& json);
 void add_html(Options& command, std::string& html);
 
-/// The instruction set that CAROM_ISA names, or else the widest available one.
+/// The instruction set that CAROM_ISA names, or else for every kernel the one that is fastest here.
 /// @throws UsageError for an unknown or unavailable name
 kernel::Isa chosen_isa();
 

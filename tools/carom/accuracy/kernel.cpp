@@ -99,7 +99,8 @@ const Rung& fastest_batch(Isa isa, const std::vector<Impact>& impacts) {
     const Rung* best = nullptr;
     double least = INFINITY;
     for (const Rung& rung : ladder()) {
-        if (rung.isa != isa || rung.batch == nullptr) continue;
+        const bool meant = isa == Isa::kFastest ? available(rung.isa) : rung.isa == isa;
+        if (!meant || rung.batch == nullptr) continue;
         Subject s = march(call_of(rung), rung.name, 1000);
         s.prepare(impacts);
         double ns = INFINITY;

@@ -2,7 +2,9 @@
 #include "bench/kernel.h"
 
 #include <fmt/format.h>
+#if defined(__x86_64__)
 #include <immintrin.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -135,7 +137,9 @@ std::vector<GrowthRow> growth_of(const std::vector<TimedKernel>& list, const Imp
 void evict_caches() {
     static std::vector<char> memory(96u << 20);
     for (std::size_t i = 0; i < memory.size(); i += 64) memory[i] = static_cast<char>(memory[i] + 1);
+#if defined(__x86_64__)
     for (std::size_t i = 0; i < memory.size(); i += 64) _mm_clflush(&memory[i]);
+#endif
 }
 
 ShareRow shares_of(const TimedKernel& s, const ImpactSet& five, double probe_ns) {
