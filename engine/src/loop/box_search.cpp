@@ -49,10 +49,12 @@ b2AABB BoxSearch::aabb_of(const Rounded& box) {
 
 void BoxSearch::set_up(int count, Search kind) {
     const auto boxes = static_cast<std::size_t>(count);
-    const std::size_t group = kind == Search::kTree ? kBlock : 4;
-    const std::size_t size = (boxes + group - 1) / group * group;
-    for (std::vector<float>* low : {&low_x_, &low_y_}) low->assign(size, kNowhere);
-    for (std::vector<float>* high : {&high_x_, &high_y_}) high->assign(size, -kNowhere);
+    const std::size_t whole = kind == Search::kTree ? kBlock : kGroup;
+    const std::size_t size = (boxes + whole - 1) / whole * whole;
+    Group nowhere{};
+    for (Four* low : {&nowhere.low_x, &nowhere.low_y}) low->fill(kNowhere);
+    for (Four* high : {&nowhere.high_x, &nowhere.high_y}) high->fill(-kNowhere);
+    groups_.assign(size / kGroup, nowhere);
     tree_.reset();
     if (kind != Search::kTree) return;
     tree_ = std::make_unique<b2DynamicTree>();
@@ -65,10 +67,12 @@ void BoxSearch::set_up(int count, Search kind) {
 }
 
 void BoxSearch::set(std::size_t slot, const Rounded& box) {
-    low_x_[slot] = box.low_x;
-    low_y_[slot] = box.low_y;
-    high_x_[slot] = box.high_x;
-    high_y_[slot] = box.high_y;
+    Group& g = groups_[slot / kGroup];
+    const std::size_t k = slot % kGroup;
+    g.low_x[k] = box.low_x;
+    g.low_y[k] = box.low_y;
+    g.high_x[k] = box.high_x;
+    g.high_y[k] = box.high_y;
 }
 
 void BoxSearch::place(int index, const RoundedBox& rounded) {
@@ -86,10 +90,11 @@ void BoxSearch::remove(int index) {
 void BoxSearch::update_block(std::size_t block) {
     Rounded around{kNowhere, kNowhere, -kNowhere, -kNowhere};
     for (std::size_t i = block * kBlock; i < (block + 1) * kBlock; ++i) {
-        around.low_x = std::min(around.low_x, low_x_[i]);
-        around.low_y = std::min(around.low_y, low_y_[i]);
-        around.high_x = std::max(around.high_x, high_x_[i]);
-        around.high_y = std::max(around.high_y, high_y_[i]);
+        const Rounded box = at(i);
+        around.low_x = std::min(around.low_x, box.low_x);
+        around.low_y = std::min(around.low_y, box.low_y);
+        around.high_x = std::max(around.high_x, box.high_x);
+        around.high_y = std::max(around.high_y, box.high_y);
     }
     if (around.low_x > around.high_x) return;  // the block is empty
     b2AABB aabb = aabb_of(around);
@@ -102,10 +107,7 @@ void BoxSearch::update_block(std::size_t block) {
 // Forms blocks of neighbours: strips with equal numbers of boxes, sorted by x, and sorted by y within a strip.
 void BoxSearch::rebuild() {
     const std::size_t count = slot_.size(), blocks = proxy_.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto s = static_cast<std::size_t>(slot_[i]);
-        sorted_[i] = {low_x_[s], low_y_[s], high_x_[s], high_y_[s]};
-    }
+    for (std::size_t i = 0; i < count; ++i) sorted_[i] = at(static_cast<std::size_t>(slot_[i]));
     const auto by = [this](auto middle) {
         return [this, middle](int i, int j) {
             const float p = middle(sorted_[i]), q = middle(sorted_[j]);

@@ -6,6 +6,7 @@
 
 #include <box2d/b2_dynamic_tree.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -58,19 +59,28 @@ class BoxSearch {
     /// The same for a placed box, which is not found itself.
     template <class Found>
     void neighbours(int index, Found found) const {
-        const std::size_t i = slot(index);
-        search({low_x_[i], low_y_[i], high_x_[i], high_y_[i]}, [index, &found](int other) {
+        search(at(slot(index)), [index, &found](int other) {
             if (other != index) found(other);
         });
     }
 
   private:
+    static constexpr std::size_t kGroup = 4;   // [-] boxes that are compared at once
     static constexpr std::size_t kBlock = 64;  // [-] boxes per block
     using Rounded = RoundedBox;
+    using Four = std::array<float, kGroup>;
+    struct alignas(16) Group {
+        Four low_x, low_y, high_x, high_y;
+    };
     static b2AABB aabb_of(const Rounded& box);
     std::size_t slot(int index) const {
         const auto i = static_cast<std::size_t>(index);
         return tree_ ? static_cast<std::size_t>(slot_[i]) : i;
+    }
+    Rounded at(std::size_t slot) const {
+        const Group& g = groups_[slot / kGroup];
+        const std::size_t k = slot % kGroup;
+        return {g.low_x[k], g.low_y[k], g.high_x[k], g.high_y[k]};
     }
     void set(std::size_t slot, const Rounded& box);
     void rebuild();
@@ -89,8 +99,8 @@ class BoxSearch {
         bool QueryCallback(int proxy);  // the name that Box2D requires
     };
 
-    // One entry per slot; padded with boxes that overlap nothing.
-    std::vector<float> low_x_, low_y_, high_x_, high_y_;
+    // The boxes by slot, padded with some that overlap nothing.
+    std::vector<Group> groups_;
     // With the tree: the slot of each box, the box in each slot, and the proxy of each block of slots.
     std::unique_ptr<b2DynamicTree> tree_;
     std::vector<int> slot_, index_, proxy_;
@@ -102,14 +112,14 @@ template <class Found>
 bool BoxSearch::BlockVisitor<Found>::QueryCallback(int proxy) {
     const auto block = reinterpret_cast<std::uintptr_t>(boxes.tree_->GetUserData(proxy));
     auto by_slot = [this](int slot) { found(boxes.index_[slot]); };
-    boxes.scan(block * kBlock, (block + 1) * kBlock, box, by_slot);
+    boxes.scan(block * (kBlock / kGroup), (block + 1) * (kBlock / kGroup), box, by_slot);
     return true;
 }
 
 template <class Found>
 void BoxSearch::search(const Rounded& box, Found found) const {
     if (!tree_) {
-        scan(0, low_x_.size(), box, found);
+        scan(0, groups_.size(), box, found);
         return;
     }
     BlockVisitor<Found> visitor{*this, box, found};
@@ -118,23 +128,28 @@ void BoxSearch::search(const Rounded& box, Found found) const {
 
 template <class Found>
 void BoxSearch::scan(std::size_t begin, std::size_t end, const Rounded& box, Found& found) const {
+    const Group* const groups = groups_.data();
 #if defined(__SSE2__)
     const __m128 lx = _mm_set1_ps(box.low_x), ly = _mm_set1_ps(box.low_y);
     const __m128 hx = _mm_set1_ps(box.high_x), hy = _mm_set1_ps(box.high_y);
-    for (std::size_t i = begin; i < end; i += 4) {
-        const __m128 in_x = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(&low_x_[i]), hx),
-                                       _mm_cmple_ps(lx, _mm_loadu_ps(&high_x_[i])));
-        const __m128 in_y = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(&low_y_[i]), hy),
-                                       _mm_cmple_ps(ly, _mm_loadu_ps(&high_y_[i])));
+    for (std::size_t i = begin; i < end; ++i) {
+        const Group& g = groups[i];
+        const __m128 in_x = _mm_and_ps(_mm_cmple_ps(_mm_load_ps(g.low_x.data()), hx),
+                                       _mm_cmple_ps(lx, _mm_load_ps(g.high_x.data())));
+        const __m128 in_y = _mm_and_ps(_mm_cmple_ps(_mm_load_ps(g.low_y.data()), hy),
+                                       _mm_cmple_ps(ly, _mm_load_ps(g.high_y.data())));
         for (auto mask = static_cast<unsigned>(_mm_movemask_ps(_mm_and_ps(in_x, in_y))); mask != 0;
              mask &= mask - 1)
-            found(static_cast<int>(i) + __builtin_ctz(mask));
+            found(static_cast<int>(i * kGroup) + __builtin_ctz(mask));
     }
 #else
-    for (std::size_t i = begin; i < end; ++i)
-        if (low_x_[i] <= box.high_x && box.low_x <= high_x_[i] && low_y_[i] <= box.high_y &&
-            box.low_y <= high_y_[i])
-            found(static_cast<int>(i));
+    for (std::size_t i = begin; i < end; ++i) {
+        const Group& g = groups[i];
+        for (std::size_t k = 0; k < kGroup; ++k)
+            if (g.low_x[k] <= box.high_x && box.low_x <= g.high_x[k] && g.low_y[k] <= box.high_y &&
+                box.low_y <= g.high_y[k])
+                found(static_cast<int>(i * kGroup + k));
+    }
 #endif
 }
 

@@ -19,14 +19,18 @@ struct Gap {
     Vec3 n;
 };
 
-Gap gap_of(const ClusterBall& p, const ClusterBall& q, double R) {
+Gap gap_in_space(const ClusterBall& p, const ClusterBall& q, double R) {
     const Vec3 apart = q.r - p.r;
     const double distance = apart.z() == 0.0 ? length(planar(apart)) : length3(apart);
-    Gap near{distance - 2.0 * R, 0.0, apart / distance};
-    // Whether balls touch is decided only here: a gap within the rounding of the positions counts as touching.
-    if (near.gap <= kTouchUlp * R) near.gap = 0.0;
-    near.closing = dot3(near.n, p.v - q.v);
-    return near;
+    const Vec3 n = apart / distance;
+    return {distance - 2.0 * R, dot3(n, p.v - q.v), n};
+}
+
+Gap gap_on_cloth(const ClusterBall& p, const ClusterBall& q, double R) {
+    const Vec2 apart = planar(q.r) - planar(p.r);
+    const double distance = length(apart);
+    const Vec2 n = apart / distance;
+    return {distance - 2.0 * R, dot(n, planar(p.v) - planar(q.v)), {n.x(), n.y(), 0.0}};
 }
 
 // Falls smoothly from 1 for near balls to 0 for those that are just not within reach.
@@ -41,10 +45,14 @@ double nearness(double gap, double reach) {
 }  // namespace
 
 Clusters::Clusters(const Plan& plan, const Balls& balls, const Detector& detector, ClustersMemory& memory)
-    : Borrowed(memory), plan_(plan), balls_(balls), detector_(detector) {}
+    : Borrowed(memory),
+      plan_(plan),
+      flights_(plan.in_force(Effect::kAirborne)),
+      balls_(balls),
+      detector_(detector) {}
 
 ClusterBall Clusters::member(int ball) const {
-    if (flies(balls_.segment(ball).state)) {
+    if (flights_ && flies(balls_.segment(ball).state)) {
         const Placed at = balls_.placed(ball);
         return {ball, at.position, at.velocity, balls_.spin(ball)};
     }
@@ -83,6 +91,12 @@ void Clusters::collect_at(int a, int b, double v_n) {
     const double R = balls_.radius(a);  // equal for all, but perhaps not that in [balls]
     const double time = plan_.clusters == ClusterModel::kCompliant ? contact_time(v_n) : 0.0;
     const auto reach = [&](const Gap& near) { return time * (std::max(0.0, near.closing) + v_n); };
+    const auto gap_of = [this, R](const ClusterBall& p, const ClusterBall& q) {
+        Gap near = flights_ ? gap_in_space(p, q, R) : gap_on_cloth(p, q, R);
+        // Whether balls touch is decided only here: a gap within the rounding of the positions counts as touching.
+        if (near.gap <= kTouchUlp * R) near.gap = 0.0;
+        return near;
+    };
     members_.clear();
     contacts_.clear();
     members_.push_back(member(a));
@@ -98,15 +112,14 @@ void Clusters::collect_at(int a, int b, double v_n) {
             if (known || !(plan_.sizes[q] == plan_.sizes[a])) return;
             ++looks_;
             const ClusterBall candidate = member(q);
-            const Gap near = gap_of(here, candidate, R);
+            const Gap near = gap_of(here, candidate);
             if (near.gap <= reach(near)) members_.push_back(candidate);
         });
     }
-    in_space_ =
-        plan_.in_force(Effect::kAirborne) &&
-        (plan_.ball_ball->free || std::any_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
-             return flies(balls_.segment(m.ball).state);
-         }));
+    in_space_ = flights_ && (plan_.ball_ball->free ||
+                             std::any_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
+                                 return flies(balls_.segment(m.ball).state);
+                             }));
     if (members_.size() < 3) return;
     std::sort(members_.begin(), members_.end(), [](const ClusterBall& p, const ClusterBall& q) {
         const Vec2 here = planar(p.r), there = planar(q.r);
@@ -114,7 +127,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
     });
     for (std::size_t i = 0; i < members_.size(); ++i) {
         for (std::size_t j = i + 1; j < members_.size(); ++j) {
-            const Gap near = gap_of(members_[i], members_[j], R);
+            const Gap near = gap_of(members_[i], members_[j]);
             if (near.gap <= 2.0 * reach(near))
                 contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap,
                                      nearness(near.gap, reach(near))});

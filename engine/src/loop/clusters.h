@@ -48,6 +48,7 @@ class Clusters : private Borrowed<ClustersMemory> {
     ClusterBall member(int ball) const;
 
     const Plan& plan_;
+    const bool flights_;  // balls may leave the cloth
     const Balls& balls_;
     const Detector& detector_;
     std::int64_t looks_ = 0;

@@ -35,9 +35,11 @@ void extend(double r, double v, double a, double T, double margin, double& low, 
 // Box that contains the ball from the time `from` until `duration` later; the relative margin covers rounding.
 Box Detector::swept(int ball, double from, double duration) const {
     const Segment& s = balls_.segment(ball);
-    const Vec3 r = position_at(s, from - s.start), v = velocity_at(s, from - s.start);
+    const bool whole = from == s.start;
+    const Vec2 r = planar(whole ? s.r : position_at(s, from - s.start)),
+               v = planar(whole ? s.v : velocity_at(s, from - s.start));
     // A ball in the air may meet a nose at up to sqrt(2) R (nose_reach).
-    const double R = flies(s.state) ? 1.5 * balls_.radius(ball) : balls_.radius(ball),
+    const double R = flights_ && flies(s.state) ? 1.5 * balls_.radius(ball) : balls_.radius(ball),
                  margin = R * (1.0 + kBoxShare) + kBoxShare * (std::abs(r.x()) + std::abs(r.y()));
     Box box{};
     extend(r.x(), v.x(), s.a.x(), duration, margin, box.low_x, box.high_x);
@@ -115,7 +117,7 @@ void Detector::search_pairs(int ball) {
 // one of its ends. The bound only increases; no result depends on its value.
 void Detector::bound_speed(const Segment& s) {
     fastest_ = std::max(fastest_, length(planar(s.v)));
-    if (flies(s.state))
+    if (flights_ && flies(s.state))
         fastest_ = std::max(fastest_, length3(s.v) + std::sqrt(2.0 * plan_.gravity * s.r.z()));
     if (s.a == Vec2::Zero()) return;
     fastest_ = std::max(fastest_, s.duration < kNever ? length(planar(velocity_at(s, s.duration))) : kNever);

@@ -62,8 +62,9 @@ void Run::start_balls() {
     const bool flies = plan_.in_force(Effect::kAirborne);
     for (int i = 0; i < balls_.count(); ++i) {
         const BallStart& ball = scene.ball[i];
-        const auto begins = flies ? free_segment : start_segment;
-        log_.begin(i, begins(0.0, ball.position, ball.velocity, ball.spin, balls_.motion(i)));
+        const MotionParams& motion = balls_.motion(i);
+        log_.begin(i, flies ? free_segment(0.0, ball.position, ball.velocity, ball.spin, motion)
+                            : start_segment(0.0, ball.position, ball.velocity, ball.spin, motion));
     }
     for (int i = 0; scene.cue && i < balls_.count(); ++i) {
         if (log_.id(i) != scene.cue->ball) continue;

@@ -77,7 +77,7 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
     const Segment& s = balls_.segment(ball);
     if (is_gone(s.state) || parts_.empty()) return;
     find_parts(whole);
-    if (flies(s.state)) {
+    if (flights_ && flies(s.state)) {
         search_table_in_air(ball);
         return;
     }
