@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 if TYPE_CHECKING:
+    from carom._record import Record
     from carom._scene import Scene
 
 _PROGRAM = os.path.join(os.path.dirname(__file__), "bin", "carom")
@@ -27,29 +28,49 @@ def _column(values: list[str]) -> Any:
         return values
 
 
+def _run(command: Sequence[str], folder: str) -> str:
+    """What the program prints, run in a folder whose name is left out of its messages."""
+    import subprocess
+
+    done = subprocess.run(
+        [_PROGRAM, *command], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False
+    )
+    if done.returncode == 2:
+        raise ValueError(done.stderr.strip().replace(f"{folder}{os.sep}", ""))
+    if done.returncode != 0:
+        raise RuntimeError(done.stderr.strip() or f"carom ended with the status {done.returncode}")
+    return done.stdout
+
+
+def page(record: Record, second: Record | None) -> str:
+    """The page of `carom view`."""
+    import tempfile
+
+    with tempfile.TemporaryDirectory(prefix="carom-") as folder:
+        shots = {"shot.json": record} | ({"second.json": second} if second is not None else {})
+        for name, shot in shots.items():
+            shot.save(os.path.join(folder, name))
+        _run(["view", *shots, "--no-margin", "-o", "shot.html"], folder)
+        with open(os.path.join(folder, "shot.html"), encoding="utf-8") as file:
+            return file.read()
+
+
 def _report(arguments: Sequence[str], scene: Scene | None, table: bool) -> dict[str, Any]:
     """Runs a command with --json, and with --csv where `table` says so: then its columns stand under "table"."""
     import csv
     import json
-    import subprocess
     import tempfile
 
     with tempfile.TemporaryDirectory(prefix="carom-") as folder:
-        command = [_PROGRAM, *arguments, "--json"]
+        command = [*arguments, "--json"]
         if scene is not None:
-            path = os.path.join(folder, "scene.toml")
-            with open(path, "w", encoding="utf-8") as file:
+            with open(os.path.join(folder, "scene.toml"), "w", encoding="utf-8") as file:
                 file.write(scene.source)
-            command.append(path)
+            command.append("scene.toml")
         rows = os.path.join(folder, "table.csv")
         if table:
             command += ["--csv", rows]
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
-        if done.returncode == 2:
-            raise ValueError(done.stderr.strip().replace(f"{folder}{os.sep}", ""))
-        if done.returncode != 0:
-            raise RuntimeError(done.stderr.strip() or f"carom ended with the status {done.returncode}")
-        result: dict[str, Any] = json.loads(done.stdout)
+        result: dict[str, Any] = json.loads(_run(command, folder))
         if table:
             with open(rows, encoding="utf-8", newline="") as file:
                 header, *lines = csv.reader(file)

@@ -123,7 +123,8 @@ class Record:
     @property
     def events(self) -> NDArray[np.void]:
         """The events in order, a structured view without a copy: time [s], type (`EVENT_TYPES`), a (ball), b (the other ball, or
-        the number of the cushion, jaw or pocket; -1 for none), detail. Columns: `events["time"]`."""
+        the number of the cushion, jaw or pocket; -1 for none), detail, slow (a slow contact in
+        the air). Columns: `events["time"]`."""
         return _carom.events_of(self._native).view(_EVENT)
 
     def event_list(self) -> list[Event]:
@@ -191,7 +192,7 @@ class Record:
     def to_pandas(self, what: Literal["events", "segments"] = "events") -> pandas.DataFrame:
         """The events, or the motion segments of all balls, as a DataFrame; a copy. Needs pandas (extra [notebook]).
 
-        "events": time [s], type, a and b (ids; "" for nothing), detail
+        "events": time [s], type, a and b (ids; "" for nothing), detail, slow
         "segments": ball, and what `segments` has, vectors as columns: rx, ry, rz, vx, ..., ax, ay, dwx, dwy
 
         Raises ValueError for anything else.
@@ -202,10 +203,17 @@ class Record:
             raise ValueError(f"what={what!r}: expected events or segments")
         return _tables.events(self) if what == "events" else _tables.segments(self)
 
+    def page(self, second: Record | None = None) -> str:
+        """The page of `carom view`, as HTML that loads nothing: it plays the shot, with events, trails and charts, and another one
+        over or beside it. Raises RuntimeError where the program cannot run."""
+        from carom import _program
+
+        return _program.page(self, second)
+
     def _repr_html_(self) -> str:
         from carom import _show
 
-        return _show.page(self)
+        return _show.shown(self)
 
     def _repr_png_(self) -> bytes | None:
         from carom import _show

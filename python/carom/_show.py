@@ -1,4 +1,4 @@
-"""How a record shows itself in a notebook. The page of a shot will stand here in place of the picture."""
+"""How a record shows itself in a notebook: the page that plays it, or a picture where there is no program."""
 
 from __future__ import annotations
 
@@ -29,9 +29,18 @@ def picture(record: Record) -> bytes | None:
     return out.getvalue()
 
 
-def page(record: Record) -> str:
-    """The picture with what it shows, as HTML without a reference to anything outside."""
+def shown(record: Record) -> str:
+    """HTML without a reference to anything outside: a frame with the page of the shot. Its scripts see nothing of the notebook."""
     text = html.escape(repr(record)[len("<carom.") : -1])
+    try:
+        inside = html.escape(record.page())
+    except (OSError, RuntimeError):
+        return _pictured(record, text)
+    style = "width:100%;height:620px;border:0"
+    return f'<iframe title="{text}" style="{style}" sandbox="allow-scripts" srcdoc="{inside}"></iframe>'
+
+
+def _pictured(record: Record, text: str) -> str:
     drawn = picture(record)
     if drawn is None:
         return f"<p>{text} (a picture needs matplotlib: <code>pip install 'carom-billiards[notebook]'</code>)</p>"

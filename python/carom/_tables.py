@@ -31,6 +31,7 @@ def events(record: Record) -> pandas.DataFrame:
             "a": [event.a for event in named],
             "b": [event.b for event in named],
             "detail": view["detail"],
+            "slow": view["slow"],
         }
     )
 

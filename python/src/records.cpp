@@ -37,11 +37,9 @@ Bytes bytes_of(const std::vector<T>& list, nb::handle owner) {
 static_assert(sizeof(EventType) == 1 && sizeof(MotionState) == 1 && sizeof(bool) == 1 && sizeof(int) == 4);
 
 std::vector<Member> event_members() {
-    return {{"time", "<f8", offsetof(Event, time)},
-            {"type", "u1", offsetof(Event, type)},
-            {"a", "<i4", offsetof(Event, a)},
-            {"b", "<i4", offsetof(Event, b)},
-            {"detail", "<i4", offsetof(Event, detail)}};
+    return {{"time", "<f8", offsetof(Event, time)},     {"type", "u1", offsetof(Event, type)},
+            {"a", "<i4", offsetof(Event, a)},           {"b", "<i4", offsetof(Event, b)},
+            {"detail", "<i4", offsetof(Event, detail)}, {"slow", "?", offsetof(Event, slow)}};
 }
 
 std::vector<Member> segment_members() {

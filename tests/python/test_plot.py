@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import html
 import re
 import subprocess
 import sys
@@ -109,12 +110,19 @@ def test_speeds_and_energies_are_those_of_the_states(pyplot):
     assert first == pytest.approx(0.5 * record.masses[0] * 4.0, rel=1e-12)
 
 
-def test_a_notebook_shows_the_picture_and_nothing_from_outside(pyplot):
+def test_a_notebook_shows_the_page_and_nothing_from_outside(pyplot, monkeypatch):
     scene = carom.Scene(**HEAD_ON | {"ball": [{"id": "<b>", "velocity": [0, 2.0]}]})
     record = carom.simulate(scene, until=0.5)
-    page = record._repr_html_()
-    assert "1 balls" in page and not re.search(r"<b>|https?:|<script", page)
-    png = base64.b64decode(re.search(r'src="data:image/png;base64,([^"]+)"', page)[1])
+    shown = record._repr_html_()
+    assert "1 balls" in shown and not re.search(r"<b>|https?:|<script", shown)
+    inside = re.fullmatch(r'<iframe [^>]* sandbox="allow-scripts" srcdoc="([^"]+)"></iframe>', shown)[1]
+    assert html.unescape(inside) == record.page() and not re.search(r"https?://(?!www.w3.org/2000/svg)", record.page())
+    assert record.page(record).count('<script type="application/json"') == 3
+
+    monkeypatch.setattr(carom._program, "_PROGRAM", "/nowhere/carom")
+    shown = record._repr_html_()
+    assert "1 balls" in shown and not re.search(r"<b>|https?:|<script", shown)
+    png = base64.b64decode(re.search(r'src="data:image/png;base64,([^"]+)"', shown)[1])
     assert png == record._repr_png_() and png.startswith(b"\x89PNG")
     assert pyplot.get_fignums() == []
 
@@ -125,6 +133,7 @@ import sys
 sys.modules["matplotlib"] = None
 sys.modules["pandas"] = None
 import carom
+carom._program._PROGRAM = "/nowhere/carom"
 record = carom.simulate(carom.Scene.load({str(SOURCE / "scenes/draw.toml")!r}))
 assert record._repr_png_() is None
 print(record._repr_html_())

@@ -150,4 +150,14 @@ double flight_over_line(const Flight& f, const Vec2& from, const Vec2& direction
     return t <= f.horizon && foot >= 0.0 && foot <= line_length ? t : kNever;
 }
 
+double flight_beyond(const Rectangle& bed, const Vec2& r, const Vec2& v) {
+    double first = kNever;
+    for (const int axis : {0, 1}) {
+        if (v[axis] == 0.0) continue;
+        const double border = v[axis] > 0.0 ? bed[axis + 2] : bed[axis];
+        first = std::min(first, std::max(0.0, (border - r[axis]) / v[axis]));
+    }
+    return first;
+}
+
 }  // namespace carom

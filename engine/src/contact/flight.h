@@ -32,4 +32,7 @@ double flight_to_circle(const Flight& ball, const Vec3& center, double radius, d
 /// Time until a centre above it passes from one side of the line to the other between its ends; kNever if it does not.
 double flight_over_line(const Flight& ball, const Vec2& from, const Vec2& direction, double line_length);
 
+/// Time until a centre that moves straight on leaves the rectangle; kNever if it rests.
+double flight_beyond(const Rectangle& bed, const Vec2& r, const Vec2& v);
+
 }  // namespace carom

@@ -31,6 +31,7 @@ double time_to_edge(const Vec2& r, const Vec2& v, const Vec2& center, double rad
 }
 
 bool is_bed(const Table& table, const Pocket& pocket, const Vec2& here) {
+    if (table.bed) return is_inside(*table.bed, here);
     const Vec2 c = pocket.center, size(table.width, table.length);
     const Vec2 from = c - table.corner, to = table.corner + size - c;
     const bool within = from.x() >= 0.0 && from.y() >= 0.0 && to.x() >= 0.0 && to.y() >= 0.0;

@@ -122,6 +122,7 @@ class Detector : private Borrowed<DetectorMemory> {
     double time_to_flight(int a, int b, double from) const;
     void search_table_in_air(int ball);
     double time_over_pocket(int pocket, const Path& path) const;
+    bool over_pocket(const Vec2& here) const;
 
     /// The duration from one time to another, rounded up.
     static double span(double from, double to) { return (to - from) + 0x1p-50 * to; }

@@ -39,6 +39,12 @@ double Detector::time_over_pocket(int index, const Path& path) const {
     return back || leaves > path.horizon ? kNever : leaves;
 }
 
+bool Detector::over_pocket(const Vec2& here) const {
+    const std::vector<Pocket>& pockets = plan_.geometry.pockets;
+    return std::any_of(pockets.begin(), pockets.end(),
+                       [&here](const Pocket& p) { return length(here - p.center) < p.radius; });
+}
+
 // It meets noses at their height, flies over them and is then out (where the table has an end), and meets a pocket only at its far
 // side. Where it lands is its own transition.
 void Detector::search_table_in_air(int ball) {
@@ -47,11 +53,15 @@ void Detector::search_table_in_air(int ball) {
     const Flight f = flight(ball, start);
     const Path p = path(ball, start);
     const Table& table = plan_.scene.table;
-    const bool ends = table.width > 0.0 && table.length > 0.0;
+    const bool ends = !table.bed && table.width > 0.0 && table.length > 0.0;
     const Contact out{ball, With::kOut, -1};
     const auto leaves = [&](double t) {
         if (ends && t < kNever) take_first({start + t, out}, first);
     };
+    if (table.bed) {
+        const double t = flight_beyond(*table.bed, p.r, p.v);
+        if (t <= p.horizon && !over_pocket(p.r + t * p.v)) take_first({start + t, out}, first);
+    }
     for (const int part : near_) {
         const Contact contact = parts_[part].of(ball);
         double t = kNever;
@@ -64,7 +74,8 @@ void Detector::search_table_in_air(int ball) {
             const Nose& n = plan_.geometry.noses[contact.other];
             t = flight_to_circle(f, {n.center.x(), n.center.y(), n.height}, n.radius,
                                  nose_reach(R, n.height, n.inset));
-            if (n.radius > 0.0) leaves(time_to_circle(p, n.center, n.radius));
+            const double over = n.radius > 0.0 ? time_to_circle(p, n.center, n.radius) : kNever;
+            if (over < kNever && (ends || table.bed)) take_first({start + over, out}, first);
         } else {
             t = time_over_pocket(contact.other, p);
         }

@@ -53,6 +53,8 @@ class Log : private Borrowed<LogMemory> {
         events_.push_back({balls_.now(), type, ball, partner, detail});
         quiet_rounds_ = 0;
     }
+    /// The last event was a slow contact.
+    void mark_slow() { events_.back().slow = true; }
     /// An event of a ball and a part of the table, or of two balls.
     void event(EventType type, const Contact& contact) {
         event(type, contact.ball, event_partner(contact, geometry_), event_detail(contact));

@@ -81,13 +81,14 @@ void Resolver::free_balls(int a, int b) {
         plan_.sizes[one] == plan_.sizes[two] && cluster(a, b, v_n))
         return;
     const double parting = parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity);
-    if (pair.balls.e_b * v_n < parting && balances(a, b))
+    const bool slow = pair.balls.e_b * v_n < parting;
+    if (slow && balances(a, b))
         log_.fail(fmt::format(
             "balls {} and {} balance on each other; move one of them by a thousandth of a millimetre",
             log_.id(a), log_.id(b)));
     {
         const Stopwatch watch(kernel_ns_);
-        if (pair.balls.e_b * v_n < parting)
+        if (slow)
             part_slowly(pair, n, lies(one), lies(two), parting, ball1, ball2);
         else
             hit_ball(pair, n, ball1, ball2);
@@ -99,6 +100,7 @@ void Resolver::free_balls(int a, int b) {
     resting_.release(one);
     resting_.release(two);
     log_.event(EventType::kBallBall, a, b);
+    if (slow) log_.mark_slow();
     const auto here = [&](int ball) {
         return lies(ball) ? balls_.position(ball) : balls_.placed(ball).position;
     };
@@ -129,10 +131,11 @@ void Resolver::cushion_in_air(const Contact& contact) {
     Vec3 n(level * away.x(), level * away.y(), at.position.z() - height);
     n /= length3(n);
     Velocities after{at.velocity, balls_.spin(ball)};
-    hit_nose(plan_.balls, balls_.radius(ball), model, n, parting_speed(balls_.radius(ball), plan_.gravity),
-             after);
+    const bool slow = hit_nose(plan_.balls, balls_.radius(ball), model, n,
+                               parting_speed(balls_.radius(ball), plan_.gravity), after);
     if (cost_ != nullptr) cost_->method = model.name;
     log_.event(jaw ? EventType::kBallJaw : EventType::kBallCushion, contact);
+    if (slow) log_.mark_slow();
     go_on(ball, at.position, after);
 }
 

@@ -75,7 +75,7 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
     Candidate& first = mover_[ball].table;
     first = {};
     const Segment& s = balls_.segment(ball);
-    if (is_gone(s.state) || parts_.empty()) return;
+    if (is_gone(s.state) || (parts_.empty() && !plan_.scene.table.bed)) return;
     find_parts(whole);
     if (flights_ && flies(s.state)) {
         search_table_in_air(ball);

@@ -94,24 +94,25 @@ void part_slowly(const FreePair& pair, const Vec3& n, bool lies1, bool lies2, do
     if (lies2) ball2.v.z() = 0.0;
 }
 
-void hit_nose(const BallParams& balls, double R, const CushionModelInfo& model, const Vec3& n, double parting,
+bool hit_nose(const BallParams& balls, double R, const CushionModelInfo& model, const Vec3& n, double parting,
               Velocities& ball) {
     const double v_n = -dot3(ball.v, n);
-    if (!(v_n > 0.0)) return;
+    if (!(v_n > 0.0)) return false;
     const double e_c = cushion_restitution(balls, v_n);
     if (e_c * v_n < parting) {
         ball.v += (v_n + parting) * n;
-        return;
+        return true;
     }
     const Vec3 surface = ball.v - R * cross3(ball.w, n);
     const Vec3 u = surface - dot3(surface, n) * n;
     const double slip = length3(u);
     ball.v += (1.0 + e_c) * v_n * n;
-    if (model.grip == nullptr || !(slip > 0.0)) return;
+    if (model.grip == nullptr || !(slip > 0.0)) return false;
     const double J_t = model.grip(e_c, cushion_friction(balls, slip), v_n, slip);
     const Vec3 j = (J_t / slip) * u;
     ball.v -= j;
     ball.w += 2.5 / R * cross3(n, j);
+    return false;
 }
 
 double hop_speed(const BallParams& balls, const MotionParams& motion, const CushionModelInfo& model,

@@ -179,6 +179,7 @@ Event read_event(const JsonObject& all, Record& record) {
         event.detail =
             index_below(all.at("nose"), 0, 2 * record.table.cushions.size() + record.table.jaws.size());
     }
+    event.slow = all.has("slow") && all.at("slow").boolean();
     return event;
 }
 
@@ -198,8 +199,8 @@ void read_events(const JsonValue& list, const Format& format, Record& record) {
     record.events.reserve(count);
     if (format.profiled) record.costs.reserve(count);
     list.each([&](const JsonValue& item, std::size_t i) {
-        const JsonObject all(item, {"time", "type", "a", "b", "balls", "nose", "detect_ns", "resolve_ns",
-                                    "kernel_ns", "steps", "method", "queue_ns"});
+        const JsonObject all(item, {"time", "type", "a", "b", "balls", "nose", "slow", "detect_ns",
+                                    "resolve_ns", "kernel_ns", "steps", "method", "queue_ns"});
         record.events.push_back(read_event(all, record));
         if (i > 0 && record.events[i].time < record.events[i - 1].time) {
             item.fail("happens before the event in front of it");

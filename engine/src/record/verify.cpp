@@ -104,8 +104,7 @@ class Checker {
         double energy = 0.0;
         for (std::size_t k = event_ + 1; k-- > 0 && record_.events[k].time == time;) {
             const Event& e = record_.events[k];
-            const Partner with = kind(e.type).partner;
-            if (kind(e.type).phase != EventPhase::kImpact || with == Partner::kPocket) continue;
+            if (!e.slow) continue;
             const double parting = parting_speed(R(static_cast<std::size_t>(e.a)), record_.gravity);
             energy += mass(record_, e.a) * parting * parting;
         }

@@ -80,6 +80,7 @@ OrderedJson event_json(const Record& record, const Event& event, const EventCost
         out["balls"] = record.clusters[event.detail];
     else if (event.detail >= 0)
         out["nose"] = event.detail;
+    if (event.slow) out["slow"] = true;
     if (cost != nullptr) {
         out["detect_ns"] = cost->detect_ns;
         out["resolve_ns"] = cost->resolve_ns;

@@ -202,6 +202,26 @@ void check_vertical(const Section& top, const Scene& scene) {
             "physics.ball_ball = \"{}\" lifts balls, which physics.vertical = \"drop\" does not simulate; "
             "remove one of the two",
             scene.physics.ball_ball->name);
+    if (scene.table.bed)
+        top.fail(
+            top.where("table", "bed"),
+            "table.bed says where balls leave the table, but with physics.vertical = \"drop\" none does; "
+            "remove one of the two");
+}
+
+/// Refuses a bed without a surface, and balls in the air beside it.
+void check_bed(const Section& top, const Scene& scene) {
+    if (!scene.table.bed) return;
+    const Rectangle& bed = *scene.table.bed;
+    if (!(bed[0] < bed[2]) || !(bed[1] < bed[3]))
+        top.fail(top.where("table", "bed"),
+                 "table.bed = [{}, {}, {}, {}] has no surface; give the corner of smallest x and y, then the "
+                 "opposite one",
+                 bed[0], bed[1], bed[2], bed[3]);
+    for (const BallStart& ball : scene.ball) {
+        if (!ball.flies() || is_inside(bed, planar(ball.position))) continue;
+        top.fail(ball.where, "ball {} starts in the air beside table.bed; move it", in_quotes(ball.id));
+    }
 }
 
 /// Whether a ball of the scene may ever leave the cloth.
@@ -272,6 +292,7 @@ void check_rest(const Section& top, const Scene& scene) {
 void check_numbers(const Section& top, const Scene& scene, Change change) {
     check_cloth(top, scene);
     check_vertical(top, scene);
+    check_bed(top, scene);
     check_noses(top, scene);
     check_sizes(top, scene);
     check_cushion_model(top, scene);

@@ -80,6 +80,7 @@ void read_table(const Section& top, Scene& scene) {
     if (s) s->read(kTableFields, named);
     if (!custom) scene.table = make_table(named.preset);
     scene.table.cloth = named.cloth;
+    scene.table.bed = named.bed;
     if (named.cloth && !top.has("balls", "mu_r")) scene.balls.mu_r = cloth_mu_r(*named.cloth);
     if (!custom) return;
     const double height = kNoseShare * scene.balls.R;

@@ -75,7 +75,9 @@ bool is_preset(const Table& table) {
 void write_table(Out out, const Table& table) {
     if (is_preset(table)) return write_fields(out, "[table]\n", kTableFields, table);
     fmt::format_to(out, "[table]\n{}", table.cushions.empty() ? "cushion = []\n" : "");
-    if (table.cloth) fmt::format_to(out, "cloth = {}\n", quote(*table.cloth));
+    for (const Field<Table>& f : kTableFields)
+        if (f.key != std::string_view("preset") && is_written(kTableFields, f, table))
+            fmt::format_to(out, "{} = {}\n", f.key, text_of(f.value(table)));
     for (const Cushion& c : table.cushions) write_fields(out, "[[table.cushion]]\n", kCushionFields, c);
     for (const Jaw& j : table.jaws) write_fields(out, "[[table.jaw]]\n", kJawFields, j);
     for (const Pocket& p : table.pockets) write_fields(out, "[[table.pocket]]\n", kPocketFields, p);

@@ -56,6 +56,7 @@ void check_parts(const Scene& scene, const char* path, const Field<Part> (&field
 void check_table(const Scene& scene) {
     Table named;
     named.cloth = scene.table.cloth;
+    named.bed = scene.table.bed;
     named.preset = scene.table.preset.empty() ? kStandardTable : scene.table.preset;
     Section(scene.file, "table").check(kTableFields, named);
     check_parts(scene, "table.cushion", kCushionFields, scene.table.cushions);

@@ -48,7 +48,8 @@ void part_slowly(const FreePair& pair, const Vec3& n, bool lies1, bool lies2, do
 /// A ball in the air at a nose, equation (A6).
 /// @param n  unit, from the nose to the ball's centre
 /// @param parting  [m/s] speed at which it parts where its restitution would give less
-void hit_nose(const BallParams& balls, double R, const CushionModelInfo& model, const Vec3& n, double parting,
+/// @return whether it would
+bool hit_nose(const BallParams& balls, double R, const CushionModelInfo& model, const Vec3& n, double parting,
               Velocities& ball);
 
 /// [m/s] Upward speed of a ball that lay on the cloth when it met a nose: what (A6) gives, or the share e_h of it where that

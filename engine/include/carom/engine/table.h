@@ -87,6 +87,8 @@ struct Table {
     std::vector<Cushion> cushions;
     std::vector<Jaw> jaws;
     std::vector<Pocket> pockets;
+    /// Beyond it a ball in the air is out; nothing: behind any cushion.
+    std::optional<Rectangle> bed = std::nullopt;
     bool operator==(const Table&) const = default;
 };
 inline constexpr const char* kCloths[] = {"club", "tournament", "match_heated"};
@@ -106,6 +108,10 @@ inline constexpr Field<Table> kTableFields[] = {
                           {.files = Files::kRecord}),
     field<&Table::corner>("corner", kCoordinate, "the corner of smallest x and y",
                           {.shape = "[x, y]", .files = Files::kRecord}),
+    field<&Table::bed>(
+        "bed", kCoordinate,
+        "two corners of the playing surface: a ball in the air is out where it leaves it, and no sooner",
+        {.shape = "[x0, y0, x1, y1]", .since = 2, .later = true, .standard = "behind any cushion"}),
 };
 
 /// Foot spot, where racks stand: (w/2, 3l/4) from the table's corner.

@@ -10,6 +10,12 @@ namespace carom {
 using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
 
+/// A rectangle on the table, (low x, low y, high x, high y) [m].
+using Rectangle = Eigen::Matrix<double, 4, 1, Eigen::DontAlign>;
+inline bool is_inside(const Rectangle& r, const Vec2& p) {
+    return p.x() >= r[0] && p.y() >= r[1] && p.x() <= r[2] && p.y() <= r[3];
+}
+
 inline Vec2 planar(const Vec3& a) {
     return {a.x(), a.y()};
 }
