@@ -123,6 +123,14 @@ const int32_t* carom_batch_first_hit(const carom_batch* batch) {
     return array_of(batch, &carom::Batch::first_hit);
 }
 
+const int32_t* carom_batch_contacts(const carom_batch* batch) {
+    return array_of(batch, &carom::Batch::contacts);
+}
+
+const int32_t* carom_batch_approach_cushions(const carom_batch* batch) {
+    return array_of(batch, &carom::Batch::approach_cushions);
+}
+
 const double* carom_batch_x(const carom_batch* batch) {
     return array_of(batch, &carom::Batch::x);
 }

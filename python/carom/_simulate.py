@@ -59,6 +59,8 @@ class Shots(NamedTuple):
     duration: NDArray[np.float64]  # (n,) [s]
     events: NDArray[np.int64]  # (n,)
     first_hit: NDArray[np.int32]  # (n,) the ball that the struck ball met first, or -1
+    contacts: NDArray[np.int32]  # (n,) how many balls it met, each counted once
+    approach_cushions: NDArray[np.int32]  # (n,) how many cushions it met before the second of them, or at all
     xy: NDArray[np.float64]  # (n, b, 2) [m] at the end; of a pocketed ball the pocket, NaN for one that was left out
     pocket: NDArray[np.int32]  # (n, b) the pocket that holds the ball, -2 for one that has left the table, or -1
     fell: NDArray[np.int32]  # (n, b) 0 for the ball that fell first, 1, ..., or -1
@@ -77,6 +79,8 @@ class Shots(NamedTuple):
             self.duration,
             self.events,
             self.first_hit,
+            self.contacts,
+            self.approach_cushions,
             self.xy.reshape(-1),
             self.pocket.reshape(-1),
             self.fell.reshape(-1),
@@ -92,6 +96,8 @@ class Shots(NamedTuple):
             np.empty(n, np.uint8),
             np.empty(n),
             np.empty(n, np.int64),
+            np.empty(n, np.int32),
+            np.empty(n, np.int32),
             np.empty(n, np.int32),
             np.empty((n, b, 2)),
             np.empty((n, b), np.int32),

@@ -31,7 +31,7 @@ struct ShotArrays {
     Flat<std::uint8_t> status;
     Flat<double> duration;
     Flat<std::int64_t> events;
-    Flat<std::int32_t> first_hit;
+    Flat<std::int32_t> first_hit, contacts, approach_cushions;
     Flat<double> xy;
     Flat<std::int32_t> pocket, fell, cushions;
     Flat<std::uint64_t> hash;  ///< empty: not wanted
@@ -42,6 +42,8 @@ struct ShotArrays {
         out.duration = duration.data();
         out.events = events.data();
         out.first_hit = first_hit.data();
+        out.contacts = contacts.data();
+        out.approach_cushions = approach_cushions.data();
         out.x = xy.data();
         out.y = xy.data() + 1;
         out.place_stride = 2;
@@ -172,15 +174,19 @@ void add_batches(nb::module_& m) {
         .def(
             "__init__",
             [](ShotArrays* self, Flat<std::uint8_t> status, Flat<double> duration, Flat<std::int64_t> events,
-               Flat<std::int32_t> first_hit, Flat<double> xy, Flat<std::int32_t> pocket,
+               Flat<std::int32_t> first_hit, Flat<std::int32_t> contacts,
+               Flat<std::int32_t> approach_cushions, Flat<double> xy, Flat<std::int32_t> pocket,
                Flat<std::int32_t> fell, Flat<std::int32_t> cushions, Flat<std::uint64_t> hash) {
                 new (self) ShotArrays{std::move(status),    std::move(duration), std::move(events),
-                                      std::move(first_hit), std::move(xy),       std::move(pocket),
-                                      std::move(fell),      std::move(cushions), std::move(hash)};
+                                      std::move(first_hit), std::move(contacts), std::move(approach_cushions),
+                                      std::move(xy),        std::move(pocket),   std::move(fell),
+                                      std::move(cushions),  std::move(hash)};
             },
             nb::arg("status").noconvert(), nb::arg("duration").noconvert(), nb::arg("events").noconvert(),
-            nb::arg("first_hit").noconvert(), nb::arg("xy").noconvert(), nb::arg("pocket").noconvert(),
-            nb::arg("fell").noconvert(), nb::arg("cushions").noconvert(), nb::arg("hash").noconvert());
+            nb::arg("first_hit").noconvert(), nb::arg("contacts").noconvert(),
+            nb::arg("approach_cushions").noconvert(), nb::arg("xy").noconvert(),
+            nb::arg("pocket").noconvert(), nb::arg("fell").noconvert(), nb::arg("cushions").noconvert(),
+            nb::arg("hash").noconvert());
     m.def("simulate_many", many, nb::arg("scene"), nb::arg("shots"), nb::arg("columns"), nb::arg("absent"),
           nb::arg("until").none(), nb::arg("max_events").none(), nb::arg("threads"), nb::arg("out"));
     nb::class_<NativeSweep>(m, "Sweep")

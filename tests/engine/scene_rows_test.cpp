@@ -53,7 +53,7 @@ static_assert(members<RenderSettings, 2>() == in_rows(kRenderFields));
 static_assert(members<Cushion>() == in_rows(kCushionFields));
 static_assert(members<Jaw>() == in_rows(kJawFields));
 static_assert(members<Pocket>() == in_rows(kPocketFields));
-static_assert(members<Table>() == in_rows(kTableFields) + 3);  // the lists
+static_assert(members<Table, 1>() == in_rows(kTableFields) + 3);  // the lists
 
 // A row is found by its key.
 TEST(Rows, KeysOfASectionDiffer) {

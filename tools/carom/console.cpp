@@ -1,6 +1,8 @@
 // Output, progress and interruption; see console.h.
 #include "console.h"
 
+#include "carom/engine/printable.h"
+
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <sys/ioctl.h>
@@ -69,8 +71,15 @@ std::string& kept_version() {
     return version;
 }
 
-/// An argument as a shell takes it: in quotes where it has to be.
-std::string quoted(const std::string& argument) {
+[[noreturn]] void output_failed() {
+    const int reason = errno;
+    if (reason == EPIPE) throw OutputClosed();
+    throw std::runtime_error(std::string("standard output: ") + std::strerror(reason));
+}
+
+}  // namespace
+
+std::string shell_word(const std::string& argument) {
     const auto plain = [](unsigned char c) {
         return std::isalnum(c) != 0 || std::strchr("-_./=,:+%@", c) != nullptr;
     };
@@ -86,14 +95,6 @@ std::string quoted(const std::string& argument) {
     return out;
 }
 
-[[noreturn]] void output_failed() {
-    const int reason = errno;
-    if (reason == EPIPE) throw OutputClosed();
-    throw std::runtime_error(std::string("standard output: ") + std::strerror(reason));
-}
-
-}  // namespace
-
 const std::string& command_line() {
     return kept_command_line();
 }
@@ -105,7 +106,7 @@ const std::string& program_version() {
 void prepare_process(int argc, char** argv, const char* version) {
     kept_version() = version;
     kept_command_line() = "carom";
-    for (int i = 1; i < argc; ++i) kept_command_line() += " " + quoted(argv[i]);
+    for (int i = 1; i < argc; ++i) kept_command_line() += " " + shell_word(argv[i]);
     // If a standard stream is closed, the first file that is opened would get its number. So /dev/null is opened in its place, in
     // the wrong direction, so that using the stream fails as if it were closed.
     for (int fd = 0; fd <= 2; ++fd) {
@@ -135,7 +136,7 @@ void flush_output() {
 }
 
 void message(std::string_view text) {
-    const std::string line = fmt::format("carom: {}\n", text);
+    const std::string line = fmt::format("carom: {}\n", harmless(text));
     wipe_line();
     std::fwrite(line.data(), 1, line.size(), stderr);
 }

@@ -33,6 +33,9 @@ void prepare_process(int argc, char** argv, const char* version);
 const std::string& command_line();
 const std::string& program_version();
 
+/// An argument as a shell takes it: in quotes where it has to be.
+std::string shell_word(const std::string& argument);
+
 /// "1 frame", "2 frames".
 std::string counted(std::size_t count, std::string_view what);
 

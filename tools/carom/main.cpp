@@ -30,7 +30,7 @@ namespace {
 int run(int argc, char** argv) {
     Options program("carom", "carom, a billiards table simulator");
     program.version = CAROM_VERSION;
-    program.option("--version", {}, "", "Display program version information and exit");
+    program.option("-V,--version", {}, "", "Display program version information and exit");
     program.footer =
         "CAROM_ISA=scalar|v3|v4 in the environment forces the instruction set (default: for "
         "each kernel the fastest one).\n"

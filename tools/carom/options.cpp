@@ -3,9 +3,19 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <numeric>
+#include <string_view>
+#include <system_error>
 #include <type_traits>
+#include <utility>
 
+#include "carom/engine/printable.h"
 #include "console.h"
 
 namespace carom::tools {
@@ -42,12 +52,21 @@ void restrict(CLI::Option& option, CLI::App& app, const Option& row) {
     option.default_str(row.default_text());
 }
 
+/// What is wrong with a number that must be whole and not negative; CLI11 takes -1 for the largest one.
+std::string is_count(const std::string& text) {
+    std::uint64_t number = 0;
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, number);
+    return error == std::errc() && rest == end ? "" : text + ": expected 0 to 18446744073709551615";
+}
+
 template <class T>
 void add_option(CLI::App& app, const Option& row, const std::string& names, T& variable) {
     CLI::Option* option = app.add_option(names, variable, row.text);
     if constexpr (kIsList<T>) option->allow_extra_args(false);
     if constexpr (std::is_same_v<T, std::vector<int>> || std::is_same_v<T, std::vector<double>>)
         option->delimiter(',');
+    if constexpr (std::is_same_v<T, std::uint64_t>) option->check(is_count);
     if (row.range) {
         const auto [least, most] = *row.range;
         constexpr bool kReal = std::is_same_v<T, double> || std::is_same_v<T, std::vector<double>>;
@@ -95,6 +114,90 @@ std::string listed(const std::list<Options>& commands) {
 std::string path_of(const CLI::App& app) {
     const std::vector<CLI::App*> named = app.get_subcommands();
     return app.get_name() + (named.empty() ? "" : " " + path_of(*named.front()));
+}
+
+/// Steps from one word to the other, each a letter more, less, or another one.
+std::size_t edits(std::string_view from, std::string_view to) {
+    std::vector<std::size_t> row(to.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        std::size_t before = std::exchange(row[0], i + 1);
+        for (std::size_t k = 0; k < to.size(); ++k) {
+            const std::size_t changed = before + (from[i] == to[k] ? 0 : 1);
+            before = row[k + 1];
+            row[k + 1] = std::min({changed, row[k] + 1, before + 1});
+        }
+    }
+    return row.back();
+}
+
+/// The arguments in the order that CLI11 wants, the last one first. `carom help [COMMAND]` and `carom version` are `--help` and
+/// `--version`, and a first word that is no command is told apart from an option. @throws UsageError
+std::vector<std::string> with_spelled_help(const Options& program, int argc, char** argv) {
+    std::vector<std::string> words(argv + 1, argv + argc);
+    const auto named = [&program](const std::string& word) {
+        return std::any_of(program.commands.begin(), program.commands.end(),
+                           [&word](const Options& command) { return command.name == word; });
+    };
+    if (!words.empty() && words[0] == "help") {
+        words.erase(words.begin());
+        words.emplace_back("--help");
+    } else if (!words.empty() && words[0] == "version") {
+        words[0] = "--version";
+    } else if (!words.empty() && !words[0].starts_with('-') && !named(words[0])) {
+        const auto nearest = std::min_element(program.commands.begin(), program.commands.end(),
+                                              [&words](const Options& x, const Options& y) {
+                                                  return edits(words[0], x.name) < edits(words[0], y.name);
+                                              });
+        if (std::filesystem::exists(words[0]))
+            throw UsageError(fmt::format("{}: name a command before the file, as in carom simulate {}",
+                                         words[0], words[0]));
+        if (edits(words[0], nearest->name) <= 2)
+            throw UsageError(
+                fmt::format("there is no command {}; did you mean {}?", in_quotes(words[0]), nearest->name));
+        throw UsageError(fmt::format("there is no command {}; there are {}", in_quotes(words[0]),
+                                     listed(program.commands)));
+    }
+    std::reverse(words.begin(), words.end());
+    return words;
+}
+
+/// Refuses files without a name, and two uses of one file: what is written last would be all that is left.
+void check_files(const Options& command, const CLI::App& app) {
+    struct Used {
+        std::string option, path;
+        bool written;
+    };
+    const CLI::App* asked = &app;
+    while (!asked->get_subcommands().empty()) asked = asked->get_subcommands().front();
+    std::vector<Used> files;
+    for (const Option& row : command.rows) {
+        auto* const* const path = std::get_if<std::string*>(&row.target);
+        const bool written = row.value.starts_with("FILE");
+        if (path == nullptr || !(written || row.by_place())) continue;
+        if (written && (*path)->empty() && asked->get_option(row.names.back())->count() > 0)
+            throw UsageError(row.names.front() + ": a file without a name; give it one");
+        if (!(*path)->empty()) files.push_back({row.names.front(), **path, written});
+    }
+    const auto same = [](const std::string& a, const std::string& b) {
+        namespace fs = std::filesystem;
+        std::error_code none;
+        const fs::path x = fs::weakly_canonical(a, none), y = fs::weakly_canonical(b, none);
+        return a == b || (!x.empty() && x == y) || fs::equivalent(a, b, none);
+    };
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        for (std::size_t k = i + 1; k < files.size(); ++k) {
+            const Used &one = files[i], &two = files[k];
+            if (!(one.written || two.written) || one.path.starts_with("/dev/") || !same(one.path, two.path))
+                continue;
+            if (one.written && two.written)
+                throw UsageError(
+                    fmt::format("{} and {} name the same file; give each its own", one.option, two.option));
+            const Used& out = one.written ? one : two;
+            throw UsageError(fmt::format("{} {} would replace what is read; give it another name", out.option,
+                                         in_quotes(out.path)));
+        }
+    }
 }
 
 }  // namespace
@@ -158,11 +261,11 @@ Option& Options::option(const std::string& names, OptionTarget variable, std::st
 int run_command_line(Options& program, int argc, char** argv) {
     CLI::App app(program.text, program.name);
     app.formatter(std::make_shared<HelpFormatter>());
-    app.set_version_flag("--version", program.name + " " + program.version);
+    app.set_version_flag("-V,--version", program.name + " " + program.version);
     const Options* named = nullptr;
     fill(app, program, named);
     try {
-        app.parse(argc, argv);
+        app.parse(with_spelled_help(program, argc, argv));
     } catch (const CLI::CallForHelp&) {
         print(app.help());
         return kOk;
@@ -172,7 +275,10 @@ int run_command_line(Options& program, int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         throw UsageError(std::string(error.what()) + "; see " + path_of(app) + " --help");
     }
-    if (named->run) return named->run();
+    if (named->run) {
+        check_files(*named, app);
+        return named->run();
+    }
     throw UsageError(
         fmt::format("a command is missing: {}; see {} --help", listed(named->commands), path_of(app)));
 }

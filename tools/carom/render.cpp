@@ -44,6 +44,12 @@ struct RenderArgs {
     const FilmKind* film() const { return raw || y4m || !sheet.empty() ? nullptr : film_kind(pattern); }
 };
 
+/// Other programs tell what a file holds by its name.
+void check_png_name(const std::string& path) {
+    if (!path.ends_with(".png") && !path.ends_with(".PNG"))
+        throw UsageError(fmt::format("-o {}: pictures are PNG files; give a name that ends in .png", path));
+}
+
 void check_args(const RenderArgs& args) {
     const auto second = [](const char* option, std::optional<double> value) {
         if (value && !(*value >= 0.0 && std::isfinite(*value))) {
@@ -60,6 +66,7 @@ void check_args(const RenderArgs& args) {
     if (args.frame && *args.frame < 0) throw UsageError("--frame: frames are numbered from 0");
     if (!args.sheet.empty()) {
         parse_sheet(args.sheet);
+        if (args.pattern.find('%') == std::string::npos) check_png_name(args.pattern);
         return;
     }
     if (const FilmKind* const film = args.film()) {
@@ -70,11 +77,21 @@ void check_args(const RenderArgs& args) {
         require_ffmpeg(args.pattern);
         return;
     }
+    if (args.raw || args.y4m) return;
+    const bool one = args.at || args.frame;
     try {
-        render::frame_path(args.pattern, 0);
+        const bool numbered = render::is_numbered(args.pattern);
+        if (!one && !numbered)
+            throw UsageError(fmt::format(
+                "bad frame pattern '{}'; give exactly one %d or %0Nd, like frames/%05d.png, or the name of a "
+                "film, like shot.mp4 (.webm, .gif, .webp)",
+                args.pattern));
+        if (args.resume && !numbered)
+            throw UsageError(fmt::format("-o {}: one picture cannot be resumed", args.pattern));
     } catch (const render::RenderError& error) {
         throw UsageError(error.what());
     }
+    check_png_name(args.pattern);
 }
 
 /// "x,y,z" in m.
@@ -144,9 +161,9 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     }
     options.backend = render::backend_from_name(args.gl);
     const long frames = checked_frame_count(options.from, options.to.value_or(record.duration), options.fps);
-    if (frames < 1) {
-        throw UsageError(
-            fmt::format("--from {}: the shot is over after {} s", options.from, record.duration));
+    if (frames < 1 || (args.at && *args.at > record.duration)) {
+        throw UsageError(fmt::format("{} {}: the shot is over after {} s", args.at ? "--at" : "--from",
+                                     options.from, record.duration));
     }
     if (args.frame && *args.frame >= frames) {
         throw UsageError(fmt::format("--frame {}: the last frame is {}", *args.frame, frames - 1));
@@ -195,6 +212,17 @@ int write_film(const RenderArgs& args, const Record& record, render::SequenceOpt
     return kOk;
 }
 
+/// Says how to go on where it is interrupted.
+std::vector<render::FrameTiming> rendered(const Record& record, const render::SequenceOptions& options) {
+    try {
+        return render::render_sequence(record, options);
+    } catch (const Interrupted&) {
+        if (!options.raw && render::is_numbered(options.pattern))
+            message("stopped; the same command with --resume goes on");
+        throw;
+    }
+}
+
 int run(const RenderArgs& args) {
     check_args(args);
     if (args.raw && args.y4m) throw UsageError("--raw and --y4m exclude each other");
@@ -221,8 +249,12 @@ int run(const RenderArgs& args) {
     if (!args.sheet.empty()) return write_sheet(args, record, options);
     if (args.film() != nullptr) return write_film(args, record, options);
     if (args.y4m) print(render::y4m_header(options.size, options.fps));
-    const std::vector<render::FrameTiming> timings = render::render_sequence(record, options);
+    const std::vector<render::FrameTiming> timings = rendered(record, options);
     throw_if_interrupted();
+    if (timings.empty()) {
+        print(fmt::format("0 frames: all are there: {}\n", options.pattern));
+        return kOk;
+    }
     if (args.raw || args.y4m) {
         flush_output();
         const std::string input =
@@ -240,8 +272,10 @@ int run(const RenderArgs& args) {
     }
     print(fmt::format("{}, {}x{} at {} fps: {}\n", counted(timings.size(), "frame"), options.size.width,
                       options.size.height, options.fps, options.pattern));
-    print(fmt::format("to make a film of them: ffmpeg -framerate {} -i {} -pix_fmt yuv420p shot.mp4\n",
-                      options.fps, options.pattern));
+    // With their number, so that older frames behind them are not in the film.
+    print(fmt::format(
+        "to make a film of them: ffmpeg -y -framerate {} -i {} -frames:v {} -pix_fmt yuv420p shot.mp4\n",
+        options.fps, shell_word(options.pattern), timings.back().frame + 1));
     return kOk;
 }
 

@@ -30,6 +30,7 @@ struct SimulateArgs {
     bool hash = false;
     bool profile = false;
     bool json = false;
+    bool list = false;    ///< the events as a table
     bool verify = false;  ///< check the laws after every event
 };
 
@@ -70,8 +71,14 @@ std::string result_json(const Record& record) {
                          {"spin", numbers(s.spin)},
                          {"pocket", pocket}});
     }
+    Json kinds = Json::object();
+    for (const Event& event : record.events) {
+        Json& count = kinds[name(event.type)];
+        count = count.is_null() ? 1 : count.get<int>() + 1;
+    }
     Json all = {{"duration", record.duration},
                 {"events", record.events.size()},
+                {"events_by_kind", kinds},
                 {"hash", record.hash()},
                 {"balls", balls}};
     if (!record.costs.empty()) {
@@ -117,6 +124,16 @@ std::string summary(const Record& record, const std::string& scene) {
     return fmt::to_string(out);
 }
 
+/// What happened, one line an event.
+std::string event_list(const Record& record) {
+    Table table(Column("", "time (s)", ">12.6f"), Column("", "  type", "<24"), Column("", "ball", "<10"),
+                Column("", "with", "<"));
+    for (const Event& event : record.events)
+        table.add({event.time, "  " + std::string(name(event.type)), record.tracks.at(event.a).id,
+                   record.partner_id(event)});
+    return "\n" + table_text(table);
+}
+
 /// Where the time of a profiled run went.
 std::string profile_report(const Record& record) {
     double total = record.setup_detect_ns;
@@ -148,10 +165,15 @@ void check_args(const SimulateArgs& args) {
     }
 }
 
+bool is_stdout(const std::string& path) {
+    return path == "-";
+}
+
 void write_files(const SimulateArgs& args, const Record& record) {
-    if (!args.record.empty()) write_record(record, args.record);
-    if (!args.events.empty()) write_events_csv(record, args.events);
-    if (!args.samples.empty()) write_samples_csv(record, *args.sample_dt, args.samples);
+    const auto file = [](const std::string& path) { return is_stdout(path) ? "/dev/stdout" : path; };
+    if (!args.record.empty()) write_record(record, file(args.record));
+    if (!args.events.empty()) write_events_csv(record, file(args.events));
+    if (!args.samples.empty()) write_samples_csv(record, *args.sample_dt, file(args.samples));
 }
 
 /// Names the first law that the run broke, if any.
@@ -182,7 +204,12 @@ int run(const SimulateArgs& args) {
         print(result_json(record));
         return status;
     }
-    print(args.hash ? record.hash() + "\n" : summary(record, args.scene));
+    const bool taken = is_stdout(args.record) || is_stdout(args.events) || is_stdout(args.samples);
+    if (args.hash)
+        print(record.hash() + "\n");
+    else if (!taken)
+        print(summary(record, args.scene));
+    if (args.list) print(event_list(record));
     if (args.profile) print(profile_report(record));
     return status;
 }
@@ -195,12 +222,15 @@ void add_simulate(Options& program) {
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
     command.option("-o,--output", &args.record, "FILE.json",
                    "Write the record, for carom render (default: not written)");
-    command.option("--events", &args.events, "FILE.csv", "Write the events (default: not written)");
+    command.option("--events", &args.events, "FILE.csv",
+                   "Write the events; - is standard output, in place of the summary, as below (default: not "
+                   "written)");
     command.option("--samples", &args.samples, "FILE.csv",
                    "Write sampled states; needs --sample-dt (default: not written)");
     command.option("--sample-dt", &args.sample_dt, "S", "Time between samples in s (default: none)");
     command.option("--until", &args.until, "S",
                    "Stop at this time in s at the latest (default: the scene's end)");
+    command.flag("--list", args.list, "Print the events as a table (default: off)");
     command.flag("--hash", args.hash,
                  "Print the hash of all bits of the record instead of the summary (default: off)");
     command.flag("--profile", args.profile,

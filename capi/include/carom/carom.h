@@ -343,6 +343,10 @@ CAROM_API const double* carom_batch_duration(const carom_batch* batch); /* [s] *
 CAROM_API const int64_t* carom_batch_events(const carom_batch* batch);  /* number of events */
 CAROM_API const int32_t* carom_batch_first_hit(
     const carom_batch* batch); /* ball that the struck ball meets, or -1 */
+CAROM_API const int32_t* carom_batch_contacts(
+    const carom_batch* batch); /* how many balls it meets, each counted once */
+CAROM_API const int32_t* carom_batch_approach_cushions(
+    const carom_batch* batch); /* how many cushions it meets before the second of them, or at all */
 /* The hash of carom_record_hash as a number; NULL unless it was asked for. */
 CAROM_API const uint64_t* carom_batch_hash(const carom_batch* batch);
 

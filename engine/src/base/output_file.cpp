@@ -1,6 +1,8 @@
 // A file that is complete or absent: written under a temporary name, then renamed.
 #include "base/output_file.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,21 +13,49 @@
 
 namespace carom {
 
+namespace {
+
+constexpr int kMostLinks = 40;    // as in the kernel
+constexpr int kMostNames = 1000;  // temporary files of one process in one folder
+
+}  // namespace
+
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(path_) {
+    namespace fs = std::filesystem;
     std::error_code error;
-    if (std::filesystem::exists(path_, error)) {
-        const std::filesystem::path real = std::filesystem::canonical(path_, error);
-        if (!error) target_ = real.string();
+    // A link to a file that is not there yet is followed, too.
+    for (int links = 0; links < kMostLinks && fs::is_symlink(target_, error); ++links) {
+        const fs::path to = fs::read_symlink(target_, error);
+        if (error) break;
+        target_ = to.is_absolute() ? to.string() : (fs::path(target_).parent_path() / to).string();
     }
-    const bool direct =
-        std::filesystem::exists(target_, error) && !std::filesystem::is_regular_file(target_, error);
-    // The process id distinguishes two programs that write the same file.
-    if (!direct) temporary_ = target_ + "." + std::to_string(::getpid()) + ".tmp";
-    file_ = std::fopen(direct ? target_.c_str() : temporary_.c_str(), "wb");
-    if (file_ == nullptr) {
-        temporary_.clear();
-        fail("cannot open for writing");
+    if (fs::exists(target_, error) && !fs::is_regular_file(target_, error)) {
+        file_ = std::fopen(target_.c_str(), "wb");
+        if (file_ == nullptr) fail("cannot open for writing");
+        return;
     }
+    open_temporary();
+}
+
+// Others may be able to make files in the folder: the temporary one has to be new, and no link. It has the rights of the file that
+// it will replace.
+void OutputFile::open_temporary() {
+    struct stat there {};
+    const bool replaces = ::stat(target_.c_str(), &there) == 0;
+    const std::filesystem::path folder = std::filesystem::path(target_).parent_path();
+    for (int k = 0; k < kMostNames; ++k) {
+        // Short, because the name of the file may be as long as a name can be; of this process, for other programs write here, too.
+        temporary_ =
+            (folder / (".carom." + std::to_string(::getpid()) + "." + std::to_string(k) + ".tmp")).string();
+        const int fd = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+        if (fd < 0 && errno == EEXIST) continue;
+        if (fd >= 0 && replaces && ::fchmod(fd, there.st_mode & 07777) != 0) errno = 0;  // not ours to change
+        file_ = fd < 0 ? nullptr : ::fdopen(fd, "wb");
+        break;
+    }
+    if (file_ != nullptr) return;
+    temporary_.clear();
+    fail("cannot open for writing");
 }
 
 OutputFile::~OutputFile() {

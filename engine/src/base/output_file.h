@@ -27,6 +27,7 @@ class OutputFile {
     void commit();
 
   private:
+    void open_temporary();
     [[noreturn]] void fail(const char* what);
 
     std::string path_;       ///< as requested, for messages

@@ -39,22 +39,47 @@ bool steers(std::uint32_t code) {
            (code >= 0x2066 && code <= 0x2069) || code == 0xfeff;  // isolates, byte order mark
 }
 
+/// Calls take(character, whether a terminal may have it) for every character until it answers false.
+template <class Take>
+void each_character(std::string_view text, Take&& take) {
+    for (std::size_t at = 0, length = 0; at < text.size(); at += length) {
+        std::uint32_t code = 0;
+        const std::size_t size = character(text.substr(at), code);
+        length = size == 0 ? 1 : size;
+        if (!take(text.substr(at, length), size != 0 && !steers(code))) return;
+    }
+}
+
 }  // namespace
 
 std::string printable(std::string_view text) {
     std::string out;
-    for (std::size_t at = 0; at < text.size();) {
-        std::uint32_t code = 0;
-        const std::size_t size = character(text.substr(at), code);
-        const std::size_t length = size == 0 ? 1 : size;
-        if (at + length > kLongest) return out + "...";
-        if (size == 0 || steers(code))
-            out += '?';
-        else
-            out += text.substr(at, size);
-        at += length;
-    }
+    std::size_t taken = 0;
+    each_character(text, [&](std::string_view one, bool plain) {
+        taken += one.size();
+        if (taken > kLongest) {
+            out += "...";
+            return false;
+        }
+        out += plain ? one : "?";
+        return true;
+    });
     return out;
+}
+
+std::string harmless(std::string_view text) {
+    std::string out;
+    each_character(text, [&](std::string_view one, bool plain) {
+        out += plain || one == "\n" || one == "\t" ? one : "?";
+        return true;
+    });
+    return out;
+}
+
+bool is_plain(std::string_view text) {
+    bool all = true;
+    each_character(text, [&](std::string_view, bool plain) { return all = all && plain; });
+    return all;
 }
 
 bool is_utf8(std::string_view text) {

@@ -53,6 +53,8 @@ void clear(const BatchArrays& out, std::size_t shot, std::size_t balls, double p
     fill(from(out.duration, shot), 1, 0.0);
     fill(from(out.events, shot), 1, std::int64_t{0});
     fill(from(out.first_hit, shot), 1, -1);
+    fill(from(out.contacts, shot), 1, 0);
+    fill(from(out.approach_cushions, shot), 1, 0);
     fill(from(out.hash, shot), 1, std::uint64_t{0});
     fill(from(out.x, at * out.place_stride), balls, place, out.place_stride);
     fill(from(out.y, at * out.place_stride), balls, place, out.place_stride);
@@ -71,6 +73,8 @@ void keep(const BatchArrays& out, std::size_t shot, const Outcome& outcome, std:
     put(out.duration, shot, outcome.duration);
     put(out.events, shot, outcome.events);
     put(out.first_hit, shot, ball_of(outcome.first_hit));
+    put(out.contacts, shot, outcome.contacts);
+    put(out.approach_cushions, shot, outcome.approach_cushions);
     put(out.hash, shot, outcome.hash);
     for (int i = 0; i < static_cast<int>(outcome.balls.size()); ++i) {
         const BallOutcome& ball = outcome.balls[i];
@@ -263,6 +267,8 @@ Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const Batch
     batch.duration.resize(shots);
     batch.events.resize(shots);
     batch.first_hit.resize(shots);
+    batch.contacts.resize(shots);
+    batch.approach_cushions.resize(shots);
     batch.x.resize(places);
     batch.y.resize(places);
     batch.pocket.resize(places);
@@ -274,6 +280,8 @@ Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const Batch
     out.duration = batch.duration.data();
     out.events = batch.events.data();
     out.first_hit = batch.first_hit.data();
+    out.contacts = batch.contacts.data();
+    out.approach_cushions = batch.approach_cushions.data();
     out.x = batch.x.data();
     out.y = batch.y.data();
     out.pocket = batch.pocket.data();

@@ -97,7 +97,7 @@ class Log : private Borrowed<LogMemory> {
   private:
     void reserve();
     Record record_so_far() const;
-    int first_hit(int struck) const;
+    int met_by(int struck, const Event& event) const;
     std::uint64_t hash() const;
     bool is_crowded() const {
         const std::vector<Event>& e = events_;

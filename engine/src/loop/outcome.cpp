@@ -42,21 +42,15 @@ int nearest(std::span<const ClusterBall> cluster, int ball) {
 
 }  // namespace
 
-// The first ball that the struck ball touches, or -1.
-int Log::first_hit(int struck) const {
-    if (struck < 0) return -1;
-    for (const Event& e : events_) {
-        const bool cluster = e.type == EventType::kBallCluster;
-        if (!cluster && e.type != EventType::kBallBall && e.type != EventType::kBallBallHold) continue;
-        int other = e.a == struck ? e.b : e.b == struck ? e.a : -1;
-        if (other < 0 && cluster) {
-            const auto index = static_cast<std::size_t>(e.detail);
-            const std::size_t begin = index == 0 ? 0 : cluster_end_[index - 1];
-            other = nearest(std::span(cluster_ball_).subspan(begin, cluster_end_[index] - begin), struck);
-        }
-        if (other >= 0) return other;
-    }
-    return -1;
+// The ball that the struck ball touches in this event, or -1.
+int Log::met_by(int struck, const Event& e) const {
+    const bool cluster = e.type == EventType::kBallCluster;
+    if (!cluster && e.type != EventType::kBallBall && e.type != EventType::kBallBallHold) return -1;
+    if (e.a == struck || e.b == struck) return e.a == struck ? e.b : e.a;
+    if (!cluster) return -1;
+    const auto index = static_cast<std::size_t>(e.detail);
+    const std::size_t begin = index == 0 ? 0 : cluster_end_[index - 1];
+    return nearest(std::span(cluster_ball_).subspan(begin, cluster_end_[index] - begin), struck);
 }
 
 std::uint64_t Log::hash() const {
@@ -78,7 +72,8 @@ void Log::outcome(StopReason why, Outcome& out) const {
     out.events = static_cast<std::int64_t>(events_.size());
     out.clusters = static_cast<int>(cluster_end_.size());
     out.struck = struck_ball(plan_.scene);
-    out.first_hit = first_hit(out.struck);
+    out.first_hit = -1;
+    out.contacts = out.approach_cushions = 0;
     out.hash = keep_ == Keep::kHash ? hash() : 0;
     out.balls.assign(static_cast<std::size_t>(balls_.count()), {});
     for (int i = 0; i < balls_.count(); ++i) {
@@ -91,7 +86,15 @@ void Log::outcome(StopReason why, Outcome& out) const {
         BallOutcome& ball = out.balls[e.a];
         const EventKind& of = kind(e.type);
         const bool table = of.partner == Partner::kCushion || of.partner == Partner::kJaw;
-        if (table && of.phase != EventPhase::kRelease) ++ball.cushions;
+        if (table && of.phase != EventPhase::kRelease) {
+            ++ball.cushions;
+            if (e.a == out.struck && out.contacts < 2) ++out.approach_cushions;
+        }
+        const int met = out.struck < 0 || of.partner != Partner::kBall ? -1 : met_by(out.struck, e);
+        if (met >= 0 && !out.balls[met].met) {
+            out.balls[met].met = true;
+            if (out.contacts++ == 0) out.first_hit = met;
+        }
         if (e.type == EventType::kBallOut) ball.pocket = kOffTable;
         if (e.type != EventType::kBallPocket) continue;
         ball.pocket = e.b;

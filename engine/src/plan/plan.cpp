@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include "carom/engine/airborne.h"
+#include "carom/engine/printable.h"
 #include "carom/engine/tolerances.h"
 #include "physics/cue.h"
 #include "physics/motion.h"
@@ -121,8 +124,48 @@ void warn_of_tip(Plan& plan, const BallStart& ball) {
             cue.elevation_deg));
 }
 
+// What nobody would write who thinks in the units of the format. [m], [m/s]
+constexpr double kBesideTable = 0.25;
+constexpr double kFastestStroke = 25.0;  // breaks are struck at 9 to 13
+constexpr double kSmallestBall = 0.005, kLargestBall = 0.5;
+
+/// Numbers that are valid, but look like another unit.
+void warn_of_units(Plan& plan) {
+    const Scene& scene = plan.scene;
+    const Table& table = scene.table;
+    const auto say = [&plan](std::string text) { plan.warnings.push_back(std::move(text)); };
+    double farthest = kBesideTable;
+    const BallStart* away = nullptr;
+    for (const BallStart& ball : scene.ball) {
+        const Vec2 from = planar(ball.position) - table.corner,
+                   to = table.corner + Vec2(table.width, table.length) - planar(ball.position);
+        const double beyond = std::max({-from.x(), -from.y(), -to.x(), -to.y()});
+        if (!(table.width > 0.0 && table.length > 0.0) || !(beyond > farthest)) continue;
+        farthest = beyond;
+        away = &ball;
+    }
+    if (away != nullptr)
+        say(fmt::format("ball {} lies {:.3g} m beside the table; positions are in m", in_quotes(away->id),
+                        farthest));
+    if (scene.cue && scene.cue->speed > kFastestStroke)
+        say(fmt::format("the cue moves at {:.4g} m/s, and a hard break at 10; speeds are in m/s",
+                        scene.cue->speed));
+    for (const BallStart& ball : scene.ball) {
+        const double speed = length3(ball.velocity);
+        if (!(speed > 2.0 * kFastestStroke)) continue;
+        say(fmt::format("ball {} starts at {:.4g} m/s; speeds are in m/s", in_quotes(ball.id), speed));
+        break;
+    }
+    for (const BallSize& size : plan.sizes) {
+        if (size.R >= kSmallestBall && size.R <= kLargestBall) continue;
+        say(fmt::format("a ball has a radius of {:.4g} m, and one of pool 0.0286; radii are in m", size.R));
+        break;
+    }
+}
+
 void warn(Plan& plan) {
     const Scene& scene = plan.scene;
+    warn_of_units(plan);
     for (const BallStart& ball : scene.ball) {
         if (!scene.cue || scene.cue->ball != ball.id) continue;
         if (plan.in_force(Effect::kAirborne)) {

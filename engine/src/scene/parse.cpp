@@ -46,6 +46,12 @@ namespace detail {
 
 toml::table toml_from(std::string_view text, const std::string& name) {
     check_size(text, name);
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    if (first != text.npos && text[first] == '{')
+        throw SceneError(
+            name, {1, 1},
+            "this is JSON, and a scene is TOML; if it is a record, carom render, view and export "
+            "take it");
     if (const auto deep = too_deep(text)) throw SceneError(name, deep->where, deep->what);
     try {
         return toml::parse(text, name);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "carom/engine/ball_ball.h"
+#include "carom/engine/printable.h"
 #include "carom/engine/strike.h"
 #include "carom/engine/tolerances.h"
 #include "carom/kernel/tolerance.h"
@@ -16,13 +17,19 @@ void check_id(const Section& section, const std::string& id) {
     if (id.empty()) section.fail("id", "a ball's id is empty; give it a name");
     if (id.size() > kMaxIdLength)
         section.fail("id", "the ball id {} is longer than {} bytes; shorten it", in_quotes(id), kMaxIdLength);
-    for (const char c : id) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"') {
-            section.fail("id", "the ball id {} holds a comma, a quote or a control character; leave it out",
-                         in_quotes(id));
-        }
-    }
     if (!is_utf8(id)) section.fail("id", "the ball id {} is not UTF-8; write it so", in_quotes(id));
+    if (!is_plain(id) || id.find_first_of(",;\"") != id.npos)
+        section.fail(
+            "id", "the ball id {} holds a comma, a semicolon, a quote or a control character; leave it out",
+            in_quotes(id));
+    // A program for tables takes these for formulas, and a shell the last one for an option.
+    if (id.find_first_of("=+@-") == 0)
+        section.fail("id", "the ball id {} begins with {}; begin it with a letter or a digit", in_quotes(id),
+                     in_quotes(id.substr(0, 1)));
+    const bool numbered = id.size() > 1 && id.find_first_not_of("0123456789", 1) == id.npos;
+    if (numbered && (id[0] == 'c' || id[0] == 'j' || id[0] == 'p'))
+        section.fail("id", "the ball id {} is the name of a cushion, a jaw or a pocket; take another one",
+                     in_quotes(id));
 }
 
 void check_fits(const Section& section, const BallParams& balls) {

@@ -98,7 +98,7 @@ class Player:
     def types(self) -> dict[str, tuple[str, str]]:
         """For every column "int64", "float64" or "text", and the unit, or ""."""
         keys = {key: (drawn.type(), self._sweep.unit(k)) for k, (key, drawn) in enumerate(zip(self._sweep.keys, self._drawn))}
-        ends = {"outcome": ("text", ""), "duration": ("float64", "s"), "events": ("int64", ""), "first_contact": ("text", ""), "pocketed": ("text", "")}
+        ends = {"outcome": ("text", ""), "duration": ("float64", "s"), "events": ("int64", ""), "first_contact": ("text", ""), "contacts": ("int64", ""), "cushions": ("int64", ""), "pocketed": ("text", "")}
         balls = {f"{ball}.{name}": what for ball in self.ids for name, what in {"x": ("float64", "m"), "y": ("float64", "m"), "pocket": ("text", "")}.items()}
         return {"shot": ("int64", ""), **keys, **ends, **balls, "message": ("text", "")}
 
@@ -129,6 +129,8 @@ class Player:
             "events": Counts(shots.events, failed),
             # The place -1, nothing, is that of the last text.
             "first_contact": Texts([*self.ids, ""], shots.first_hit % (len(self.ids) + 1), failed),
+            "contacts": Counts(shots.contacts.astype(np.int64), failed),
+            "cushions": Counts(shots.approach_cushions.astype(np.int64), failed),
             "pocketed": self._pocketed(shots, failed),
         }
         nowhere = len(self._pockets)

@@ -53,6 +53,10 @@ std::optional<Conversion> read_conversion(const std::string& pattern, std::size_
 
 }  // namespace
 
+bool is_numbered(const std::string& pattern) {
+    return frame_path(pattern, 0) != frame_path(pattern, 1);
+}
+
 std::string frame_path(const std::string& pattern, long k) {
     const auto refuse = [&] {
         throw RenderError("bad frame pattern '" + pattern +
@@ -76,7 +80,6 @@ std::string frame_path(const std::string& pattern, long k) {
             i = found->end;
         }
     }
-    if (conversions != 1) refuse();
     return path;
 }
 

@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 #include <system_error>
 #include <thread>
 
+#include "base/fnv.h"
+#include "base/output_file.h"
 #include "carom/render/draw_list.h"
 #include "carom/render/kept_png.h"
 #include "carom/render/png.h"
@@ -34,12 +39,65 @@ void make_folder(const std::string& pattern) {
     }
 }
 
-// Whether the file is a PNG of this size. A frame gets its final name only when it is complete, so this is enough.
+/// Says of which shot and picture frames are; not how many there are, nor how they are encoded.
+std::string shot_and_picture(const Record& record, const SequenceOptions& options) {
+    Fnv all;
+    all.add(record.hash());
+    for (const double x : {record.balls.R, record.table.width, record.table.length, options.fps, options.from,
+                           options.view.fov_deg, double(options.size.width), double(options.size.height),
+                           double(options.table_samples)})
+        all.add(x);
+    for (const std::optional<Vec3>& point : {options.view.eye, options.view.target})
+        for (int k = 0; point && k < 3; ++k) all.add((*point)[k]);
+    const Overlay& o = options.overlay;
+    for (const bool drawn : {o.trails, o.ball_trails, o.events, o.spin, o.ghost, o.clock, o.margin})
+        all.add(std::uint64_t{drawn});
+    for (const BallTrack& track : record.tracks) all.add(track.id);
+    all.add(options.camera);
+    all.add(options.view.ball);
+    std::array<char, 17> digits{};
+    std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(all.value()));
+    return digits.data();
+}
+
+/// Beside the frames, "frames/.%05d.png.shot" says which shot and picture they are of. The frames themselves do not: their bytes
+/// depend on their pixels alone.
+std::string mark_path(const std::string& pattern) {
+    const std::filesystem::path path(pattern);
+    return (path.parent_path() / ("." + path.filename().string() + ".shot")).string();
+}
+
+void mark_frames(const Record& record, const SequenceOptions& options) {
+    OutputFile file(mark_path(options.pattern));
+    file.write(shot_and_picture(record, options) + "\n");
+    file.commit();
+}
+
+/// @throws RenderError unless the frames that are there are of this shot and picture
+void check_mark(const Record& record, const SequenceOptions& options) {
+    std::array<char, 17> digits{};
+    if (std::FILE* file = std::fopen(mark_path(options.pattern).c_str(), "rb")) {
+        if (std::fread(digits.data(), 1, digits.size() - 1, file) != digits.size() - 1) digits[0] = '\0';
+        std::fclose(file);
+    }
+    if (shot_and_picture(record, options) == digits.data()) return;
+    throw RenderError(options.pattern + ": " +
+                      (digits[0] == '\0' ? "nothing says which shot the frames there are of"
+                                         : "the frames there are of another shot, camera, overlay or size") +
+                      "; render without --resume");
+}
+
+// Whether the file is a whole PNG of this size.
 bool is_frame_of_size(const std::string& path, FrameSize size) {
     std::FILE* file = std::fopen(path.c_str(), "rb");
     if (file == nullptr) return false;
     std::array<unsigned char, 24> head{};
-    const bool whole = std::fread(head.data(), 1, head.size(), file) == head.size();
+    // The last chunk is empty: only a power cut leaves a file without it, because a frame gets its name when it is complete.
+    constexpr std::array<unsigned char, 12> kEnd{0, 0, 0, 0, 'I', 'E', 'N', 'D', 0xAE, 0x42, 0x60, 0x82};
+    std::array<unsigned char, 12> tail{};
+    const bool whole = std::fread(head.data(), 1, head.size(), file) == head.size() &&
+                       std::fseek(file, -static_cast<long>(tail.size()), SEEK_END) == 0 &&
+                       std::fread(tail.data(), 1, tail.size(), file) == tail.size() && tail == kEnd;
     std::fclose(file);
     const auto number = [&](std::size_t i) {
         return (unsigned{head[i]} << 24U) | (unsigned{head[i + 1]} << 16U) | (unsigned{head[i + 2]} << 8U) |
@@ -88,9 +146,8 @@ void check_options(const SequenceOptions& options) {
         throw RenderError("the PNG level must be 0 to 9");
     if (options.size.width < 1 || options.size.height < 1)
         throw RenderError("an image needs at least one pixel");
-    if (options.resume && (options.pattern.empty() || options.raw)) {
-        throw RenderError("only frames in files can be resumed");
-    }
+    if (options.resume && (options.pattern.empty() || options.raw || !is_numbered(options.pattern)))
+        throw RenderError("only numbered frames in files can be resumed");
 }
 
 // Draws the frames in order. With threads, frame k - 1 is read back while frame k is being drawn.
@@ -195,10 +252,15 @@ std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOpt
     check_options(options);
     const bool files = !options.pattern.empty() && !options.raw;
     if (files) frame_path(options.pattern, 0);
+    if (options.resume) check_mark(record, options);
     std::vector<FrameTiming> frames = frames_to_do(record, options);
     const long count =
         options.frame ? 1 : frame_count(options.from, options.to.value_or(record.duration), options.fps);
+    if (files && count > 1 && !is_numbered(options.pattern))
+        throw RenderError("bad frame pattern '" + options.pattern +
+                          "'; give exactly one %d or %0Nd, like frames/%05d.png");
     if (files) make_folder(options.pattern);
+    if (files && !options.resume && is_numbered(options.pattern)) mark_frames(record, options);
     FrameLoop(record, options, frames).run(count - static_cast<long>(frames.size()));
     return frames;
 }

@@ -1,5 +1,6 @@
 #include "sweep/partial_file.h"
 
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -15,7 +16,15 @@ namespace carom::tools {
 
 namespace fs = std::filesystem;
 
-PartialFile::PartialFile(const std::string& path, std::uint64_t id) : path_(path), target_(path) {
+namespace {
+
+/// Writing to the disk takes milliseconds and more.
+constexpr std::chrono::seconds kSyncEvery(5);
+
+}  // namespace
+
+PartialFile::PartialFile(const std::string& path, std::uint64_t id, const Seen& seen)
+    : path_(path), target_(path) {
     std::error_code error;
     if (const fs::path real = fs::canonical(path, error); !error) target_ = real.string();
     if (fs::is_directory(target_, error)) {
@@ -24,8 +33,7 @@ PartialFile::PartialFile(const std::string& path, std::uint64_t id) : path_(path
     }
     const bool direct = fs::exists(target_, error) && !fs::is_regular_file(target_, error);
     name_ = direct ? target_ : fmt::format("{}.{:016x}.part", target_, id);
-    file_ = std::fopen(name_.c_str(), direct ? "wb" : "a+b");
-    if (file_ == nullptr) fail("cannot open for writing");
+    open(direct);
     if (direct) return;
     if (::flock(::fileno(file_), LOCK_EX | LOCK_NB) != 0) {
         if (errno == EWOULDBLOCK)
@@ -35,13 +43,28 @@ PartialFile::PartialFile(const std::string& path, std::uint64_t id) : path_(path
     // Between opening and locking, the other program may have finished and renamed it.
     struct stat opened {};
     struct stat named {};
-    if (::fstat(::fileno(file_), &opened) != 0 || ::stat(name_.c_str(), &named) != 0 ||
+    if (::fstat(::fileno(file_), &opened) != 0 || ::lstat(name_.c_str(), &named) != 0 ||
         opened.st_ino != named.st_ino)
         throw std::runtime_error(fmt::format("{}: another program has just finished this very file", name_));
-    take_up();
+    take_up(seen);
 }
 
-void PartialFile::take_up() {
+// Others may be able to make files in the folder, and they can tell the name: it has to be a file, and no link to another one.
+void PartialFile::open(bool direct) {
+    const int flags = direct ? O_WRONLY | O_CREAT | O_TRUNC : O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW;
+    const int fd = ::open(name_.c_str(), flags | O_CLOEXEC, 0666);
+    struct stat opened {};
+    if (fd >= 0 && !direct && ::fstat(fd, &opened) == 0 && !S_ISREG(opened.st_mode)) {
+        ::close(fd);
+        throw std::runtime_error(name_ + ": this is no file; remove it");
+    }
+    file_ = fd < 0 ? nullptr : ::fdopen(fd, direct ? "wb" : "a+b");
+    if (file_ == nullptr && errno == ELOOP)
+        throw std::runtime_error(name_ + ": this is a link, and following it is not safe; remove it");
+    if (file_ == nullptr) fail("cannot open for writing");
+}
+
+void PartialFile::take_up(const Seen& seen) {
     std::rewind(file_);
     std::vector<char> block(1 << 16);
     long end = 0, at = 0;  // behind the last complete line; of the byte read
@@ -53,6 +76,7 @@ void PartialFile::take_up() {
                 line += block[i];
                 continue;
             }
+            if (seen) seen(lines_, line);
             ++lines_;
             end = at;
             last_.swap(line);
@@ -78,13 +102,31 @@ void PartialFile::append(std::string_view text) {
 
 void PartialFile::flush() {
     if (std::fflush(file_) != 0) fail("cannot write");
+    const auto now = std::chrono::steady_clock::now();
+    if (!can_be_taken_up() || now - synced_ < kSyncEvery) return;
+    sync();
+    synced_ = now;
+}
+
+void PartialFile::sync() {
+    // Some file systems cannot; they promise nothing.
+    if (::fsync(::fileno(file_)) != 0 && errno != EINVAL && errno != EROFS) fail("cannot write");
 }
 
 void PartialFile::commit() {
-    flush();
+    if (std::fflush(file_) != 0) fail("cannot write");
+    if (can_be_taken_up()) sync();
     // The file is renamed before it is closed, because closing releases the lock.
     if (can_be_taken_up() && std::rename(name_.c_str(), target_.c_str()) != 0)
         fail("cannot rename to this name");
+    if (can_be_taken_up()) {  // so that the new name survives, too
+        const std::string folder = fs::path(target_).parent_path().string();
+        const int fd = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        if (fd >= 0) {
+            ::fsync(fd);
+            ::close(fd);
+        }
+    }
     std::FILE* file = file_;
     file_ = nullptr;
     if (std::fclose(file) != 0) fail("cannot write");

@@ -1,8 +1,10 @@
 // A text file that grows line by line and survives being killed.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -15,7 +17,9 @@ namespace carom::tools {
 /// Every failure is a std::runtime_error that names the file and the reason.
 class PartialFile {
   public:
-    PartialFile(const std::string& path, std::uint64_t id);
+    /// Called with every complete line that was found, without its end, and its number.
+    using Seen = std::function<void(long, std::string_view)>;
+    PartialFile(const std::string& path, std::uint64_t id, const Seen& seen = {});
     ~PartialFile();  ///< does not remove the partial file
     PartialFile(const PartialFile&) = delete;
     PartialFile& operator=(const PartialFile&) = delete;
@@ -26,12 +30,14 @@ class PartialFile {
     bool can_be_taken_up() const { return name_ != target_; }
 
     void append(std::string_view text);  ///< whole lines
-    void flush();                        ///< what was appended survives a kill from here on
+    void flush();  ///< what was appended survives a kill from here on, and a power cut some seconds later
     void commit();
 
   private:
     [[noreturn]] void fail(const std::string& what) const;
-    void take_up();
+    void open(bool direct);
+    void take_up(const Seen& seen);
+    void sync();
 
     std::string path_;    // as asked for, for messages
     std::string target_;  // symbolic links followed
@@ -39,6 +45,7 @@ class PartialFile {
     std::FILE* file_ = nullptr;
     long lines_ = 0;
     std::string last_;
+    std::chrono::steady_clock::time_point synced_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace carom::tools

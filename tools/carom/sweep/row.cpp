@@ -13,7 +13,9 @@ std::string sweep_header(const Variation& variation) {
     const auto add = [&cells](const std::string& key) { cells.emplace_back(key); };
     add("shot");
     for (const std::string& key : variation.keys()) add(key);
-    for (const char* key : {"outcome", "duration", "events", "first_contact", "pocketed"}) add(key);
+    for (const char* key :
+         {"outcome", "duration", "events", "first_contact", "contacts", "cushions", "pocketed"})
+        add(key);
     for (const BallStart& ball : variation.base().ball)
         for (const char* key : {".x", ".y", ".pocket"}) add(ball.id + key);
     add("message");
@@ -29,6 +31,8 @@ void SweepPlayer::append_results(std::string& rows) {
     append_csv(rows, outcome.duration);
     append_csv(rows, outcome.events);
     append_csv(rows, outcome.first_hit < 0 ? std::string_view() : balls[outcome.first_hit].id);
+    append_csv(rows, static_cast<std::int64_t>(outcome.contacts));
+    append_csv(rows, static_cast<std::int64_t>(outcome.approach_cushions));
     fallen_.assign(balls.size(), -1);
     for (std::size_t i = 0; i < balls.size(); ++i)
         if (outcome.balls[i].fell >= 0) fallen_[outcome.balls[i].fell] = static_cast<int>(i);
@@ -55,7 +59,7 @@ ShotStatus SweepPlayer::append(std::uint64_t index, std::string& rows) {
     if (has_result(status))
         append_results(rows);
     else
-        rows.append(4 + 3 * variation_.base().ball.size(), ',');
+        rows.append(6 + 3 * variation_.base().ball.size(), ',');
     append_csv(rows, simulator_.message());
     rows.back() = '\n';
     return status;

@@ -11,7 +11,7 @@
 
 namespace carom::tools {
 
-/// `shot,KEY...,outcome,duration,events,first_contact,pocketed,ID.x,ID.y,ID.pocket...,message`, with a line end.
+/// `shot,KEY...,outcome,duration,events,first_contact,contacts,cushions,pocketed,ID.x,ID.y,ID.pocket...,message`, with a line end.
 std::string sweep_header(const Variation& variation);
 
 /// Plays shots and writes their rows, one thread at a time. A row depends on the variation and the number of its shot only;

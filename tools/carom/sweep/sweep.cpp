@@ -10,6 +10,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -194,17 +195,48 @@ class Workers {
     std::vector<std::thread> threads_;
 };
 
+/// The k-th value of a row as it stands there; of quotes only what is between them counts.
+std::string_view field_of(std::string_view row, std::size_t k) {
+    bool quoted = false;
+    std::size_t begin = 0, at = 0;
+    for (; at < row.size(); ++at) {
+        if (row[at] == '"') quoted = !quoted;
+        if (row[at] != ',' || quoted) continue;
+        if (k-- == 0) break;
+        begin = at + 1;
+    }
+    return row.substr(begin, at - begin);
+}
+
+/// What stands in a file that is taken up.
+struct RowsThere {
+    std::uint64_t failed = 0;
+    bool in_order = true;
+
+    void see(const Sweep& sweep, const ShotRange& range, long number, std::string_view row) {
+        if (range.header && number == 0) {
+            in_order = std::string(row) + '\n' == sweep_header(sweep.variation);
+            return;
+        }
+        const std::uint64_t shot = range.first + static_cast<std::uint64_t>(number) - (range.header ? 1 : 0);
+        in_order = in_order && field_of(row, 0) == fmt::format_int(shot).c_str();
+        if (field_of(row, 1 + sweep.variation.keys().size()) == name(ShotStatus::kFailed)) ++failed;
+    }
+};
+
 /// The shot at which an incomplete file of an earlier run is continued. Its last row is computed again: if another build gives
 /// another row, the file is not continued.
-std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRange& range) {
+std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRange& range,
+                      const RowsThere& there) {
     if (file.lines() == 0) return range.first;
     const std::uint64_t rows = static_cast<std::uint64_t>(file.lines()) - (range.header ? 1 : 0);
     std::string expected;
     if (rows <= range.last - range.first)
         expected = rows == 0 ? sweep_header(sweep.variation) : sweep.row(range.first + rows - 1);
-    if (expected != file.last_line() + '\n')
-        throw std::runtime_error(fmt::format(
-            "{}: its last row is not what this program computes; remove it to begin anew", file.name()));
+    if (!there.in_order || expected != file.last_line() + '\n')
+        throw std::runtime_error(fmt::format("{}: {} not what this program computes; remove it to begin anew",
+                                             file.name(),
+                                             there.in_order ? "its last row is" : "its rows are"));
     message(fmt::format("going on with {}: {} of {} shots are there", file.name(), rows,
                         range.last - range.first));
     return range.first + rows;
@@ -260,7 +292,6 @@ int run(const SweepArgs& args) {
     if (args.count < 1 || args.count > kMostShots)
         throw UsageError(fmt::format("--count: expected 1 to {} shots", kMostShots));
     const ShotRange range = shard_range(args.shard, args.count);
-    if (args.status == args.output) throw UsageError("--status and --output name the same file");
     const kernel::Isa isa = chosen_isa();
     const Variation variation = read_variation(args);
     for (const std::string& warning : make_plan(variation.base(), isa).warnings)
@@ -268,9 +299,15 @@ int run(const SweepArgs& args) {
     // Each range of shots has a file of its own.
     const std::uint64_t id =
         variation.fingerprint() ^ (range.first * 0x9e3779b97f4a7c15u) ^ (range.last * 0xbf58476d1ce4e5b9u);
-    PartialFile file(args.output, id);
+    if (!args.shard.empty() && std::filesystem::is_regular_file(args.output))
+        throw UsageError(fmt::format(
+            "-o {}: this file is there, perhaps of another shard; give each its own, or remove it",
+            args.output));
     const Sweep sweep{variation, isa};
-    const std::uint64_t from = take_up(file, sweep, range);
+    RowsThere there;
+    PartialFile file(args.output, id,
+                     [&](long number, std::string_view row) { there.see(sweep, range, number, row); });
+    const std::uint64_t from = take_up(file, sweep, range, there);
     if (range.header && file.lines() == 0) file.append(sweep_header(sweep.variation));
     const unsigned jobs =
         args.jobs > 0 ? static_cast<unsigned>(args.jobs) : std::max(1u, std::thread::hardware_concurrency());
@@ -289,7 +326,7 @@ int run(const SweepArgs& args) {
     file.commit();
     status.end("done");
     print(summary(outcomes, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
-    const std::uint64_t failed = outcomes[static_cast<std::size_t>(ShotStatus::kFailed)];
+    const std::uint64_t failed = outcomes[static_cast<std::size_t>(ShotStatus::kFailed)] + there.failed;
     if (failed == 0) return kOk;
     message(fmt::format("{} failed while running; {} why", counted(failed, "shot"),
                         failed == 1 ? "its row says" : "their rows say"));

@@ -109,11 +109,19 @@ bool is_written(const Field<T> (&fields)[kRows], const Field<T>& field, const T&
     return field.in(Files::kScene) && !replaced && field.value(object).index() != 0;
 }
 
-/// Whether a number is finite and in its interval.
+/// The least size of a number that is not 0: powers of smaller ones underflow.
+inline constexpr double kLeastSize = 1e-60;
+
+/// Whether a number is so small that it cannot be computed with.
+constexpr bool is_tiny(double x) {
+    return x != 0.0 && x > -kLeastSize && x < kLeastSize;
+}
+
+/// Whether a number is finite, not tiny, and in its interval.
 constexpr bool contains(const Interval& range, double x) {
     const bool high_enough = range.low_open ? x > range.low : x >= range.low;
     const bool low_enough = range.high_open ? x < range.high : x <= range.high;
-    return x - x == 0.0 && high_enough && low_enough;
+    return x - x == 0.0 && !is_tiny(x) && high_enough && low_enough;
 }
 
 /// What files call a value of an enumeration.

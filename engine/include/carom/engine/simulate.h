@@ -62,6 +62,7 @@ struct BallOutcome {
     int pocket = -1;               ///< index of the pocket that holds it, kOffTable, or -1
     int fell = -1;                 ///< 0 for the ball that fell first, 1 for the next one, ..., or -1
     int cushions = 0;  ///< how often it met a cushion or a jaw: bounces, and contacts that began to last
+    bool met = false;  ///< by the struck ball: Outcome::struck
     bool operator==(const BallOutcome&) const = default;
 };
 
@@ -72,7 +73,9 @@ struct Outcome {
     std::int64_t events = 0;  ///< as many as the record would have
     int clusters = 0;         ///< of these events
     int struck = -1;  ///< the ball that the cue strikes, or else the first one that moves at the start; or -1
-    int first_hit = -1;              ///< the ball that it meets first: in a cluster the nearest one; or -1
+    int first_hit = -1;         ///< the ball that it meets first: in a cluster the nearest one; or -1
+    int contacts = 0;           ///< balls that it meets, each of them once
+    int approach_cushions = 0;  ///< its contacts with cushions and jaws before the second of them, or all
     std::vector<BallOutcome> balls;  ///< in the order of Scene::ball
     std::uint64_t hash = 0;          ///< Record::hash() as a number, if SimulateOptions::hash asked for it
     bool operator==(const Outcome&) const = default;

@@ -53,8 +53,10 @@ struct SequenceOptions {
     /// Number of threads that encode and write. 1: everything runs on the calling thread, so that the timings do not
     /// disturb each other. 0: one per core, or 1 with an empty pattern, which is used for measurements.
     int jobs = 0;
-    bool resume = false;  ///< skip frames whose finished file exists; the file must be a PNG of this size
-    RawSink raw;          ///< instead of PNG files; the pattern is not used
+    /// Skip frames whose file is there, and a whole PNG of this size. A mark beside the files says of which shot and picture they
+    /// are; it has to be this one.
+    bool resume = false;
+    RawSink raw;  ///< instead of PNG files; the pattern is not used
     RawFormat raw_format = RawFormat::kRgb;
     std::function<void(long done, long total)> progress;  ///< called on the calling thread; may throw to stop
     /// The same for the passes over the table, which is drawn before the first frame.
@@ -81,8 +83,12 @@ long frame_count(double from, double to, double fps);
 /// @throws RenderError naming the file; finished frames stay, and no incomplete file is left
 std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOptions& options);
 
-/// The file of frame k; @throws RenderError for a pattern without exactly one integer conversion.
+/// The file of frame k: a name without an integer conversion is that of the only frame.
+/// @throws RenderError for a pattern with another one, or with two
 std::string frame_path(const std::string& pattern, long k);
+
+/// Whether the pattern has a place for the number of a frame.
+bool is_numbered(const std::string& pattern);
 
 /// Writes a contact sheet: columns x rows pictures of the shot, row by row, each with its clock. Their times are
 /// evenly spaced from `from` to `to`, both included. The sheet is as wide as options.size, and each picture has its
