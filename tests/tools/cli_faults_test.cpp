@@ -76,7 +76,7 @@ TEST_F(Faults, AFileThatMayNotGrowIsNamedAndNotLeftHalf) {
     };
     for (std::vector<std::string> command : commands) {
         const bool frames = std::find(command.begin(), command.end(), "--at") != command.end();
-        command.push_back(folder_.file(frames ? "out%d.png" : "out"));
+        command.push_back(folder_.file(frames ? "out%d.png" : "out.png"));
         ProcessOptions options;
         options.file_limit = 500;
         const ProcessResult result = carom(command, options);

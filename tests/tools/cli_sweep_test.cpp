@@ -66,13 +66,14 @@ TEST(CliSweep, TheTableIsTheSameForAnyJobsAndAsShards) {
     for (const char* shard : {"1/4", "2/4", "3/4", "4/4"}) {
         expect_ok(carom(breaks(60, folder.file("part.csv"), {"--shard", shard})));
         parts += read_file(folder.file("part.csv"));
+        fs::remove(folder.file("part.csv"));
     }
     EXPECT_EQ(whole, parts);
     EXPECT_EQ(part_in(folder), "");
 
     const std::vector<std::string> lines = lines_of(whole);
     ASSERT_EQ(lines.size(), 61u);
-    EXPECT_EQ(lines[0].substr(0, 98),
+    EXPECT_EQ(lines[0].substr(0, 116),
               "shot,cue.aim_deg,cue.speed,rack.seed,outcome,duration,events,first_contact,contacts,cushions,"
               "pocketed,cue.x,cue.y,cu");
     for (std::size_t i = 1; i < lines.size(); ++i) {
@@ -196,7 +197,7 @@ TEST(CliSweep, ShotsThatCannotBePlayedAreRowsToo) {
     const std::vector<std::string> lines = lines_of(read_file(output));
     int invalid = 0, hit = 0;
     for (const std::string& line : lines) {
-        invalid += line.find(",invalid,,,,,,,,,,,,,,\"balls \"\"") != std::string::npos;
+        invalid += line.find(",invalid,,,,,,,,,,,,,,,,\"balls \"\"") != std::string::npos;
         hit += line.find(",1,") != std::string::npos;
     }
     EXPECT_GT(invalid, 3);
@@ -243,7 +244,7 @@ TEST(CliSweep, SaysWhatItNeeds) {
     EXPECT_EQ(error({"--vary", vary, "--count", "9007199254740993"}),
               "carom: --count: expected 1 to 9007199254740992 shots\n");
     EXPECT_EQ(error({"--vary", vary, "--count", "3", "--status", output}),
-              "carom: --status and --output name the same file\n");
+              "carom: --status and -o name the same file; give each its own\n");
     EXPECT_NE(error({"--vary", vary, "--count", "3x"}).find("--count"), std::string::npos);
     EXPECT_EQ(folder.names(), std::vector<std::string>{"s.toml"});
     const ProcessResult folder_asked =

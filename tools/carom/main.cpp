@@ -32,9 +32,12 @@ int run(int argc, char** argv) {
     program.version = CAROM_VERSION;
     program.option("-V,--version", {}, "", "Display program version information and exit");
     program.footer =
-        "CAROM_ISA=scalar|v3|v4 in the environment forces the instruction set (default: for "
-        "each kernel the fastest one).\n"
-        "Exit status: 0, 1 failed while running, 2 bad usage or bad scene, 130 interrupted.";
+        "Scenes are TOML files: docs/reference/scene_format.md and the folder scenes.\n"
+        "  carom simulate scenes/draw.toml            what happens\n"
+        "  carom view scenes/draw.toml -o shot.html   a page that plays it\n"
+        "CAROM_ISA=scalar|v3|v4 in the environment forces the instruction set (default: for each "
+        "kernel the fastest one).\n"
+        "Exit status: 0, 1 failed while running, 2 bad usage or bad scene, 130 or 143 interrupted.";
     add_simulate(program);
     add_render(program);
     add_view(program);

@@ -66,7 +66,9 @@ Distribution parse_distribution(std::string_view text, const toml::node* own) {
         need(1, 2, "normal(sd) or normal(mean,sd)");
         if (list.size() == 1 && (own == nullptr || !own->is_number()))
             fail(
-                "normal(sd) is around the number in the scene, and there is none; write it there, or use "
+                "normal(sd) is around the number in the scene, and there is none; check the name of the key, "
+                "write "
+                "the number there, or use "
                 "normal(mean,sd)");
         const double mean = list.size() == 1 ? *own->value<double>() : number(name, list, 0);
         const double deviation = number(name, list, list.size() - 1);

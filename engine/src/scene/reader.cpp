@@ -185,7 +185,9 @@ std::optional<Section> Section::section(const char* key, const std::vector<std::
     const toml::node* node = table_->get(key);
     if (!node) return std::nullopt;
     if (!node->is_table()) {
-        const char* hint = node->is_array_of_tables() ? " (single brackets, once)" : "";
+        const char* hint = !node->is_array_of_tables()        ? ""
+                           : std::string_view(key) == "balls" ? " (single brackets, once; a ball is [[ball]])"
+                                                              : " (single brackets, once)";
         fail(key, "{} must be a section [{}]{}, not {}", full(key), full(key), hint, type_name(*node));
     }
     return Section(*node->as_table(), file_, full(key), keys);

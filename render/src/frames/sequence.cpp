@@ -260,7 +260,7 @@ std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOpt
         throw RenderError("bad frame pattern '" + options.pattern +
                           "'; give exactly one %d or %0Nd, like frames/%05d.png");
     if (files) make_folder(options.pattern);
-    if (files && !options.resume && is_numbered(options.pattern)) mark_frames(record, options);
+    if (files && !options.resume && count > 1) mark_frames(record, options);
     FrameLoop(record, options, frames).run(count - static_cast<long>(frames.size()));
     return frames;
 }

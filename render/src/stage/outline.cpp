@@ -50,11 +50,12 @@ std::vector<Link> link_ends(const Table& table) {
                 join(a, b, -1);
         }
     }
+    std::vector<int> jaws(static_cast<std::size_t>(ends), -1);  // at which a free end lies
+    for (int a = 0; a < ends; ++a)
+        if (free(a)) jaws[a] = jaw_at(table, point_of(table, a));
     for (int a = 0; a < ends; ++a) {
-        const int jaw = free(a) ? jaw_at(table, point_of(table, a)) : -1;
-        for (int b = a + 1; b < ends && jaw >= 0 && free(a); ++b) {
-            if (free(b) && b / 2 != a / 2 && jaw_at(table, point_of(table, b)) == jaw) join(a, b, jaw);
-        }
+        for (int b = a + 1; b < ends && jaws[a] >= 0 && free(a); ++b)
+            if (free(b) && b / 2 != a / 2 && jaws[b] == jaws[a]) join(a, b, jaws[a]);
     }
     return links;
 }

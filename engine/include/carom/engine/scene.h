@@ -220,7 +220,7 @@ struct Rack {
 inline constexpr Field<Rack> kRackFields[] = {
     field<&Rack::game>("game", "which balls stand where"),
     field<&Rack::gap>("gap", at_least(0.0, kMaxLength, "m"), "between neighbours, 0 = touching"),
-    field<&Rack::jitter>("jitter", at_least(0.0, kMaxLength, "m"),
+    field<&Rack::jitter>("jitter", at_least(0.0, kMaxJitter, "m"),
                          "every ball moves by up to this much in x and in y"),
     field<&Rack::seed>("seed", at_least(0.0, kAnyInteger), "of the random numbers"),
     field<&Rack::count>("count", at_least(1.0, kMaxBalls), "balls of a `line`"),

@@ -1,0 +1,275 @@
+// What people mistype, and what others put in the way: files, names, numbers.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Mistakes : public testing::Test {
+  protected:
+    /// Expects an exit with status 2, this message and no output.
+    static void refused(const std::string& message, const std::vector<std::string>& arguments) {
+        const ProcessResult result = carom(arguments);
+        EXPECT_EQ(result.status, 2) << result.err;
+        EXPECT_EQ(result.out, "");
+        EXPECT_TRUE(contains(result.err, message)) << result.err;
+    }
+    std::vector<std::string> sweep(const std::string& output,
+                                   const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> all = {"sweep",   scene_, "--vary", "cue.speed=uniform(1,2)",
+                                        "--count", "6",    "-o",     output};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+
+    TemporaryFolder folder_;
+    std::string scene_ = folder_.write("s.toml", kSmallScene);
+};
+
+TEST_F(Mistakes, AMistypedCommandNamesTheNearest) {
+    refused("there is no command \"simulat\"; did you mean simulate?", {"simulat", scene_});
+    refused("there is no command \"rendr\"; did you mean render?", {"rendr"});
+    refused("there is no command \"fly-away\"; there are simulate, render, view", {"fly-away"});
+    refused("name a command before the file, as in carom simulate " + scene_, {scene_});
+}
+
+TEST_F(Mistakes, HelpAndVersionAreWordsToo) {
+    EXPECT_EQ(carom({"help"}).out, carom({"--help"}).out);
+    EXPECT_EQ(carom({"help", "sweep"}).out, carom({"sweep", "--help"}).out);
+    for (const char* version : {"version", "-V"}) EXPECT_EQ(carom({version}).out, carom({"--version"}).out);
+}
+
+TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
+    const std::string before = read_file(scene_), same = folder_.file("same");
+    const std::string link = folder_.file("link.toml");
+    fs::create_symlink(scene_, link);
+    refused("-o \"" + scene_ + "\" would replace what is read", {"simulate", scene_, "-o", scene_});
+    refused("would replace what is read", {"simulate", scene_, "-o", link});
+    refused("would replace what is read", {"simulate", scene_, "-o", folder_.path().string() + "/./s.toml"});
+    refused("would replace what is read", sweep(scene_));
+    refused("would replace what is read", {"margin", scene_, "--no-render", "--csv", scene_});
+    refused("--events and --samples name the same file",
+            {"simulate", scene_, "--events", same, "--samples", same, "--sample-dt", "0.1"});
+    refused("-o: a file without a name", sweep(""));
+    EXPECT_EQ(read_file(scene_), before);
+    EXPECT_EQ(carom({"simulate", scene_, "-o", "/dev/null", "--events", "/dev/null"}).status, 0);
+}
+
+TEST_F(Mistakes, PicturesHaveNamesOfPictures) {
+    refused("pictures are PNG files", {"render", scene_, "-o", folder_.file("f%d.jpg")});
+    refused("pictures are PNG files", {"render", scene_, "--at", "0.1", "-o", folder_.file("f.jpg")});
+    refused("or the name of a film", {"render", scene_, "-o", folder_.file("movie.avi")});
+    refused("--at 99: the shot is over after", {"render", scene_, "--at", "99", "-o", folder_.file("f.png")});
+    EXPECT_EQ(folder_.names(), std::vector<std::string>{"s.toml"});
+    const std::string one = folder_.file("f.png");
+    const ProcessResult result = carom({"render", scene_, "--at", "0.1", "--size", "32x18", "-o", one});
+    EXPECT_EQ(result.out, "1 frame: " + one + "\n") << result.err;
+    EXPECT_TRUE(fs::exists(one));
+}
+
+TEST_F(Mistakes, ResumeKnowsWhichShotFramesAreOf) {
+    const std::string pattern = folder_.file("f%d.png");
+    const auto render = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> all = {"render", scene_,   "--fps", "10", "--to",
+                                        "0.3",    "--size", "32x18", "-o", pattern};
+        all.insert(all.end(), more.begin(), more.end());
+        return carom(all);
+    };
+    EXPECT_EQ(render({"--resume"}).status, 1);
+    ASSERT_EQ(render({}).status, 0);
+    EXPECT_TRUE(contains(render({"--resume"}).out, "0 frames: all are there"));
+    const std::vector<std::vector<std::string>> others = {
+        {"--camera", "rail"}, {"--trails"}, {"--from", "0.1"}, {"--eye", "1,1,1", "--target", "0,0,0"}};
+    for (std::vector<std::string> other : others) {
+        other.push_back("--resume");
+        const ProcessResult result = render(other);
+        EXPECT_EQ(result.status, 1) << other[0];
+        EXPECT_TRUE(contains(result.err, "of another shot, camera, overlay or size; render without --resume"))
+            << result.err;
+    }
+    std::ofstream(scene_, std::ios::app) << "[balls]\nmu_r = 0.02\n";
+    EXPECT_EQ(render({"--resume"}).status, 1);
+}
+
+TEST_F(Mistakes, OlderFramesAreNotInTheFilm) {
+    const std::string pattern = folder_.file("a film %d.png");
+    const ProcessResult result =
+        carom({"render", scene_, "--fps", "10", "--to", "0.3", "--size", "32x18", "-o", pattern});
+    EXPECT_TRUE(contains(result.out, "ffmpeg -y -framerate 10 -i '" + pattern + "' -frames:v 4 "))
+        << result.out;
+}
+
+TEST_F(Mistakes, ARecordIsNoScene) {
+    const std::string record = folder_.file("r.json");
+    ASSERT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
+    for (const char* command : {"simulate", "check", "margin"})
+        refused("this is JSON, and a scene is TOML; if it is a record, carom render, view and export take it",
+                {command, record});
+}
+
+TEST_F(Mistakes, NumbersOfAnotherUnitAreWarnedAbout) {
+    const struct {
+        const char *scene, *warning;
+    } kCases[] = {
+        {"[[ball]]\nposition = [50, 45]\n",
+         "warning: ball \"cue\" lies 48.7 m beside the table; positions are in m"},
+        {"[[ball]]\nposition = [2.0, 0.45]\n", "warning: ball \"cue\" lies 0.73 m beside the table"},
+        {"[[ball]]\n[cue]\nspeed = 2500\n[stop]\nevents = 3\n", "warning: the cue moves at 2500 m/s"},
+        {"[[ball]]\nvelocity = [300, 0]\n[stop]\nevents = 3\n", "warning: ball \"cue\" starts at 300 m/s"},
+        {"[table]\ncushion = []\n[balls]\nradius = 28.575\n[[ball]]\n",
+         "warning: a ball has a radius of 28.57 m"},
+    };
+    for (const auto& c : kCases) {
+        const ProcessResult result = carom({"simulate", folder_.write("units.toml", c.scene)});
+        EXPECT_EQ(result.status, 0) << result.err;
+        EXPECT_TRUE(contains(result.err, c.warning)) << result.err;
+    }
+    for (const std::string& shipped : shipped_scenes())
+        EXPECT_FALSE(contains(carom({"check", shipped}).err, "are in m")) << shipped;
+}
+
+TEST_F(Mistakes, StandardOutputIsAFileToo) {
+    const ProcessResult samples = carom({"simulate", scene_, "--samples", "-", "--sample-dt", "0.5"});
+    EXPECT_EQ(lines_of(samples.out)[0].substr(0, 10), "time,ball,") << samples.out;
+    EXPECT_FALSE(contains(samples.out, "balls at the end"));
+    EXPECT_FALSE(fs::exists("-"));
+    refused("--events and --samples name the same file",
+            {"simulate", scene_, "--events", "-", "--samples", "-", "--sample-dt", "0.5"});
+}
+
+TEST_F(Mistakes, EventsAsATable) {
+    const ProcessResult result = carom({"simulate", scene_, "--list"});
+    EXPECT_EQ(result.status, 0);
+    const auto counts = nlohmann::json::parse(carom({"simulate", scene_, "--json"}).out);
+    int events = 0;
+    for (const auto& [name, count] : counts["events_by_kind"].items()) {
+        events += count.get<int>();
+        int lines = 0;
+        for (const std::string& line : lines_of(result.out))
+            lines += contains(line, " " + name + " ") ? 1 : 0;
+        EXPECT_GE(lines, count.get<int>()) << name;
+    }
+    EXPECT_EQ(events, counts["events"].get<int>());
+}
+
+TEST_F(Mistakes, ASeedIsAWholeNumber) {
+    for (const char* seed : {"-1", "18446744073709551616", "99999999999999999999999", "1.5", "x"})
+        refused("expected 0 to 18446744073709551615", sweep(folder_.file("a.csv"), {"--seed", seed}));
+    EXPECT_EQ(carom(sweep("/dev/null", {"--seed", "18446744073709551615"})).status, 0);
+}
+
+TEST_F(Mistakes, AShardReplacesNoOther) {
+    const std::string output = folder_.file("a.csv");
+    ASSERT_EQ(carom(sweep(output, {"--shard", "1/2"})).status, 0);
+    const std::string first = read_file(output);
+    refused("perhaps of another shard", sweep(output, {"--shard", "2/2"}));
+    EXPECT_EQ(read_file(output), first);
+}
+
+// The unfinished file of a sweep, as the same command finds it again.
+class TakenUp : public Mistakes {
+  protected:
+    void SetUp() override {
+        ASSERT_EQ(carom(sweep(output_)).status, 0);
+        whole_ = read_file(output_);
+        fs::remove(output_);
+        // A full disk leaves it, and tells its name.
+        ProcessOptions full;
+        full.file_limit = 1;
+        const ProcessResult stopped = carom(sweep(output_), full);
+        for (const auto& entry : fs::directory_iterator(folder_.path()))
+            if (entry.path().extension() == ".part") part_ = entry.path().string();
+        ASSERT_NE(part_, "") << stopped.err;
+        fs::remove(part_);
+    }
+    std::string output_ = folder_.file("w.csv"), whole_, part_;
+};
+
+TEST_F(TakenUp, ALinkIsNotFollowed) {
+    const std::string victim = folder_.write("victim", "of value\n");
+    fs::create_symlink(victim, part_);
+    const ProcessResult result = carom(sweep(output_));
+    EXPECT_EQ(result.status, 1);
+    EXPECT_TRUE(contains(result.err, "this is a link")) << result.err;
+    EXPECT_EQ(read_file(victim), "of value\n");
+    fs::remove(part_);
+    ASSERT_EQ(::mkfifo(part_.c_str(), 0600), 0);
+    EXPECT_TRUE(contains(carom(sweep(output_)).err, "this is no file"));
+}
+
+TEST_F(TakenUp, RowsAreLookedAt) {
+    const std::vector<std::string> lines = lines_of(whole_);
+    const auto first_rows = [&](std::size_t count) {
+        std::string text;
+        for (std::size_t i = 0; i < count; ++i) text += lines[i] + "\n";
+        return text;
+    };
+    folder_.write(fs::path(part_).filename().string(), first_rows(4));
+    ASSERT_EQ(carom(sweep(output_)).status, 0);
+    EXPECT_EQ(read_file(output_), whole_);
+    for (const std::size_t forged : {0u, 2u}) {
+        std::string text;
+        for (std::size_t i = 0; i < 5; ++i) text += (i == forged ? "9" : "") + lines[i] + "\n";
+        folder_.write(fs::path(part_).filename().string(), text);
+        const ProcessResult result = carom(sweep(output_));
+        EXPECT_EQ(result.status, 1);
+        EXPECT_TRUE(contains(result.err, "its rows are not what this program computes")) << result.err;
+    }
+}
+
+TEST_F(TakenUp, FailuresThatAreThereCount) {
+    std::vector<std::string> lines = lines_of(whole_);
+    // The second row says that its shot failed; the last one is played again, and is as it was.
+    lines[2] = lines[2].substr(0, lines[2].find(',', 2)) + ",failed,,,,,,,,,,,,,,,,why";
+    std::string text;
+    for (std::size_t i = 0; i < 4; ++i) text += lines[i] + "\n";
+    folder_.write(fs::path(part_).filename().string(), text);
+    const ProcessResult result = carom(sweep(output_));
+    EXPECT_EQ(result.status, 1);
+    EXPECT_TRUE(contains(result.err, "1 shot failed while running; its row says why")) << result.err;
+}
+
+// Others may write in the folder, too.
+TEST_F(Mistakes, ATemporaryFileIsNewAndNoLink) {
+    const std::string record = folder_.file(std::string(240, 'r') + ".json");
+    EXPECT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
+    EXPECT_TRUE(fs::exists(record));
+    // Rights stay, and links to nothing are followed.
+    const std::string secret = folder_.write("secret.csv", "");
+    fs::permissions(secret, fs::perms::owner_read | fs::perms::owner_write);
+    EXPECT_EQ(carom({"simulate", scene_, "--events", secret}).status, 0);
+    EXPECT_EQ(fs::status(secret).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+    const std::string target = folder_.file("target.csv"), link = folder_.file("link.csv");
+    fs::create_symlink("target.csv", link);
+    EXPECT_EQ(carom({"simulate", scene_, "--events", link}).status, 0);
+    EXPECT_TRUE(fs::is_symlink(link));
+    EXPECT_TRUE(fs::is_regular_file(target));
+}
+
+TEST_F(Mistakes, NothingSteersTheTerminal) {
+    const std::string record = folder_.file("r.json");
+    ASSERT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
+    std::string text = read_file(record);
+    const std::size_t at = text.find("\"ball 2\"");
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, 8, "\"\\u001b[2J\"");
+    refused("this id holds what could steer a terminal", {"render", folder_.write("bad.json", text)});
+    const ProcessResult result = carom({"simulate", folder_.file("no\x1b[2J.toml")});
+    EXPECT_EQ(result.err.find('\x1b'), std::string::npos);
+    EXPECT_EQ(result.status, 2);
+}
+
+}  // namespace
+}  // namespace carom::test
