@@ -96,8 +96,9 @@ carom_status carom_collide_balls(const double in1[9], const double in2[9], const
         check_tolerance(tolerance);
         ImpactResult result{};
         tolerance_function(chosen_isa())(ball_of(in1), ball_of(in2), params_of(*params), tolerance, result);
-        std::copy_n(in1, 3, out1);
-        std::copy_n(in2, 3, out2);
+        const std::array<double, 3> r1{in1[0], in1[1], in1[2]}, r2{in2[0], in2[1], in2[2]};
+        std::copy_n(r1.data(), 3, out1);
+        std::copy_n(r2.data(), 3, out2);
         std::copy_n(result.v1, 3, out1 + 3);
         std::copy_n(result.w1, 3, out1 + 6);
         std::copy_n(result.v2, 3, out2 + 3);

@@ -47,6 +47,11 @@ TEST(CApi, CollidesAsTheKernelDoes) {
             EXPECT_EQ(out1[6 + k], result.w1[k]);
             EXPECT_EQ(out2[6 + k], result.w2[k]);
         }
+        // Outputs may be inputs, crosswise too.
+        std::vector<double> a = in1, b = in2;
+        ASSERT_EQ(carom_collide_balls(a.data(), b.data(), &params, 1e-8, b.data(), a.data()), CAROM_OK);
+        EXPECT_EQ(b, out1);
+        EXPECT_EQ(a, out2);
     }
 }
 

@@ -64,7 +64,7 @@ typedef enum carom_impact_status {
 } carom_impact_status;
 
 /* Solves one impact of the model of Mathavan, Jackson and Parkin (2014) with an error of at most `tolerance` (1e-13
- * to 1e-1) times the approach speed. `out` may be `in`. Returns CAROM_BAD_ARGUMENT if a state, a parameter or the
+ * to 1e-1) times the approach speed. Outputs may be inputs. Returns CAROM_BAD_ARGUMENT if a state, a parameter or the
  * tolerance is invalid. For balls that do not approach it returns CAROM_OK and the unchanged states. */
 CAROM_API carom_status carom_collide_balls(const double in1[9], const double in2[9],
                                            const carom_impact_params* params, double tolerance,
