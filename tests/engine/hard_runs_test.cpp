@@ -219,6 +219,27 @@ TEST(HardRuns, Restart) {
     }
 }
 
+// Three of the million breaks of docs/lab/2026-11-million_breaks.md in which a held ball was left with 1e-13 m/s, and took days to stop.
+TEST(HardRuns, WhatFrictionStopsAtOnceDoesNotCreep) {
+    const struct {
+        const char *aim, *speed, *seed;
+    } kBreaks[] = {{"86.62569300366489", "2.7659426616848983", "416425230"},
+                   {"89.17706492225578", "2.466886234780126", "98291241"},
+                   {"86.6187002037691", "2.0819248592371657", "215509027"}};
+    for (const auto& b : kBreaks) {
+        const Scene scene =
+            parse_scene(std::string("[table]\npreset = \"nine_foot\"\n[balls]\npreset = \"pool\"\n"
+                                    "[rack]\ngame = \"eight_ball\"\ngap = 1e-4\njitter = 5e-5\nseed = ") +
+                            b.seed + "\n[[ball]]\nid = \"cue\"\nposition = [0.60, 0.50]\n" +
+                            "[cue]\nball = \"cue\"\noffset = [0.0, 0.1]\nspeed = " + b.speed +
+                            "\naim_deg = " + b.aim + "\n",
+                        "(test)");
+        const Record record = run_verified(scene);
+        EXPECT_EQ(record.stopped, StopReason::kAtRest);
+        EXPECT_LT(record.duration, 15.0) << b.seed;
+    }
+}
+
 // H40: one seed, one hash; another seed, another rack.
 TEST(HardRuns, SeededRacks) {
     const auto run = [](int seed) {

@@ -17,6 +17,8 @@ namespace {
 constexpr double kLongestInterval = 1e6;
 // [m] Position error of a ball in one interval: 1e-6 m after the hundred or so intervals of a long push.
 constexpr double kPlaceError = 2e-8;
+// [s] What friction stops at once rests after this time at the latest: with the error of places alone it could creep for days.
+constexpr double kStopsWithin = 0.01;
 // [rad] Up to this, a direction that turns is that of the middle of the interval.
 constexpr double kTurnOfMiddle = 0.5;
 // [rad] and [m] Largest rotation of a normal within an interval, and the largest gap that it may leave.
@@ -100,8 +102,9 @@ double friction_interval(const Group& g, const Body& b, double h) {
     const double gone = gone_within(g, b, h);
     // Stopped evenly instead of at once, it goes half as far in the whole interval.
     if (gone < kNever)
-        return gone < kShortestInterval ? allowed_interval(h, 0.5 * length(m.start) * h, kPlaceError, 1)
-                                        : kNever;
+        return gone < kShortestInterval
+                   ? std::min(kStopsWithin, allowed_interval(h, 0.5 * length(m.start) * h, kPlaceError, 1))
+                   : kNever;
     const double turn = turn_of(m.start, m.end);
     if (turn <= kStraight) return kNever;
     if (turn > kTurnOfMiddle) return allowed_interval(h, 0.5 * m.strength * h * h, kPlaceError, 2);
