@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 /// Every key of the format that can stand in a written-out scene, none at its default.
 constexpr char kEveryKey[] = R"([table]
 cloth = "tournament"
+bed = [-1, -2, 7, 8]
 [[table.cushion]]
 from = [0, 0]
 to = [0.1, 2.9]

@@ -154,6 +154,23 @@ const std::map<std::string, Mistake>& mistakes() {
         {"same_id", [](Scene& s) { s.ball[1].id = "cue"; }},
         {"same_id_by_default", [](Scene& s) { s.ball[1].id = "cue"; }},
         {"same_id_in_rack", [](Scene& s) { s = with_rack("\"eight_ball\""), s.ball[0].id = "7"; }},
+        {"ball_beside_bed",
+         [](Scene& s) {
+             s.table.bed = Rectangle(0.0, 0.0, 1.0, 1.0);
+             place(s, 0, 0.5, 1.5);
+             s.ball[0].height = 0.1;
+             s.ball[0].position.z() += 0.1;
+         }},
+        {"bed_without_surface", [](Scene& s) { s.table.bed = Rectangle(0.0, 1.0, 2.0, 1.0); }},
+        {"bed_of_planar_scene",
+         [](Scene& s) {
+             s.table.bed = Rectangle(0.0, 0.0, 1.27, 2.54);
+             s.physics.vertical = Vertical::kDrop;
+         }},
+        {"id_of_a_formula", [](Scene& s) { s.ball[0].id = "=1+1"; }},
+        {"id_of_a_cushion", [](Scene& s) { s.ball[0].id = "c12"; }},
+        {"id_that_steers", [](Scene& s) { s.ball[0].id = "a\u202eb"; }},
+        {"too_small_a_number", [](Scene& s) { s.ball[0].velocity.x() = 1e-310; }},
         {"stop_negative", [](Scene& s) { s.stop.time = -1.0; }},
         {"march_without_substeps", [](Scene& s) { s.physics.march = March::kPublished; }},
         {"substeps_zero", [](Scene& s) { s.physics.substeps = 0; }},

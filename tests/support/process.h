@@ -31,11 +31,12 @@ class TemporaryFolder : public carom::TemporaryFolder {
         return file(name);
     }
 
-    /// Names of all files in it, in folders too.
+    /// Names of all files in it, in folders too, but for the mark that says of which shot frames are.
     std::vector<std::string> names() const {
         std::vector<std::string> found;
         for (const auto& entry : std::filesystem::recursive_directory_iterator(path())) {
-            if (entry.is_regular_file()) found.push_back(entry.path().filename().string());
+            const std::string name = entry.path().filename().string();
+            if (entry.is_regular_file() && !name.ends_with(".png.shot")) found.push_back(name);
         }
         return found;
     }

@@ -49,8 +49,8 @@ TEST_F(CliRender, FramesAreNumberedFromZeroAndWhole) {
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.err, "");
     EXPECT_EQ(result.out, "4 frames, 320x180 at 10 fps: " + pattern() +
-                              "\nto make a film of them: ffmpeg -framerate 10 -i " + pattern() +
-                              " -pix_fmt yuv420p shot.mp4\n");
+                              "\nto make a film of them: ffmpeg -y -framerate 10 -i " + pattern() +
+                              " -frames:v 4 -pix_fmt yuv420p shot.mp4\n");
     for (int k = 0; k < 4; ++k) EXPECT_EQ(png_size(frame(k)), std::make_pair(320u, 180u)) << k;
     EXPECT_EQ(folder_.names().size(), 5u);
     EXPECT_NE(read_file(frame(0)), read_file(frame(3)));

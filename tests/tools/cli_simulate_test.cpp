@@ -78,7 +78,7 @@ TEST_F(CliSimulate, JsonIsTheDesigns) {
     const ProcessResult result = run({"--json"});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json json = Json::parse(result.out);
-    ASSERT_EQ(json.size(), 4u);
+    ASSERT_EQ(json.size(), 5u);
     EXPECT_GT(json.at("duration").get<double>(), 1.0);
     EXPECT_GT(json.at("events").get<int>(), 5);
     EXPECT_EQ(json.at("hash").get<std::string>() + "\n", run({"--hash"}).out);

@@ -23,8 +23,13 @@ constexpr int kMostNames = 1000;  // temporary files of one process in one folde
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(path_) {
     namespace fs = std::filesystem;
     std::error_code error;
+    if (fs::exists(path_, error)) {
+        const fs::path real = fs::canonical(path_, error);
+        if (!error) target_ = real.string();
+    }
     // A link to a file that is not there yet is followed, too.
-    for (int links = 0; links < kMostLinks && fs::is_symlink(target_, error); ++links) {
+    for (int links = 0; !fs::exists(target_, error) && links < kMostLinks && fs::is_symlink(target_, error);
+         ++links) {
         const fs::path to = fs::read_symlink(target_, error);
         if (error) break;
         target_ = to.is_absolute() ? to.string() : (fs::path(target_).parent_path() / to).string();
