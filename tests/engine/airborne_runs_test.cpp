@@ -398,8 +398,7 @@ TEST(Airborne, Piles) {
 TEST(Airborne, SlowContactsAreMarked) {
     const Scene scene = pile(0.0, 1e-3);
     Record r = run_verified(scene);
-    const auto marks =
-        std::count_if(r.events.begin(), r.events.end(), [](const Event& e) { return e.slow; });
+    const auto marks = std::count_if(r.events.begin(), r.events.end(), [](const Event& e) { return e.slow; });
     EXPECT_GT(marks, 0);
     EXPECT_LT(marks, static_cast<std::ptrdiff_t>(r.events.size()));
     EXPECT_EQ(parse_record(record_json(r), "(test)").events, r.events);
