@@ -1,6 +1,7 @@
 // Search for contacts of balls in the air.
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "contact/pocket_edge.h"
 #include "loop/detector.h"
