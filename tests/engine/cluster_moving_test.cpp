@@ -20,7 +20,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kR = 0.028575;  // [m] of pool balls
+constexpr double kBallR = 0.028575;  // [m] of pool balls
 
 /// The state in which a ball comes into an event at `time`, or in which it goes on.
 MovingBall state(const Record& record, int ball, double time, bool after) {
@@ -28,7 +28,7 @@ MovingBall state(const Record& record, int ball, double time, bool after) {
     std::size_t k = 0;
     while (k + 1 < list.size() && (after ? list[k + 1].start <= time : list[k + 1].start < time)) ++k;
     const double t = time - list[k].start;
-    const Vec3 r = position_at(list[k], t), v = velocity_at(list[k], t), w = spin_at(list[k], t, kR);
+    const Vec3 r = position_at(list[k], t), v = velocity_at(list[k], t), w = spin_at(list[k], t, kBallR);
     return {{r.x(), r.y(), r.z()}, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()}};
 }
 
@@ -138,7 +138,7 @@ Outcome3 outcome(const Three& three) {
     out.whole = last < 0.8 * kTime;
     for (int ball = 0; ball < 3; ++ball) {
         const MovingBall b = state(record, ball, last, true);
-        const double motion[] = {b.v[0], b.v[1], kR * b.w[2]};
+        const double motion[] = {b.v[0], b.v[1], kBallR * b.w[2]};
         for (std::size_t k = 0; k < 3; ++k)
             out.motion[3 * static_cast<std::size_t>(ball) + k] = motion[k] / kSpeed;
     }

@@ -19,13 +19,13 @@ using games::Verdict;
 
 using Fouls = std::vector<Foul>;
 
-Told table() {
+Told carom_table() {
     Told told("carom");
     return told.ball("white", 0.5, 0.7).ball("yellow", 0.71, 1.0).ball("red", 0.9, 2.0);
 }
 
 Told whites_shot() {
-    return table().strike("white");
+    return carom_table().strike("white");
 }
 
 /// A ball, three cushions, the other one.
@@ -35,7 +35,7 @@ Record three_between(const std::string& first, const std::string& second) {
     return told.hit("white", second).record();
 }
 
-State playing(int turn = 0, int target = 0) {
+State inning(int turn = 0, int target = 0) {
     State state = games::new_game(Game::kThreeCushion, turn, target);
     state.opening = false;
     return state;
@@ -58,7 +58,7 @@ TEST(ThreeCushion, APointIsThreeCushionsBeforeTheSecondBall) {
                                .hit("white", "yellow")
                                .record();
     for (const Record& record : {after_first, before_both, between}) {
-        const Verdict v = judge(playing(), record);
+        const Verdict v = judge(inning(), record);
         EXPECT_EQ(v.points, 1);
         EXPECT_EQ(v.next().points[0], 1);
         EXPECT_EQ(v.next().turn, 0);
@@ -83,7 +83,7 @@ TEST(ThreeCushion, TwoCushionsOrOneBallAreNoPoint) {
                               .hit("white", "yellow")
                               .record();
     for (const Record& record : {two, one_ball, others}) {
-        const Verdict v = judge(playing(), record);
+        const Verdict v = judge(inning(), record);
         EXPECT_EQ(v.points, 0);
         EXPECT_TRUE(v.fouls.empty());
         EXPECT_EQ(v.next().turn, 1);
@@ -100,16 +100,16 @@ TEST(ThreeCushion, TheSameCushionCountsAgain) {
                               .cushion("white", 1)
                               .hit("white", "yellow")
                               .record();
-    EXPECT_EQ(judge(playing(), record).points, 1);
+    EXPECT_EQ(judge(inning(), record).points, 1);
 }
 
 TEST(ThreeCushion, EachPlayerHasABall) {
-    EXPECT_EQ(games::legal(playing(0), std::vector<std::string>{"white", "yellow", "red"}).cue_balls,
+    EXPECT_EQ(games::legal(inning(0), std::vector<std::string>{"white", "yellow", "red"}).cue_balls,
               (std::vector<std::string>{"white"}));
-    EXPECT_EQ(games::legal(playing(1), std::vector<std::string>{"white", "yellow", "red"}).first,
+    EXPECT_EQ(games::legal(inning(1), std::vector<std::string>{"white", "yellow", "red"}).first,
               (std::vector<std::string>{"white", "red"}));
     const Record record = three_between("red", "yellow");
-    const Verdict v = judge(playing(1), record);
+    const Verdict v = judge(inning(1), record);
     EXPECT_EQ(v.fouls, (Fouls{Foul::kWrongCueBall}));
     EXPECT_EQ(v.points, 0);
     EXPECT_EQ(v.next().turn, 0);
@@ -123,19 +123,19 @@ TEST(ThreeCushion, TheOpeningShotIsAtTheRed) {
     const Verdict v = judge(opening, yellow);
     EXPECT_EQ(v.fouls, (Fouls{Foul::kOpeningNotRed}));
     EXPECT_EQ(v.points, 0);
-    EXPECT_EQ(judge(playing(), yellow).points, 1);
+    EXPECT_EQ(judge(inning(), yellow).points, 1);
 }
 
 TEST(ThreeCushion, BallsOffTheTableComeBackToTheirSpots) {
     const Table carom = make_table("carom");
-    const Verdict red = judge(playing(), whites_shot().hit("white", "red").out("red").record());
+    const Verdict red = judge(inning(), whites_shot().hit("white", "red").out("red").record());
     EXPECT_EQ(red.fouls, (Fouls{Foul::kBallOff}));
     EXPECT_EQ(red.next().turn, 1);
     ASSERT_EQ(red.respots().size(), 1u);
     EXPECT_EQ(red.respots()[0].place, foot_spot(carom));
     // Yellow is the next player's cue ball.
     const Verdict all =
-        judge(playing(), whites_shot().hit("white", "red").out("red").out("white").out("yellow").record());
+        judge(inning(), whites_shot().hit("white", "red").out("red").out("white").out("yellow").record());
     ASSERT_EQ(all.respots().size(), 3u);
     EXPECT_EQ(all.respots()[0], (games::Respot{"red", foot_spot(carom)}));
     EXPECT_EQ(all.respots()[1], (games::Respot{"white", games::center_spot(carom)}));
@@ -148,18 +148,18 @@ TEST(ThreeCushion, ABallWhoseSpotIsTakenGoesToTheSpotOfTheOneInTheWay) {
     // Yellow, the next cue ball, lies on the foot spot: the red goes to the head spot.
     const Record one =
         whites_shot().hit("white", "red").out("red").rests("yellow", foot.x(), foot.y()).record();
-    EXPECT_EQ(judge(playing(), one).respots()[0].place, games::head_spot(carom));
+    EXPECT_EQ(judge(inning(), one).respots()[0].place, games::head_spot(carom));
     // White lies on it: the middle.
     const Record other =
         whites_shot().hit("white", "red").out("red").rests("white", foot.x() + 0.01, foot.y()).record();
-    EXPECT_EQ(judge(playing(), other).respots()[0].place, games::center_spot(carom));
+    EXPECT_EQ(judge(inning(), other).respots()[0].place, games::center_spot(carom));
 }
 
 TEST(ThreeCushion, TouchingBallsMayBeSpotted) {
     const double R = make_ball_params("carom").R;
     const Record touching =
         whites_shot().hit("white", "red").rests("yellow", 0.5, 1.0).rests("red", 0.5 + 2.0 * R, 1.0).record();
-    const Verdict v = judge(playing(), touching);
+    const Verdict v = judge(inning(), touching);
     EXPECT_EQ(decisions(v), (std::vector{Decision::kPlayOn, Decision::kSpotTouching}));
     EXPECT_EQ(v.chooser, 1);
     EXPECT_TRUE(v.options[0].respots.empty());
@@ -171,11 +171,11 @@ TEST(ThreeCushion, TouchingBallsMayBeSpotted) {
                              .rests("yellow", 0.5, 1.0)
                              .rests("red", 0.501 + 2.0 * R, 1.0)
                              .record();
-    EXPECT_EQ(judge(playing(), apart).options.size(), 1u);
+    EXPECT_EQ(judge(inning(), apart).options.size(), 1u);
 }
 
 TEST(ThreeCushion, TheTargetEndsTheGame) {
-    State state = playing(0, 2);
+    State state = inning(0, 2);
     state.points = {1, 0};
     const Record point = three_between("red", "yellow");
     const Verdict v = judge(state, point);

@@ -24,7 +24,7 @@ using Decisions = std::vector<Decision>;
 
 const Call kPush = {"", "", false, true};
 
-Told table(int lowest, double y = 0.3) {
+Told nine_table(int lowest, double y = 0.3) {
     Told told;
     told.ball("cue", 0.6, y).balls(numbered(lowest, 9));
     return told.strike("cue");
@@ -48,9 +48,9 @@ State second_shot() {
 }
 
 TEST(NineBall, Rule23OnTheBreakTheOneIsMetFirstAndSomethingFallsOrFourMeetACushion) {
-    EXPECT_EQ(judge(nine_break(), table(1).hit("cue", "2").pocket("3").record()).fouls,
+    EXPECT_EQ(judge(nine_break(), nine_table(1).hit("cue", "2").pocket("3").record()).fouls,
               (Fouls{Foul::kWrongBallFirst}));
-    const Told few = table(1).hit("cue", "1").cushion("1").cushion("2").cushion("3").cushion("cue");
+    const Told few = nine_table(1).hit("cue", "1").cushion("1").cushion("2").cushion("3").cushion("cue");
     const Verdict three = judge(nine_break(), few.record());
     EXPECT_EQ(three.fouls, (Fouls{Foul::kFewCushionsOnBreak}));
     EXPECT_EQ(three.next().in_hand, InHand::kAnywhere);
@@ -58,31 +58,31 @@ TEST(NineBall, Rule23OnTheBreakTheOneIsMetFirstAndSomethingFallsOrFourMeetACushi
     EXPECT_TRUE(four.fouls.empty());
     EXPECT_EQ(four.next().turn, 1);
     EXPECT_TRUE(four.next().may_push_out);
-    EXPECT_EQ(judge(nine_break(), table(1, 0.7).hit("cue", "1").pocket("3").record()).fouls,
+    EXPECT_EQ(judge(nine_break(), nine_table(1, 0.7).hit("cue", "1").pocket("3").record()).fouls,
               (Fouls{Foul::kPlacedOutside}));
 }
 
 TEST(NineBall, Rule24AfterAFairBreakAPushOutNeedsNeitherBallNorCushion) {
-    const Verdict broke = judge(nine_break(), table(1).hit("cue", "1").pocket("5").record());
+    const Verdict broke = judge(nine_break(), nine_table(1).hit("cue", "1").pocket("5").record());
     EXPECT_EQ(broke.next().turn, 0);
     EXPECT_TRUE(broke.next().may_push_out);
     EXPECT_TRUE(games::legal(broke.next(), numbered(1, 9)).may_push_out);
-    const Verdict push = judge(second_shot(), table(1).hit("cue", "4").record(), kPush);
+    const Verdict push = judge(second_shot(), nine_table(1).hit("cue", "4").record(), kPush);
     EXPECT_TRUE(push.fouls.empty());
     EXPECT_EQ(push.chooser, 1);
     EXPECT_EQ(decisions(push), (Decisions{Decision::kPlayOn, Decision::kPassBack}));
     EXPECT_EQ(push.options[0].state.turn, 1);
     EXPECT_EQ(push.options[1].state.turn, 0);
     EXPECT_FALSE(push.options[0].state.may_push_out);
-    EXPECT_TRUE(judge(second_shot(), table(1).record(), kPush).fouls.empty());
+    EXPECT_TRUE(judge(second_shot(), nine_table(1).record(), kPush).fouls.empty());
     // Not announced, it is an ordinary shot; nor is there one later in the rack.
-    EXPECT_EQ(judge(second_shot(), table(1).hit("cue", "4").record()).fouls,
+    EXPECT_EQ(judge(second_shot(), nine_table(1).hit("cue", "4").record()).fouls,
               (Fouls{Foul::kWrongBallFirst, Foul::kNoCushion}));
-    EXPECT_EQ(judge(playing(), table(1).record(), kPush).fouls, (Fouls{Foul::kNoBallHit}));
+    EXPECT_EQ(judge(playing(), nine_table(1).record(), kPush).fouls, (Fouls{Foul::kNoBallHit}));
 }
 
 TEST(NineBall, Rule24AFoulOnAPushOutIsAFoul) {
-    const Verdict v = judge(second_shot(), table(1).hit("cue", "4").pocket("cue").record(), kPush);
+    const Verdict v = judge(second_shot(), nine_table(1).hit("cue", "4").pocket("cue").record(), kPush);
     EXPECT_EQ(v.fouls, (Fouls{Foul::kCueBallPocketed}));
     EXPECT_EQ(v.next().in_hand, InHand::kAnywhere);
 }
@@ -90,41 +90,42 @@ TEST(NineBall, Rule24AFoulOnAPushOutIsAFoul) {
 TEST(NineBall, Rule25ABallThatFallsFairlyGoesOn) {
     EXPECT_EQ(games::legal(playing(), std::vector<std::string>{"cue", "7", "3", "9"}).first,
               (std::vector<std::string>{"3"}));
-    EXPECT_EQ(judge(playing(), table(3).hit("cue", "3").pocket("7").record()).next().turn, 0);
-    EXPECT_EQ(judge(playing(), table(3).hit("cue", "3").cushion("3").record()).next().turn, 1);
+    EXPECT_EQ(judge(playing(), nine_table(3).hit("cue", "3").pocket("7").record()).next().turn, 0);
+    EXPECT_EQ(judge(playing(), nine_table(3).hit("cue", "3").cushion("3").record()).next().turn, 1);
 }
 
 TEST(NineBall, Rule25TheNineWinsWheneverItFallsFairly) {
-    const Verdict v = judge(playing(), table(3).hit("cue", "3").pocket("9").record());
+    const Verdict v = judge(playing(), nine_table(3).hit("cue", "3").pocket("9").record());
     EXPECT_TRUE(v.next().over);
     EXPECT_EQ(v.next().winner, 0);
-    EXPECT_TRUE(judge(nine_break(), table(1).hit("cue", "1").pocket("9").record()).next().over);
+    EXPECT_TRUE(judge(nine_break(), nine_table(1).hit("cue", "1").pocket("9").record()).next().over);
 }
 
 TEST(NineBall, Rule26TheNineComesBackAfterAFoulAndAPushOutAndOffTheTable) {
     const Vec2 spot = foot_spot(make_table("nine_foot"));
-    for (const Verdict& v : {judge(playing(), table(3).hit("cue", "4").pocket("9").record()),
-                             judge(second_shot(), table(1).hit("cue", "4").pocket("9").record(), kPush),
-                             judge(playing(), table(3).hit("cue", "3").out("9").record())}) {
+    for (const Verdict& v : {judge(playing(), nine_table(3).hit("cue", "4").pocket("9").record()),
+                             judge(second_shot(), nine_table(1).hit("cue", "4").pocket("9").record(), kPush),
+                             judge(playing(), nine_table(3).hit("cue", "3").out("9").record())}) {
         EXPECT_FALSE(v.next().over);
         ASSERT_EQ(v.respots().size(), 1u);
         EXPECT_EQ(v.respots()[0].ball, "9");
         EXPECT_EQ(v.respots()[0].place, spot);
     }
     // No other ball does.
-    EXPECT_TRUE(judge(playing(), table(3).hit("cue", "4").pocket("5").out("6").record()).respots().empty());
+    EXPECT_TRUE(
+        judge(playing(), nine_table(3).hit("cue", "4").pocket("5").out("6").record()).respots().empty());
 }
 
 TEST(NineBall, Rule27AFoulGivesTheCueBallInHandAnywhere) {
-    const Verdict v = judge(playing(), table(3).hit("cue", "4").pocket("3").record());
+    const Verdict v = judge(playing(), nine_table(3).hit("cue", "4").pocket("3").record());
     EXPECT_EQ(v.fouls, (Fouls{Foul::kWrongBallFirst}));
     EXPECT_EQ(v.next().turn, 1);
     EXPECT_EQ(v.next().in_hand, InHand::kAnywhere);
 }
 
 TEST(NineBall, Rule614ThreeFoulsInARowLoseTheRack) {
-    const Record foul = table(3).hit("cue", "4").record(),
-                 fair = table(3).hit("cue", "3").cushion("3").record();
+    const Record foul = nine_table(3).hit("cue", "4").record(),
+                 fair = nine_table(3).hit("cue", "3").cushion("3").record();
     State state = playing();
     for (int k = 1; k <= 2; ++k) {
         const Verdict v = judge(state, foul);

@@ -26,7 +26,7 @@ const Table kTable = make_table("snooker");
 const std::vector<std::string> kAllColours = {"yellow", "green", "brown", "blue", "pink", "black"};
 
 /// The cue ball in the D, colours on their spots, reds in a row; struck.
-Told table(int reds, const std::vector<std::string>& colours = kAllColours) {
+Told snooker_table(int reds, const std::vector<std::string>& colours = kAllColours) {
     Told told("snooker");
     told.ball("cue", 0.8, 0.6);
     for (const std::string& colour : colours) {
@@ -46,21 +46,22 @@ State on(BallOn ball) {
 }
 
 TEST(Snooker, ARedScoresOneAndStaysDownAndAColourIsOn) {
-    const Verdict v = judge(on(BallOn::kRed), table(5).hit("cue", "1").pocket("1").record());
+    const Verdict v = judge(on(BallOn::kRed), snooker_table(5).hit("cue", "1").pocket("1").record());
     EXPECT_EQ(v.points, 1);
     EXPECT_EQ(v.next().points[0], 1);
     EXPECT_EQ(v.next().turn, 0);
     EXPECT_EQ(v.next().on, BallOn::kColour);
     EXPECT_TRUE(v.respots().empty());
-    EXPECT_EQ(judge(on(BallOn::kRed), table(5).hit("cue", "1").pocket("1").pocket("2").record()).points, 2);
+    EXPECT_EQ(
+        judge(on(BallOn::kRed), snooker_table(5).hit("cue", "1").pocket("1").pocket("2").record()).points, 2);
 }
 
 TEST(Snooker, AColourScoresItsValueAndComesBackWhileThereAreReds) {
     const int values[] = {2, 3, 4, 5, 6, 7};
     for (std::size_t k = 0; k < 6; ++k) {
         const std::string& colour = kAllColours[k];
-        const Verdict v =
-            judge(on(BallOn::kColour), table(5).hit("cue", colour).pocket(colour).record(), {colour, ""});
+        const Verdict v = judge(on(BallOn::kColour),
+                                snooker_table(5).hit("cue", colour).pocket(colour).record(), {colour, ""});
         EXPECT_EQ(v.points, values[k]);
         EXPECT_EQ(v.next().on, BallOn::kRed);
         ASSERT_EQ(v.respots().size(), 1u);
@@ -69,24 +70,26 @@ TEST(Snooker, AColourScoresItsValueAndComesBackWhileThereAreReds) {
 }
 
 TEST(Snooker, AfterTheLastRedAColourComesBackOnceMoreAndThenTheyFallInOrder) {
-    const Verdict last_red = judge(on(BallOn::kRed), table(1).hit("cue", "1").pocket("1").record());
+    const Verdict last_red = judge(on(BallOn::kRed), snooker_table(1).hit("cue", "1").pocket("1").record());
     EXPECT_EQ(last_red.next().on, BallOn::kColour);
-    const Verdict colour = judge(on(BallOn::kColour), table(0).hit("cue", "black").pocket("black").record());
+    const Verdict colour =
+        judge(on(BallOn::kColour), snooker_table(0).hit("cue", "black").pocket("black").record());
     EXPECT_EQ(colour.points, 7);
     EXPECT_EQ(colour.respots().size(), 1u);
     EXPECT_EQ(colour.next().on, BallOn::kYellow);
     const Verdict yellow =
-        judge(on(BallOn::kYellow), table(0).hit("cue", "yellow").pocket("yellow").record());
+        judge(on(BallOn::kYellow), snooker_table(0).hit("cue", "yellow").pocket("yellow").record());
     EXPECT_EQ(yellow.points, 2);
     EXPECT_TRUE(yellow.respots().empty());
     EXPECT_EQ(yellow.next().on, BallOn::kGreen);
     // Missed after the last red: the colours in their order.
-    EXPECT_EQ(judge(on(BallOn::kColour), table(0).hit("cue", "black").record(), {"black", ""}).next().on,
-              BallOn::kYellow);
+    EXPECT_EQ(
+        judge(on(BallOn::kColour), snooker_table(0).hit("cue", "black").record(), {"black", ""}).next().on,
+        BallOn::kYellow);
 }
 
 TEST(Snooker, AMissWithoutAFoulPassesTheTurn) {
-    const Verdict v = judge(on(BallOn::kColour), table(3).hit("cue", "blue").record());
+    const Verdict v = judge(on(BallOn::kColour), snooker_table(3).hit("cue", "blue").record());
     EXPECT_TRUE(v.fouls.empty());
     EXPECT_EQ(v.next().turn, 1);
     EXPECT_EQ(v.next().on, BallOn::kRed);
@@ -101,29 +104,29 @@ TEST(Snooker, APenaltyIsFourOrTheBallOnOrTheBallConcerned) {
         EXPECT_EQ(v.next().points[0], 0);
         return v.penalty;
     };
-    EXPECT_EQ(penalty(BallOn::kRed, table(3).record()), 4);                                // nothing hit
-    EXPECT_EQ(penalty(BallOn::kRed, table(3).hit("cue", "1").pocket("cue").record()), 4);  // in-off
-    EXPECT_EQ(penalty(BallOn::kRed, table(3).hit("cue", "yellow").record()), 4);
-    EXPECT_EQ(penalty(BallOn::kRed, table(3).hit("cue", "black").record()), 7);
-    EXPECT_EQ(penalty(BallOn::kRed, table(3).hit("cue", "1").pocket("pink").record()), 6);
-    EXPECT_EQ(penalty(BallOn::kBlue, table(0).record()), 5);
-    EXPECT_EQ(penalty(BallOn::kColour, table(3).hit("cue", "1").record(), "pink"), 6);
-    EXPECT_EQ(penalty(BallOn::kColour, table(3).hit("cue", "pink").pocket("1").record(), "pink"), 6);
-    EXPECT_EQ(penalty(BallOn::kColour, table(3).hit("cue", "yellow").record(), "black"), 7);
-    EXPECT_EQ(penalty(BallOn::kRed, table(3).hit("cue", "1").out("black").record()), 7);
-    EXPECT_EQ(penalty(BallOn::kRed, table(3).hit("cue", "1").out("2").record()), 4);
+    EXPECT_EQ(penalty(BallOn::kRed, snooker_table(3).record()), 4);  // nothing hit
+    EXPECT_EQ(penalty(BallOn::kRed, snooker_table(3).hit("cue", "1").pocket("cue").record()), 4);  // in-off
+    EXPECT_EQ(penalty(BallOn::kRed, snooker_table(3).hit("cue", "yellow").record()), 4);
+    EXPECT_EQ(penalty(BallOn::kRed, snooker_table(3).hit("cue", "black").record()), 7);
+    EXPECT_EQ(penalty(BallOn::kRed, snooker_table(3).hit("cue", "1").pocket("pink").record()), 6);
+    EXPECT_EQ(penalty(BallOn::kBlue, snooker_table(0).record()), 5);
+    EXPECT_EQ(penalty(BallOn::kColour, snooker_table(3).hit("cue", "1").record(), "pink"), 6);
+    EXPECT_EQ(penalty(BallOn::kColour, snooker_table(3).hit("cue", "pink").pocket("1").record(), "pink"), 6);
+    EXPECT_EQ(penalty(BallOn::kColour, snooker_table(3).hit("cue", "yellow").record(), "black"), 7);
+    EXPECT_EQ(penalty(BallOn::kRed, snooker_table(3).hit("cue", "1").out("black").record()), 7);
+    EXPECT_EQ(penalty(BallOn::kRed, snooker_table(3).hit("cue", "1").out("2").record()), 4);
 }
 
 TEST(Snooker, TwoBallsAtOnceAreAFoulUnlessTheyAreReds) {
-    EXPECT_TRUE(judge(on(BallOn::kRed), table(3).hit_both("cue", "1", "2").record()).fouls.empty());
-    const Verdict v = judge(on(BallOn::kRed), table(3).hit_both("cue", "1", "blue").record());
+    EXPECT_TRUE(judge(on(BallOn::kRed), snooker_table(3).hit_both("cue", "1", "2").record()).fouls.empty());
+    const Verdict v = judge(on(BallOn::kRed), snooker_table(3).hit_both("cue", "1", "blue").record());
     EXPECT_EQ(v.fouls, (Fouls{Foul::kTwoBallsAtOnce}));
     EXPECT_EQ(v.penalty, 5);
 }
 
 TEST(Snooker, AfterAFoulBallsComeBackAndTheOtherMayLetTheStrikerPlayAgain) {
-    const Verdict v =
-        judge(on(BallOn::kRed), table(3).hit("cue", "1").pocket("1").pocket("pink").pocket("cue").record());
+    const Verdict v = judge(
+        on(BallOn::kRed), snooker_table(3).hit("cue", "1").pocket("1").pocket("pink").pocket("cue").record());
     EXPECT_EQ(v.fouls, (Fouls{Foul::kCueBallPocketed, Foul::kWrongBallPocketed}));
     ASSERT_EQ(v.respots().size(), 1u);
     EXPECT_EQ(v.respots()[0].ball, "pink");
@@ -176,20 +179,23 @@ TEST(Snooker, ASnookerAfterAFoulGivesAFreeBall) {
 TEST(Snooker, AFreeBallHasTheValueOfTheBallOnAndComesBack) {
     State state = on(BallOn::kRed);
     state.free_ball = true;
-    const Verdict red = judge(state, table(3).hit("cue", "blue").pocket("blue").record(), {"blue", ""});
+    const Verdict red =
+        judge(state, snooker_table(3).hit("cue", "blue").pocket("blue").record(), {"blue", ""});
     EXPECT_EQ(red.points, 1);
     EXPECT_EQ(red.next().on, BallOn::kColour);
     EXPECT_EQ(red.respots().size(), 1u);
     EXPECT_EQ(
-        judge(state, table(3).hit("cue", "blue").pocket("blue").pocket("1").record(), {"blue", ""}).points,
+        judge(state, snooker_table(3).hit("cue", "blue").pocket("blue").pocket("1").record(), {"blue", ""})
+            .points,
         2);
     state.on = BallOn::kYellow;
-    const Verdict yellow = judge(state, table(0).hit("cue", "black").pocket("black").record(), {"black", ""});
+    const Verdict yellow =
+        judge(state, snooker_table(0).hit("cue", "black").pocket("black").record(), {"black", ""});
     EXPECT_EQ(yellow.points, 2);
     EXPECT_EQ(yellow.next().on, BallOn::kYellow);
     EXPECT_EQ(yellow.respots().size(), 1u);
-    const Verdict both =
-        judge(state, table(0).hit("cue", "black").pocket("black").pocket("yellow").record(), {"black", ""});
+    const Verdict both = judge(
+        state, snooker_table(0).hit("cue", "black").pocket("black").pocket("yellow").record(), {"black", ""});
     EXPECT_EQ(both.points, 2);
     EXPECT_EQ(both.next().on, BallOn::kGreen);
 }
@@ -197,19 +203,20 @@ TEST(Snooker, AFreeBallHasTheValueOfTheBallOnAndComesBack) {
 TEST(Snooker, TheLastBlackEndsTheFrameWithAScoreOrAFoul) {
     State state = on(BallOn::kBlack);
     state.points = {50, 52};
-    const Verdict won = judge(state, table(0, {"black"}).hit("cue", "black").pocket("black").record());
+    const Verdict won =
+        judge(state, snooker_table(0, {"black"}).hit("cue", "black").pocket("black").record());
     EXPECT_TRUE(won.next().over);
     EXPECT_EQ(won.next().winner, 0);
-    const Verdict foul = judge(state, table(0, {"black"}).hit("cue", "black").pocket("cue").record());
+    const Verdict foul = judge(state, snooker_table(0, {"black"}).hit("cue", "black").pocket("cue").record());
     EXPECT_EQ(foul.next().winner, 1);
     EXPECT_EQ(foul.next().points[1], 59);
-    EXPECT_FALSE(judge(state, table(0, {"black"}).hit("cue", "black").record()).next().over);
+    EXPECT_FALSE(judge(state, snooker_table(0, {"black"}).hit("cue", "black").record()).next().over);
 }
 
 TEST(Snooker, WithEqualPointsTheBlackComesBack) {
     State state = on(BallOn::kBlack);
     state.points = {45, 52};
-    const Verdict v = judge(state, table(0, {"black"}).hit("cue", "black").pocket("black").record());
+    const Verdict v = judge(state, snooker_table(0, {"black"}).hit("cue", "black").pocket("black").record());
     EXPECT_FALSE(v.next().over);
     EXPECT_EQ(v.next().points[0], 52);
     EXPECT_EQ(v.next().in_hand, InHand::kD);
@@ -221,7 +228,7 @@ TEST(Snooker, WithEqualPointsTheBlackComesBack) {
 
 TEST(Snooker, AColourWhoseSpotIsTakenGoesToTheHighestFreeOne) {
     const Vec2 blue = snooker_spot(kTable, "blue"), black = snooker_spot(kTable, "black");
-    Told told = table(3).hit("cue", "blue").pocket("blue").rests("cue", blue.x(), blue.y());
+    Told told = snooker_table(3).hit("cue", "blue").pocket("blue").rests("cue", blue.x(), blue.y());
     // Black, pink, brown, green and yellow are on their spots: nothing is free.
     const Verdict near = judge(on(BallOn::kColour), told.record());
     ASSERT_EQ(near.respots().size(), 1u);

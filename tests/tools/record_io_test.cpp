@@ -52,7 +52,9 @@ void expect_unusual(std::vector<double> values) {
 
 TEST(RecordFile, TheSampleHasAValueOfItsOwnInEveryField) {
     const Record record = sample_record();
-    const auto& [preset, cloth, width, length, corner, cushions, jaws, pockets] = record.table;
+    const auto& [preset, cloth, width, length, corner, cushions, jaws, pockets, bed] = record.table;
+    ASSERT_TRUE(bed);
+    expect_unusual({(*bed)[0], (*bed)[1], (*bed)[2], (*bed)[3]});
     EXPECT_FALSE(cloth);  // its friction is in the balls
     EXPECT_NE(preset, Table().preset);
     expect_unusual({width, length, corner.x(), corner.y()});
@@ -79,7 +81,8 @@ TEST(RecordFile, TheSampleHasAValueOfItsOwnInEveryField) {
     expect_unusual({start, r[0], r[1], r[2], v[0], v[1], v[2], w[0], w[1], w[2], a[0], a[1], dw[0], dw[1],
                     spin_decay, duration});
     EXPECT_TRUE(start > 0.0 && state != MotionState::kStationary && held && !ends);
-    const auto& [time, type, ball, partner, detail] = record.events.at(4);
+    const auto& [time, type, ball, partner, detail, slow] = record.events.at(4);
+    EXPECT_TRUE(slow);
     EXPECT_TRUE(time != 0.0 && type != EventType::kCueStrike && ball != -1 && partner != -1 && detail != -1);
     const auto& [detect_ns, resolve_ns, kernel_ns, steps, method, queue_ns] = record.costs.at(1);
     expect_unusual({detect_ns, resolve_ns, kernel_ns, queue_ns});

@@ -51,6 +51,7 @@ inline Record sample_record() {
     record.table.width = 1.27;
     record.table.length = 2.54;
     record.table.corner = {-1.0 / 3.0, 1e-3};
+    record.table.bed = Rectangle(-0.5, 1e-2, 1.5, 2.75);
     record.table.cushions = {{"left", {0.0, -0.0}, {0.1, 2.54}, 0.037, "left rail"}};
     record.table.jaws = {{"jaw \"1\"", {1e-300, 0.1}, 0.04, 0.037, "a jaw\n"}};
     record.table.pockets = {{"p,1", {1.0 / 3.0, 0.1}, 0.06, 0.08, "Tasche \xc3\xa4"}};
@@ -77,6 +78,7 @@ inline Record sample_record() {
     record.events.insert(record.events.begin() + 2, {0.1, EventType::kBallCluster, 0, 1, 0});
     record.clusters = {{0, 1, 2}};
     record.events[4].detail = 1;  // a jaw is a round nose
+    record.events[4].slow = true;
     record.start_time = 1e6 / 3.0;
     for (std::size_t i = 0; i < record.events.size(); ++i) {
         record.costs.push_back(
