@@ -262,7 +262,7 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         {"cue.speed=uniform(1],v=[2)", "cannot read the values"},
         {"cue.speed=gauss(1,2)", "unknown distribution \"gauss\""},
         {"cue.speed=normal(-1)", "must be at least 0"},
-        {"cue.aim_deg=normal(1)", "there is none; write it there, or use normal(mean,sd)"},
+        {"cue.aim_deg=normal(1)", "there is none; check the name of the key, write the number there"},
         {"cue.speed=integer(1.5,2)", "value 1 of integer must be an integer"},
         {"cue.speed=integer(3,2)", "needs -1000000000 <= a <= b"},
         {"cue.speed=list()", "list has 0 values"},

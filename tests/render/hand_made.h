@@ -80,8 +80,9 @@ class ScratchFolder {
     const std::filesystem::path& path() const { return path_; }
     std::size_t entries() const {
         std::size_t count = 0;
-        for ([[maybe_unused]] const auto& entry : std::filesystem::recursive_directory_iterator(path_))
-            ++count;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path_))
+            count +=
+                entry.path().extension() != ".shot" ? 1 : 0;  // the mark that says of which shot frames are
         return count;
     }
 

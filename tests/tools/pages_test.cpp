@@ -177,13 +177,13 @@ TEST(Pages, NotesOfTheLabSayWhenWhereAndAtWhichCommit) {
 // learning environments and search, by 1095, and what is promised, by 525,
 // and the page about games, by 907,
 // and instruction sets by processor and aarch64, by 105,
-// and a bed, slow contacts, the marks of frames and columns of sweeps, by 163.
+// and a bed, slow contacts, the marks of frames and columns of sweeps, by 191.
 TEST(Pages, GuideReferenceAndDesignAreNoLongerThanAnAfternoon) {
     EXPECT_EQ(words_of("| a | 1.5 m |\n|---|---|\n"), 3u);
     std::size_t words = 0;
     for (const char* folder : {"guide", "reference", "design"})
         for (const auto& [name, text] : pages_of(folder)) words += words_of(text);
-    EXPECT_LT(words, 28064u) << "cut, or move what was measured to a note in docs/lab";
+    EXPECT_LT(words, 28092u) << "cut, or move what was measured to a note in docs/lab";
 }
 
 }  // namespace

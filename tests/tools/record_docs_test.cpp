@@ -87,6 +87,8 @@ Json profiled_break() {
     scene.render.target = Vec3(0.0, 1.0, 0.0);
     Record record = record_of(scene, true);
     record.tracks.front().own = BallSize{0.03, 0.2};
+    record.table.bed = Rectangle(0.0, 0.0, 1.27, 2.54);
+    record.events.front().slow = true;
     return Json::parse(written(record));
 }
 
@@ -98,7 +100,7 @@ TEST(RecordSchema, RefusesUnknownKeysMissingKeysAndOtherTypes) {
     each_kind(good, "", "", kinds);
     EXPECT_GE(kinds.size(), 90u);
     // A key without which the record is still one.
-    const std::set<std::string> free = {"/events/#/balls", "/events/#/nose"};
+    const std::set<std::string> free = {"/events/#/balls", "/events/#/nose", "/events/#/slow", "/table/bed"};
     for (const auto& [kind, at] : kinds) {
         const Json::json_pointer place(at);
         Json bad = good;

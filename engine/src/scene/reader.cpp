@@ -72,7 +72,7 @@ std::string Section::element(const Key& key, std::size_t k) const {
 void Section::check_number(SourceLocation at, const std::string& what, double x,
                            const Interval& allowed) const {
     if (x - x != 0.0) fail(at, "{} must be a finite number", what);
-    if (is_tiny(x))
+    if (is_tiny(x) && contains(allowed, x > 0.0 ? kLeastSize : -kLeastSize))
         fail(at, "{} = {} is too small to compute with; write 0, or at least {}", what, x, kLeastSize);
     if (!contains(allowed, x)) fail(at, "{} = {} is out of range; it must be {}", what, x, describe(allowed));
 }

@@ -6,17 +6,19 @@
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 #include "console.h"
 
 namespace carom::tools {
 namespace {
 
-const PageFile& page_file(const std::string& name) {
+const PageFile& page_file(std::string_view name) {
     const std::vector<PageFile>& files = page_files();
     const auto found =
         std::find_if(files.begin(), files.end(), [&name](const PageFile& file) { return file.name == name; });
-    if (found == files.end()) throw std::logic_error("no page file is called " + name);
+    if (found == files.end()) throw std::logic_error("no page file is called " + std::string(name));
     return *found;
 }
 
