@@ -265,7 +265,11 @@ TEST_F(Mistakes, NothingSteersTheTerminal) {
     const std::size_t at = text.find("\"ball 2\"");
     ASSERT_NE(at, std::string::npos);
     text.replace(at, 8, "\"\\u001b[2J\"");
-    refused("this id holds what could steer a terminal", {"render", folder_.write("bad.json", text)});
+    const ProcessResult ids = carom({"render", folder_.write("bad.json", text), "--camera", "follow",
+                                     "--ball", "nobody", "--at", "0", "-o", folder_.file("f.png")});
+    EXPECT_EQ(ids.status, 1);
+    EXPECT_TRUE(contains(ids.err, "?[2J")) << ids.err;
+    EXPECT_EQ(ids.err.find('\x1b'), std::string::npos);
     const ProcessResult result = carom({"simulate", folder_.file("no\x1b[2J.toml")});
     EXPECT_EQ(result.err.find('\x1b'), std::string::npos);
     EXPECT_EQ(result.status, 2);
