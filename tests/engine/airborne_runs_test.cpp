@@ -3,11 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <numeric>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -17,107 +12,18 @@
 #include "carom/engine/math.h"
 #include "carom/engine/simulate.h"
 #include "carom/engine/verify.h"
-#include "reference/random_impacts.h"
 #include "support/engine_cases.h"
-#include "support/random_scenes.h"
 
 namespace carom {
 namespace {
 
 using namespace test;
-using reference::Generator;
 
 /// A ball whose lowest point is `height` above the cloth.
 void add_high_ball(Scene& scene, const std::string& id, double x, double y, double height,
                    const Vec3& v = Vec3::Zero(), const Vec3& w = Vec3::Zero()) {
     add_ball(scene, id, Vec3(x, y, scene.balls.R + height), v, w);
     scene.ball.back().height = height;
-}
-
-/// Three to six balls that touch or nearly do, and one or two that come down on them; those that have no room are left out.
-void add_pile(Scene& scene, Generator& random) {
-    const double R = scene.balls.R, apart = 2.0 * R + (random.next() % 3) * random.uniform(0.0, 2e-4);
-    const double x = random.uniform(0.2, scene.table.width - 0.2),
-                 y = random.uniform(0.2, scene.table.length - 0.2);
-    const auto add = [&](const std::string& id, double right, double up, double height, const Vec3& v) {
-        BallStart ball;
-        ball.id = id;
-        ball.height = height;
-        ball.position = {x + right, y + up, R + height};
-        ball.velocity = v;
-        scene.ball.push_back(ball);
-        try {
-            validate(scene);
-        } catch (const SceneError&) {
-            scene.ball.pop_back();
-        }
-    };
-    const int rows = 2 + static_cast<int>(random.next() % 2);
-    for (int row = 0; row < rows; ++row)
-        for (int k = 0; k <= row; ++k)
-            add("pile" + std::to_string(10 * row + k), (k - 0.5 * row) * apart,
-                0.5 * std::sqrt(3.0) * row * apart, 0.0, Vec3::Zero());
-    const int falling = 1 + static_cast<int>(random.next() % 2);
-    for (int n = 0; n < falling; ++n)
-        add("onto" + std::to_string(n), random.uniform(-R, R), random.uniform(0.0, 2.0 * R),
-            random.uniform(1.5 * R, 0.2) + 2.2 * R * n,
-            {random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-2.0, 1.0)});
-}
-
-/// A random scene with balls in the air: thrown, dropped, struck by a raised cue, unlike, between jaws.
-Scene flying_scene(std::uint64_t seed) {
-    Generator random(seed);
-    const auto chance = [&](double p) { return random.uniform(0.0, 1.0) < p; };
-    Scene scene = empty_scene();
-    const double kind = random.uniform(0.0, 1.0);
-    scene.table = kind < 0.5   ? make_table("seven_foot")
-                  : kind < 0.8 ? make_table("snooker")
-                               : box(1.0, 2.0, 0.036576);
-    scene.balls.e_t = random.uniform(0.2, 0.8);
-    if (chance(0.3)) scene.balls.e_h = random.uniform(0.0, 0.5);
-    scene.balls.e_b = random.uniform(0.5, 1.0);
-    static constexpr const char* kCushions[] = {"han_2005", "stronge", "impulse", "smooth"};
-    scene.physics.cushion = cushion_model(kCushions[static_cast<int>(random.uniform(0.0, 4.0))]);
-    const bool two_step = chance(0.4), unlike = two_step && chance(0.5);
-    if (two_step) scene.physics.ball_ball = ball_ball_model("two_step");
-    scene.physics.clusters = chance(0.5) ? ClusterModel::kCompliant : ClusterModel::kSequential;
-    const int balls = 1 + static_cast<int>(random.uniform(0.0, 8.0));
-    const double width = scene.table.width, length_of_table = scene.table.length;
-    for (int tries = 0; static_cast<int>(scene.ball.size()) < balls && tries < 200; ++tries) {
-        BallStart ball;
-        ball.id = std::to_string(scene.ball.size());
-        BallSize size = scene.balls.size();
-        if (unlike && chance(0.4)) size.R *= random.uniform(0.8, 1.2), size.m *= random.uniform(0.6, 1.5);
-        if (unlike) ball.own = size;
-        const double x = random.uniform(0.06, width - 0.06), y = random.uniform(0.06, length_of_table - 0.06);
-        if (chance(0.4)) ball.height = random.uniform(0.0, 0.2);
-        ball.position = {x, y, size.R + ball.height};
-        const double fast = random.uniform(0.0, 5.0);
-        if (chance(0.5)) {
-            const SinCos way = sin_cos(random.uniform(0.0, 6.28));
-            const double up = random.uniform(-1.0, 2.0);
-            ball.velocity = {fast * way.cos, fast * way.sin, chance(0.5) ? up : 0.0};
-            for (int k = 0; k < 3; ++k) ball.spin[k] = random.uniform(-100.0, 100.0);
-        }
-        scene.ball.push_back(ball);
-        try {
-            validate(scene);
-        } catch (const SceneError&) {
-            scene.ball.pop_back();
-        }
-    }
-    // Sometimes one more ball onto two others.
-    if (scene.ball.size() >= 2 && chance(0.3)) {
-        BallStart top = scene.ball.front();
-        top.id = "top";
-        top.velocity = top.spin = Vec3::Zero();
-        top.height += 2.2 * top.position.z() + random.uniform(0.0, 0.05);
-        top.position.z() = scene.size_of(top).R + top.height;
-        top.position.x() += random.uniform(-0.01, 0.01);
-        scene.ball.push_back(top);
-    }
-    if (chance(0.3)) add_pile(scene, random);
-    return scene;
 }
 
 double scene_radius() {
@@ -442,92 +348,6 @@ TEST(Airborne, NothingJumpsWithTheHeight) {
         const BallState s = after(height);
         EXPECT_LE((s.velocity - lies.velocity).norm(), 1e-9 + 400.0 * height) << height;
         EXPECT_LE(scene_radius() * (s.spin - lies.spin).norm(), 1e-9 + 400.0 * height) << height;
-    }
-}
-
-// The order in which a scene lists its balls changes no bit.
-TEST(Airborne, TheOrderOfTheBallsDoesNotMatter) {
-    for (std::uint64_t seed = 1; seed <= 120; ++seed) {
-        const Scene scene = flying_scene(seed);
-        if (scene.ball.empty()) continue;
-        std::vector<std::size_t> order(scene.ball.size());
-        std::iota(order.begin(), order.end(), std::size_t{0});
-        std::mt19937_64 random(seed);
-        for (std::size_t i = order.size(); i-- > 1;) std::swap(order[i], order[random() % (i + 1)]);
-        Scene turned = scene;
-        for (std::size_t i = 0; i < order.size(); ++i) turned.ball[i] = scene.ball[order[i]];
-        const Record a = simulate(plan_of(scene)), b = simulate(plan_of(turned));
-        ASSERT_EQ(a.events.size(), b.events.size()) << seed;
-        EXPECT_EQ(a.duration, b.duration) << seed;
-        for (std::size_t i = 0; i < order.size(); ++i)
-            EXPECT_EQ(a.tracks[order[i]].segments, b.tracks[i].segments) << seed;
-    }
-}
-
-// Where nothing calls for it, forcing the effect on changes no bit.
-TEST(Airborne, ForcedOnWithoutNeedItChangesNothing) {
-    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-        Scene scene = RandomScene(seed).make();
-        const Plan plan = plan_of(scene);
-        ASSERT_FALSE(plan.in_force(Effect::kAirborne));
-        scene.effects.push_back({"airborne", true, {}});
-        const Plan forced = plan_of(scene);
-        ASSERT_TRUE(forced.in_force(Effect::kAirborne));
-        SimulateOptions options;
-        EXPECT_EQ(simulate(plan, options).hash(), simulate(forced, options).hash()) << seed;
-    }
-}
-
-// CAROM_FLYING_SCENES=FROM:COUNT runs others, and CAROM_FLYING_TEXT=1 prints them.
-TEST(Airborne, RandomScenesComeToRest) {
-    std::uint64_t from = 1, count = 400;
-    if (const char* asked = std::getenv("CAROM_FLYING_SCENES")) {
-        char* rest = nullptr;
-        from = std::strtoull(asked, &rest, 10);
-        count = std::strtoull(rest + 1, nullptr, 10);
-    }
-    int broken = 0, flights = 0, outs = 0, pocketed = 0;
-    for (std::uint64_t seed = from; seed < from + count; ++seed) {
-        const Scene scene = flying_scene(seed);
-        if (scene.ball.empty()) continue;
-        try {
-            validate(scene);
-        } catch (const SceneError&) {
-            continue;
-        }
-        if (std::getenv("CAROM_FLYING_TEXT") != nullptr) std::printf("%s", scene_text(scene).c_str());
-        const std::string what = what_breaks(scene);
-        broken += !what.empty();
-        EXPECT_EQ(what, "") << "seed " << seed;
-        if (!what.empty()) continue;
-        const Record r = simulate(plan_of(scene));
-        flights += test::count(r, EventType::kBallCloth);
-        outs += test::count(r, EventType::kBallOut);
-        pocketed += test::count(r, EventType::kBallPocket);
-    }
-    EXPECT_EQ(broken, 0);
-    if (count >= 400) {
-        EXPECT_GT(flights, 1000);
-        EXPECT_GT(outs, 10);
-        EXPECT_GT(pocketed, 10);
-    }
-}
-
-// A run that stopped goes on with the same bits, from any event.
-TEST(Airborne, ResumesWithTheSameBits) {
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-        Scene scene = flying_scene(seed);
-        if (scene.ball.empty()) continue;
-        const Plan whole = plan_of(scene);
-        const Record all = simulate(whole);
-        // After every event, or after a hundred of them where a pile trembles.
-        const auto events = static_cast<std::int64_t>(all.events.size());
-        for (std::int64_t after = 0; after < events; after += std::max<std::int64_t>(1, events / 100)) {
-            Scene cut = scene;
-            cut.stop.events = after;
-            const Record first_part = simulate(plan_of(cut));
-            EXPECT_EQ(resume(whole, first_part).hash(), all.hash()) << seed << " after " << after;
-        }
     }
 }
 

@@ -55,26 +55,50 @@ struct Columns {
     }
 };
 
-/// The first ball that a ball meets, found from the record alone.
-int first_hit(const Record& record, int ball) {
-    for (const Event& e : record.events) {
-        if (e.type != EventType::kBallBall && e.type != EventType::kBallBallHold &&
-            e.type != EventType::kBallCluster)
-            continue;
-        if (e.a == ball || e.b == ball) return e.a == ball ? e.b : e.a;
-        if (e.type != EventType::kBallCluster) continue;
-        const std::vector<int>& members = record.clusters.at(static_cast<std::size_t>(e.detail));
-        if (std::find(members.begin(), members.end(), ball) == members.end()) continue;
-        const Vec3 here = record.state_at(ball, e.time).position;
-        int best = -1;
-        double least = std::numeric_limits<double>::infinity();
-        for (const int other : members) {
-            const double distance = (record.state_at(other, e.time).position - here).norm();
-            if (other != ball && distance < least) least = distance, best = other;
-        }
-        return best;
+/// The ball that a ball meets in an event, or -1; found from the record alone.
+int met_in(const Record& record, const Event& e, int ball) {
+    if (e.type != EventType::kBallBall && e.type != EventType::kBallBallHold &&
+        e.type != EventType::kBallCluster)
+        return -1;
+    if (e.a == ball || e.b == ball) return e.a == ball ? e.b : e.a;
+    if (e.type != EventType::kBallCluster) return -1;
+    const std::vector<int>& members = record.clusters.at(static_cast<std::size_t>(e.detail));
+    if (std::find(members.begin(), members.end(), ball) == members.end()) return -1;
+    const Vec3 here = record.state_at(ball, e.time).position;
+    int best = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (const int other : members) {
+        const double distance = (record.state_at(other, e.time).position - here).norm();
+        if (other != ball && distance < least) least = distance, best = other;
     }
-    return -1;
+    return best;
+}
+
+bool is_cushion(const Event& e) {
+    const std::string kind = name(e.type);
+    return kind == "ball_cushion" || kind == "ball_jaw" || kind == "ball_cushion_hold" ||
+           kind == "ball_jaw_hold";
+}
+
+/// The balls that a ball meets, in their order, and its cushions before the second of them.
+struct Contacts {
+    std::vector<int> balls;
+    int cushions = 0;
+};
+Contacts contacts_of(const Record& record, int ball) {
+    Contacts found;
+    for (const Event& e : record.events) {
+        if (e.a == ball && is_cushion(e) && found.balls.size() < 2) ++found.cushions;
+        const int met = ball < 0 ? -1 : met_in(record, e, ball);
+        if (met >= 0 && std::find(found.balls.begin(), found.balls.end(), met) == found.balls.end())
+            found.balls.push_back(met);
+    }
+    return found;
+}
+
+int first_hit(const Record& record, int ball) {
+    const Contacts found = contacts_of(record, ball);
+    return found.balls.empty() ? -1 : found.balls.front();
 }
 
 int struck(const Scene& scene) {
@@ -91,13 +115,14 @@ void expect_same(const Batch& batch, std::size_t shot, const Scene& scene, const
     EXPECT_EQ(batch.duration[shot], record.duration);
     EXPECT_EQ(batch.events[shot], static_cast<std::int64_t>(record.events.size()));
     EXPECT_EQ(batch.first_hit[shot], first_hit(record, struck(scene)));
+    const Contacts contacts = contacts_of(record, struck(scene));
+    EXPECT_EQ(batch.contacts[shot], static_cast<int>(contacts.balls.size()));
+    EXPECT_EQ(batch.approach_cushions[shot], contacts.cushions);
     std::vector<int> cushions(batch.balls), fell(batch.balls, -1);
     int fallen = 0;
     for (const Event& e : record.events) {
-        const std::string kind = name(e.type);
-        cushions[e.a] += kind == "ball_cushion" || kind == "ball_jaw" || kind == "ball_cushion_hold" ||
-                         kind == "ball_jaw_hold";
-        if (kind == "ball_pocket") fell[e.a] = fallen++;
+        cushions[e.a] += is_cushion(e);
+        if (e.type == EventType::kBallPocket) fell[e.a] = fallen++;
     }
     for (std::size_t b = 0; b < batch.balls; ++b) {
         const BallState end = record.state_at(static_cast<int>(b), record.duration);
