@@ -1,7 +1,8 @@
 # Sourced after tools/packages.sh: an environment in build/python-env to build and test the Python package in. It sees the system's packages.
 
-# What the tests need from PyPI beside what builds the package (pyproject.toml names that, too).
-carom_python_needs=('nanobind>=2.9' 'pytest>=8' 'mypy>=1.11' 'numpy>=2' pyarrow dask distributed duckdb 'matplotlib>=3.9' pandas 'gymnasium>=1.1' 'pettingzoo>=1.25')
+# What the tests need from PyPI beside what builds the package (pyproject.toml names that, too). numpy: its types are checked against, and those
+# of 2.2, which Debian 13 has, know less.
+carom_python_needs=('nanobind>=2.9' 'pytest>=8' 'mypy>=1.11' 'numpy>=2.4' pyarrow dask distributed duckdb 'matplotlib>=3.9' pandas 'gymnasium>=1.1' 'pettingzoo>=1.25')
 
 # carom_make_python_env: sets carom_python to the interpreter of the environment; or fails and says why in carom_no_python.
 carom_make_python_env() {
