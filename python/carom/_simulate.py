@@ -166,6 +166,17 @@ def simulate_many(
     if threads < 0:
         raise ValueError(f"threads={threads}: expected at least 0")
     ids = scene.ids
+    n, columns, absent = _columns_of(scene, cue, xy, params, shots)
+    into = Shots.empty(n, len(ids), hashes=hashes) if out is None else _checked(out, n, len(ids), hashes)
+    failures = _carom.simulate_many(scene._native, n, columns, absent, until, max_events, threads, into._native())
+    return into._replace(messages=dict(failures))
+
+
+def _columns_of(
+    scene: Scene, cue: ArrayLike | None, xy: ArrayLike | None, params: Mapping[str, ArrayLike] | None = None, shots: int | None = None
+) -> tuple[int, list[tuple[str, NDArray[np.float64]]], NDArray[np.uint8]]:
+    """How many shots, the values that differ from shot to shot, and which balls are left out: as the extension module takes them."""
+    ids = scene.ids
     columns = _Columns(shots)
     absent = np.empty(0, np.uint8)
     if cue is not None:
@@ -184,9 +195,7 @@ def simulate_many(
         raise ValueError("there is nothing that says how many shots: give cue, xy, params or shots")
     if n < 0:
         raise ValueError(f"shots={n}: expected at least 0")
-    into = Shots.empty(n, len(ids), hashes=hashes) if out is None else _checked(out, n, len(ids), hashes)
-    failures = _carom.simulate_many(scene._native, n, columns.columns, absent, until, max_events, threads, into._native())
-    return into._replace(messages=dict(failures))
+    return n, columns.columns, absent
 
 
 def _checked(out: Shots, n: int, balls: int, hashes: bool) -> Shots:

@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "batches.h"
 #include "carom/engine/batch.h"
 #include "carom/engine/variation.h"
 #include "native.h"
@@ -26,79 +27,14 @@
 namespace carom::python {
 namespace {
 
-/// Arrays of the caller's, contiguous, of n and of n x balls (x and y alternate). Shots in _simulate.py makes and checks them.
-struct ShotArrays {
-    Flat<std::uint8_t> status;
-    Flat<double> duration;
-    Flat<std::int64_t> events;
-    Flat<std::int32_t> first_hit, contacts, approach_cushions;
-    Flat<double> xy;
-    Flat<std::int32_t> pocket, fell, cushions;
-    Flat<std::uint64_t> hash;  ///< empty: not wanted
-
-    BatchArrays arrays() const {
-        BatchArrays out;
-        out.status = reinterpret_cast<ShotStatus*>(status.data());
-        out.duration = duration.data();
-        out.events = events.data();
-        out.first_hit = first_hit.data();
-        out.contacts = contacts.data();
-        out.approach_cushions = approach_cushions.data();
-        out.x = xy.data();
-        out.y = xy.data() + 1;
-        out.place_stride = 2;
-        out.pocket = pocket.data();
-        out.fell = fell.data();
-        out.cushions = cushions.data();
-        if (hash.size() > 0) out.hash = hash.data();
-        return out;
-    }
-};
-
-using Column = std::pair<std::string, Flat<const double>>;
-/// A shot without a result, and why it has none.
-using Failure = std::pair<std::size_t, std::string>;
-
-/// Plays a batch without the GIL. Ctrl-C ends it.
-template <class Play>
-std::vector<Failure> played(const ShotArrays& arrays, std::size_t balls, int threads, Play&& play) {
-    const BatchArrays out = arrays.arrays();
-    SignalWatch watch;
-    BatchOptions options;
-    options.threads = threads;
-    options.stop = [&watch] { return watch.stopped(); };
-    std::vector<Failure> failures;
-    try {
-        const nb::gil_scoped_release no_gil;
-        for (Batch::Message& message : play(options, out)) {
-            constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-            out.duration[message.shot] = kNone;
-            std::fill_n(out.x + message.shot * balls * 2, 2 * balls, kNone);
-            failures.emplace_back(message.shot, std::move(message.text));
-        }
-    } catch (const BatchStopped&) {
-        throw nb::python_error();
-    } catch (const std::invalid_argument& error) {
-        throw nb::value_error(error.what());
-    }
-    return failures;
-}
-
 std::vector<Failure> many(const NativeScene& native, std::size_t shots, const std::vector<Column>& columns,
                           const Flat<const std::uint8_t>& absent, std::optional<double> until,
                           std::optional<std::int64_t> max_events, int threads, const ShotArrays& out) {
-    const kernel::Isa isa = chosen_isa();
-    std::vector<BatchColumn> list;
-    for (const auto& [key, values] : columns) list.push_back({key, std::span(values.data(), values.size())});
-    const std::span left_out(absent.data(), absent.size());
-    return played(out, native.scene->ball.size(), threads,
-                  [&](BatchOptions& options, const BatchArrays& into) {
-                      Scene scene = *native.scene;
-                      scene.stop.events = fewer(scene.stop.events, max_events);
-                      options.simulate.until = until;
-                      options.absent = left_out;
-                      return simulate_many(scene, shots, list, isa, options, into);
-                  });
+    return played_columns(native, columns, absent, until, max_events, threads, out,
+                          [shots](const Scene& scene, std::span<const BatchColumn> list, kernel::Isa isa,
+                                  const BatchOptions& options, const BatchArrays& into) {
+                              return simulate_many(scene, shots, list, isa, options, into);
+                          });
 }
 
 struct NativeSweep {

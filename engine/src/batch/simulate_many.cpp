@@ -89,9 +89,21 @@ void keep(const BatchArrays& out, std::size_t shot, const Outcome& outcome, std:
 
 /// A thread of a batch: what it plays with, and the balls of its last shot if they are not all.
 struct Player {
-    Player(const Scene& scene, kernel::Isa isa) : whole(scene, isa) {}
+    Player(const Scene& scene, kernel::Isa isa, bool keeps_records)
+        : whole(scene, isa), records(keeps_records) {
+        if (records) whole.keep_records();
+    }
+    /// What plays shots without some of the balls.
+    Simulator& partial(const Scene& scene, kernel::Isa isa) {
+        if (!part) {
+            part.emplace(scene, isa);
+            if (records) part->keep_records();
+        }
+        return *part;
+    }
 
     Simulator whole;
+    bool records;
     std::optional<Simulator> part;  // for shots without some of the balls
     Simulator* last = &whole;
     std::vector<int> present;
@@ -117,8 +129,7 @@ struct ColumnShots {
         const std::size_t balls = scene.ball.size();
         const auto gone = absent.subspan(absent.empty() ? 0 : shot * balls, absent.empty() ? 0 : balls);
         const bool some = std::any_of(gone.begin(), gone.end(), [](std::uint8_t ball) { return ball != 0; });
-        if (some && !player.part) player.part.emplace(scene, isa);
-        player.last = some ? &*player.part : &player.whole;
+        player.last = some ? &player.partial(scene, isa) : &player.whole;
         try {
             if (!some) return player.whole.play(put(player.whole.scene(), shot), options);
             Scene without = scene;
@@ -189,15 +200,17 @@ struct Work {
         const bool some = player.last != &player.whole;
         if (!has_result(status) || some)
             clear(out, shot, balls, has_result(status) ? std::numeric_limits<double>::quiet_NaN() : 0.0);
-        if (has_result(status))
-            keep(out, shot, player.last->outcome(), balls, some ? &player.present : nullptr);
-        else
+        if (!has_result(status)) {
             tell(shot, player.last->message());
+            return;
+        }
+        keep(out, shot, player.last->outcome(), balls, some ? &player.present : nullptr);
+        if (options.judge) options.judge(shot, player.last->outcome(), player.last->record());
     }
 
     void play_all() noexcept {
         try {
-            Player player(scene, isa);
+            Player player(scene, isa, options.judge != nullptr);
             while (!stopped) {
                 const std::size_t first = next.fetch_add(kBlock);
                 if (first >= shots) return;

@@ -50,7 +50,11 @@ ShotStatus Simulator::play(const Variation& variation, std::uint64_t index, std:
 
 ShotStatus Simulator::run(bool same_table, const SimulateOptions& options) {
     try {
-        simulate(planner_.plan(same_table), buffers_, outcome_, options);
+        const Plan& plan = planner_.plan(same_table);
+        if (records_)
+            simulate(plan, buffers_, outcome_, record_, options);
+        else
+            simulate(plan, buffers_, outcome_, options);
     } catch (const SceneError& error) {  // [effects] refuses what these values need
         return refuse(error.message());
     } catch (const SimulationError& error) {

@@ -131,24 +131,39 @@ Record Log::record_so_far() const {
         record.start_time = options_.start_time;
         return record;
     }
-    const Scene& scene = plan_.scene;
     Record record;
+    begin_record(record);
+    return record;
+}
+
+// The record of a run that begins, in the memory that it has.
+void Log::begin_record(Record& record) const {
+    const Scene& scene = plan_.scene;
+    record.clear();
     record.table = scene.table;
     record.balls = plan_.balls;
     record.gravity = plan_.gravity;
     record.render = scene.render;
     record.start_time = options_.start_time;
-    record.tracks.reserve(scene.ball.size());
-    for (const BallStart& ball : scene.ball) {
-        BallTrack& track = record.tracks.emplace_back();
-        track.id = ball.id;
-        track.own = ball.own;
+    record.tracks.resize(scene.ball.size());
+    for (std::size_t i = 0; i < scene.ball.size(); ++i) {
+        record.tracks[i].id = scene.ball[i].id;
+        record.tracks[i].own = scene.ball[i].own;
     }
-    return record;
 }
 
 Record Log::record(StopReason why) {
     Record record = record_so_far();
+    finish_record(why, record);
+    return record;
+}
+
+void Log::record(StopReason why, Record& record) {
+    begin_record(record);
+    finish_record(why, record);
+}
+
+void Log::finish_record(StopReason why, Record& record) {
     std::vector<std::size_t> count(record.tracks.size());
     for (std::size_t i = 0; i < count.size(); ++i) count[i] = record.tracks[i].segments.size();
     for (const BallSegment& s : segments_) ++count[s.ball];
@@ -162,12 +177,11 @@ Record Log::record(StopReason why) {
     }
     for (const Event& e : events_)
         if (e.type == EventType::kBallPocket) record.tracks[e.a].pocket = e.b;
-    record.events = std::move(events_);
+    record.events.swap(events_);  // each has memory for the next run
     record.costs = std::move(event_costs_);
     record.setup_detect_ns = setup_detect_ns_;
     record.duration = balls_.now();
     record.stopped = why;
-    return record;
 }
 
 }  // namespace carom

@@ -92,11 +92,15 @@ class Log : private Borrowed<LogMemory> {
 
     /// The record; the log is empty afterwards.
     Record record(StopReason why);
+    /// The same of a run from the beginning, in the memory that the record has.
+    void record(StopReason why, Record& record);
     void outcome(StopReason why, Outcome& outcome) const;
 
   private:
     void reserve();
     Record record_so_far() const;
+    void begin_record(Record& record) const;
+    void finish_record(StopReason why, Record& record);
     int met_by(int struck, const Event& event) const;
     std::uint64_t hash() const;
     bool is_crowded() const {

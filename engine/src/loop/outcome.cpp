@@ -74,7 +74,7 @@ void Log::outcome(StopReason why, Outcome& out) const {
     out.struck = struck_ball(plan_.scene);
     out.first_hit = -1;
     out.contacts = out.approach_cushions = 0;
-    out.hash = keep_ == Keep::kHash ? hash() : 0;
+    out.hash = keep_ != Keep::kOutcome && options_.hash ? hash() : 0;
     out.balls.assign(static_cast<std::size_t>(balls_.count()), {});
     for (int i = 0; i < balls_.count(); ++i) {
         const Segment& s = balls_.segment(i);

@@ -26,6 +26,8 @@ class Run {
     /// @param so_far  the record to continue from, or nullptr
     Record simulate(const Record* so_far);
     void simulate(Outcome& outcome);
+    /// Both, with the record in the memory that it has.
+    void simulate(Outcome& outcome, Record& record);
 
     const Clusters& clusters() const { return resolver_.clusters(); }
 

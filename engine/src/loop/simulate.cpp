@@ -30,6 +30,12 @@ void Run::simulate(Outcome& outcome) {
     log_.outcome(why, outcome);
 }
 
+void Run::simulate(Outcome& outcome, Record& record) {
+    const StopReason why = run(nullptr);
+    log_.outcome(why, outcome);
+    log_.record(why, record);
+}
+
 StopReason Run::run(const Record* so_far) {
     double set_up_ns = 0.0;
     {
@@ -104,6 +110,11 @@ Record simulate(const Plan& plan, RunBuffers& buffers, const SimulateOptions& op
 
 void simulate(const Plan& plan, RunBuffers& buffers, Outcome& outcome, const SimulateOptions& options) {
     Run(plan, options, buffers.memory(), options.hash ? Keep::kHash : Keep::kOutcome).simulate(outcome);
+}
+
+void simulate(const Plan& plan, RunBuffers& buffers, Outcome& outcome, Record& record,
+              const SimulateOptions& options) {
+    Run(plan, options, buffers.memory()).simulate(outcome, record);
 }
 
 Record simulate(const Plan& plan, const SimulateOptions& options) {

@@ -114,6 +114,19 @@ Vec3 spin_at(const Segment& s, double tau, double R) {
 
 Record::Aside::Aside() : orientations(std::make_shared<Orientations>()) {}
 
+void Record::clear() {
+    for (BallTrack& track : tracks) {
+        track.segments.clear();
+        track.pocket = -1;
+    }
+    events.clear();
+    clusters.clear();
+    costs.clear();
+    setup_detect_ns = duration = 0.0;
+    stopped = StopReason::kAtRest;
+    aside_ = Aside();
+}
+
 BallState Record::state_at(int ball, double t) const {
     const BallTrack& track = tracks[ball];
     t = std::clamp(t, 0.0, duration);

@@ -10,7 +10,7 @@ import numpy as np
 from carom import _carom
 from carom._record import Record
 from carom._scene import Scene
-from carom._simulate import Shots, ShotStatus, simulate
+from carom._simulate import Shots, ShotStatus, _columns_of, simulate, simulate_many
 from carom.gym._strikes import uniforms
 
 if TYPE_CHECKING:
@@ -80,6 +80,11 @@ class Game:
     def judge(self, states: States, cue: NDArray[np.float64], shots: Shots) -> Judged:
         """What shots were worth that began with `states` and these strikes. What is said of a shot without an end counts for nothing."""
         raise NotImplementedError
+
+    def play(self, states: States, cue: NDArray[np.float64], *, max_events: int | None, threads: int, hashes: bool) -> tuple[Shots, Judged]:
+        """Plays one strike on each of the tables, and judges it."""
+        shots = simulate_many(self.scene, cue=cue, xy=states.xy, max_events=max_events, threads=threads, hashes=hashes)
+        return shots, self.judge(states, cue, shots)
 
     def points(self, states: States) -> NDArray[np.float64]:
         """(n, places, 2) what an observation shows beside the balls [m]."""
@@ -209,25 +214,22 @@ class _Ruled(Game):
         return out.astype(bool)
 
     def judge(self, states: States, cue: NDArray[np.float64], shots: Shots) -> Judged:
-        n = len(cue)
-        group = self._group(states)
-        plain = self.worth_nothing(shots)
-        xy = np.where(plain[:, None, None], shots.places, states.xy)
-        foul, points = np.full(n, -1, np.int32), np.zeros(n, np.int32)
-        goes_on, won = np.zeros(n, np.uint8), np.zeros(n, np.uint8)
-        played = (~failed(shots) & ~plain).astype(np.uint8)
-        _carom.judge_many(
-            self.scene._native, self.RULES, np.ascontiguousarray(cue).reshape(-1), xy.reshape(-1), played, group, foul, points, goes_on, won
+        # An outcome does not have all that rules ask, so the shots are played once more.
+        return self.play(states, cue, max_events=None, threads=1, hashes=False)[1]
+
+    def play(self, states: States, cue: NDArray[np.float64], *, max_events: int | None, threads: int, hashes: bool) -> tuple[Shots, Judged]:
+        n, columns, absent = _columns_of(self.scene, cue, states.xy)
+        shots = Shots.empty(n, len(self.ids), hashes=hashes)
+        xy, group = states.xy.copy(), self._group(states)
+        foul, points, goes_on = np.full(n, -1, np.int32), np.zeros(n, np.int32), np.zeros(n, np.uint8)
+        failures = _carom.judge_many(
+            self.scene._native, self.RULES, n, columns, absent, max_events, threads, shots._native(), xy.reshape(-1), group, foul, points, goes_on
         )
         extra = states.extra.copy()
         if self.EXTRA:
             extra[:, 0] = group
-        return self.worth(States(xy, extra), points, goes_on != 0, self._fouls[foul])
-
-    def worth_nothing(self, shots: Shots) -> NDArray[np.bool_]:
-        """(n,) shots of which the outcome already shows that the rules find no foul and no point, and that the turn passes. They need no record, which takes
-        longer than the shot."""
-        return np.zeros(len(shots.status), bool)
+        judged = self.worth(States(xy, extra), points, goes_on != 0, self._fouls[foul])
+        return shots._replace(messages=dict(failures)), judged
 
     def worth(self, behind: States, points: NDArray[np.int32], goes_on: NDArray[np.bool_], foul: NDArray[np.object_]) -> Judged:
         """Rewards: the points, until the turn is over."""
@@ -246,10 +248,6 @@ class ThreeCushion(_Ruled):
         places = {"white": (0.5, 0.7), "yellow": (0.7, 0.7), "red": (0.7, 2.1)}
         super().__init__(scene or Scene(table=table, balls="carom", ball=_placed(places), cue={"ball": "white", "speed": 4.0, "aim_deg": 0.0}))
 
-    def worth_nothing(self, shots: Shots) -> NDArray[np.bool_]:
-        few = (shots.first_hit < 0) | (shots.cushions[:, self.cue_ball] < 3)
-        return np.asarray(few & (shots.pocket == -1).all(1))
-
 
 class SumToThree(_Ruled):
     """Two balls on a table without pockets, ten shots: 1 for a shot that hits the other ball, and in which the two meet three cushions together."""
@@ -260,10 +258,6 @@ class SumToThree(_Ruled):
     def __init__(self, *, table: str = "carom", scene: Scene | None = None) -> None:
         places = {"cue": (0.5, 0.7), "object": (0.7, 2.1)}
         super().__init__(scene or Scene(table=table, balls="carom", ball=_placed(places), cue={"speed": 4.0, "aim_deg": 0.0}))
-
-    def worth_nothing(self, shots: Shots) -> NDArray[np.bool_]:
-        other = (shots.first_hit < 0) | (shots.cushions.sum(1) < 3)
-        return np.asarray(other & (shots.pocket == -1).all(1))
 
     def worth(self, behind: States, points: NDArray[np.int32], goes_on: NDArray[np.bool_], foul: NDArray[np.object_]) -> Judged:
         return Judged(behind, points.astype(np.float64), np.zeros(len(points), bool), foul)

@@ -54,9 +54,8 @@ class Rules:
 
     def play(self, states: States, cue: NDArray[np.float64]) -> Rollout:
         """Plays one strike on each of the tables."""
-        shots = simulate_many(self.game.scene, cue=cue, xy=states.xy, max_events=_MOST_EVENTS, threads=self.threads, hashes=self.hashes)
+        shots, judged = self.game.play(states, cue, max_events=_MOST_EVENTS, threads=self.threads, hashes=self.hashes)
         bad = failed(shots)
-        judged = self.game.judge(states, cue, shots)
         if bad.any():
             kept = States(judged.states.xy.copy(), judged.states.extra.copy())
             kept.put(bad, states.take(bad))

@@ -56,10 +56,13 @@ class Simulator {
     /// @param values  receives what was drawn, as VariedShot
     ShotStatus play(const Variation& variation, std::uint64_t index, std::vector<std::string>& values,
                     const SimulateOptions& options = {});
+    /// From now on shots have a record too, in memory that is kept.
+    void keep_records() { records_ = true; }
     /// Sets the message of a shot that cannot be played. @return kInvalid
     ShotStatus refuse(std::string why);
 
     const Outcome& outcome() const { return outcome_; }      ///< of the last shot, if it has a result
+    const Record& record() const { return record_; }         ///< the same, if keep_records()
     const std::string& message() const { return message_; }  ///< why it has none
 
   private:
@@ -68,7 +71,9 @@ class Simulator {
     Planner planner_;
     RunBuffers buffers_;
     Outcome outcome_;
+    Record record_;
     std::string message_;
+    bool records_ = false;
     bool checked_ = false;  // what no change of numbers can break
 };
 
@@ -87,6 +92,9 @@ struct BatchOptions {
     std::span<const std::uint8_t> absent{};
     /// Called by each thread between shots; true ends the batch with an exception of type BatchStopped.
     std::function<bool()> stop{};
+    /// Called by each thread for its shots that have a result, when the arrays have it: what judges shots reads them here, and they need not be
+    /// played again. Both are lent for the call; balls that were left out are in neither. What it throws ends the batch.
+    std::function<void(std::size_t shot, const Outcome& outcome, const Record& record)> judge{};
     /// Only shots whose number is a multiple of it (not 0) are hashed, the others have 0: short shots take half as long again with a hash.
     std::uint64_t hash_every = 1;
 };

@@ -204,6 +204,9 @@ class Record {
     double start_time = 0.0;  ///< s: what SimulateOptions::start_time said; all times here are relative to it
     StopReason stopped = StopReason::kAtRest;
 
+    /// Takes out what happened, for another shot. The memory of the motions and the events stays.
+    void clear();
+
     /// Radius and mass of a ball.
     BallSize size(int ball) const { return tracks[ball].own.value_or(balls.size()); }
 

@@ -104,4 +104,9 @@ Record simulate(const Plan& plan, RunBuffers& buffers, const SimulateOptions& op
 /// balls rest against each other or against a cushion. A profile is not taken. @throws SimulationError
 void simulate(const Plan& plan, RunBuffers& buffers, Outcome& outcome, const SimulateOptions& options = {});
 
+/// The outcome and the record of one run. The record is that of simulate(), in the memory that `record` has from an earlier shot.
+/// @throws SimulationError
+void simulate(const Plan& plan, RunBuffers& buffers, Outcome& outcome, Record& record,
+              const SimulateOptions& options = {});
+
 }  // namespace carom

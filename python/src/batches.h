@@ -1,0 +1,98 @@
+// Arrays of batches, and how a batch is played without the GIL.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "carom/engine/batch.h"
+#include "native.h"
+
+namespace carom::python {
+
+/// Arrays of the caller's, contiguous, of n and of n x balls (x and y alternate). Shots in _simulate.py makes and checks them.
+struct ShotArrays {
+    Flat<std::uint8_t> status;
+    Flat<double> duration;
+    Flat<std::int64_t> events;
+    Flat<std::int32_t> first_hit, contacts, approach_cushions;
+    Flat<double> xy;
+    Flat<std::int32_t> pocket, fell, cushions;
+    Flat<std::uint64_t> hash;  ///< empty: not wanted
+
+    BatchArrays arrays() const {
+        BatchArrays out;
+        out.status = reinterpret_cast<ShotStatus*>(status.data());
+        out.duration = duration.data();
+        out.events = events.data();
+        out.first_hit = first_hit.data();
+        out.contacts = contacts.data();
+        out.approach_cushions = approach_cushions.data();
+        out.x = xy.data();
+        out.y = xy.data() + 1;
+        out.place_stride = 2;
+        out.pocket = pocket.data();
+        out.fell = fell.data();
+        out.cushions = cushions.data();
+        if (hash.size() > 0) out.hash = hash.data();
+        return out;
+    }
+};
+
+using Column = std::pair<std::string, Flat<const double>>;
+/// A shot without a result, and why it has none.
+using Failure = std::pair<std::size_t, std::string>;
+
+/// Plays a batch without the GIL. Ctrl-C ends it.
+template <class Play>
+std::vector<Failure> played(const ShotArrays& arrays, std::size_t balls, int threads, Play&& play) {
+    const BatchArrays out = arrays.arrays();
+    SignalWatch watch;
+    BatchOptions options;
+    options.threads = threads;
+    options.stop = [&watch] { return watch.stopped(); };
+    std::vector<Failure> failures;
+    try {
+        const nb::gil_scoped_release no_gil;
+        for (Batch::Message& message : play(options, out)) {
+            constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+            out.duration[message.shot] = kNone;
+            std::fill_n(out.x + message.shot * balls * 2, 2 * balls, kNone);
+            failures.emplace_back(message.shot, std::move(message.text));
+        }
+    } catch (const BatchStopped&) {
+        throw nb::python_error();
+    } catch (const std::invalid_argument& error) {
+        throw nb::value_error(error.what());
+    }
+    return failures;
+}
+
+/// The same of shots that differ in the numbers of columns. @param play  takes the scene, the columns, the instruction set, options and arrays
+template <class Play>
+std::vector<Failure> played_columns(const NativeScene& native, const std::vector<Column>& columns,
+                                    const Flat<const std::uint8_t>& absent, std::optional<double> until,
+                                    std::optional<std::int64_t> max_events, int threads,
+                                    const ShotArrays& out, Play&& play) {
+    const kernel::Isa isa = chosen_isa();
+    std::vector<BatchColumn> list;
+    for (const auto& [key, values] : columns) list.push_back({key, std::span(values.data(), values.size())});
+    const std::span left_out(absent.data(), absent.size());
+    return played(out, native.scene->ball.size(), threads,
+                  [&](BatchOptions& options, const BatchArrays& into) {
+                      Scene scene = *native.scene;
+                      scene.stop.events = fewer(scene.stop.events, max_events);
+                      options.simulate.until = until;
+                      options.absent = left_out;
+                      return play(scene, list, isa, options, into);
+                  });
+}
+
+}  // namespace carom::python
