@@ -1,4 +1,5 @@
-// Arithmetic on arrays that numpy has no function for, or none with the same bits on every machine.
+// Arithmetic on arrays that numpy has no function for, or none with the same bits on every machine, or many that take longer than a shot.
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -9,22 +10,6 @@
 namespace carom::python {
 namespace {
 
-/// Draws as many numbers for every row as `out` has room for, uniform in [0, 1), and moves the generators on.
-/// @param states  (n) of each row's generator
-/// @param out     (n x k), row after row
-void uniforms(const Flat<std::uint64_t>& states, const Flat<double>& out) {
-    const std::size_t rows = states.size();
-    if (rows == 0) return;
-    const std::size_t draws = out.size() / rows;
-    if (draws * rows != out.size()) throw nb::value_error("expected as many numbers in every row");
-    double* next = out.data();
-    for (std::size_t row = 0; row < rows; ++row) {
-        SplitMix64 random(states.data()[row]);
-        for (std::size_t draw = 0; draw < draws; ++draw) *next++ = random.uniform();
-        states.data()[row] = random.state();
-    }
-}
-
 /// Angles of directions from +x towards +y [degrees], from -180 to 180; 0 for no direction, NaN where a number is none.
 void directions_deg(const Flat<const double>& x, const Flat<const double>& y, const Flat<double>& out) {
     if (x.size() != y.size() || x.size() != out.size()) throw nb::value_error("expected arrays of one size");
@@ -33,10 +18,92 @@ void directions_deg(const Flat<const double>& x, const Flat<const double>& y, co
     }
 }
 
+/// Where balls may be drawn: at from + room * [0, 1)^2, outside every disc, and so far apart from each other.
+struct Room {
+    Flat<const double> from, room;  ///< [m] 2 each
+    Flat<const double> discs;       ///< m x 3: centre [m] and square of the radius
+    double apart2;                  ///< [m^2]
+
+    bool takes(const double* places, std::size_t ball) const {
+        const double x = places[2 * ball], y = places[2 * ball + 1];
+        for (std::size_t i = 0; i + 2 < discs.size(); i += 3) {
+            const double dx = x - discs.data()[i], dy = y - discs.data()[i + 1];
+            if (!(dx * dx + dy * dy > discs.data()[i + 2])) return false;
+        }
+        for (std::size_t other = 0; other < ball; ++other) {
+            const double dx = x - places[2 * other], dy = y - places[2 * other + 1];
+            if (!(dx * dx + dy * dy > apart2)) return false;
+        }
+        return true;
+    }
+};
+
+/// Draws places of balls for every row until they fit, each time all of them: `out` is n x balls x 2. A row has a generator of its own, SplitMix64, which moves on:
+/// a table draws the same alone as beside others.
+/// @return whether all rows have found some in so many tries
+bool random_places(const Flat<std::uint64_t>& states, const Flat<const double>& from,
+                   const Flat<const double>& room, const Flat<const double>& discs, double apart2, int tries,
+                   const Flat<double>& out) {
+    const std::size_t rows = states.size();
+    if (rows == 0) return true;
+    const std::size_t balls = out.size() / (2 * rows);
+    if (balls * 2 * rows != out.size() || from.size() != 2 || room.size() != 2)
+        throw nb::value_error("expected as many places in every row");
+    const Room where = {from, room, discs, apart2};
+    bool all = true;
+    for (std::size_t row = 0; row < rows; ++row) {
+        SplitMix64 random(states.data()[row]);
+        double* const places = out.data() + row * balls * 2;
+        bool fits = false;
+        for (int round = 0; round < tries && !fits; ++round) {
+            for (std::size_t i = 0; i < 2 * balls; ++i)
+                places[i] = from.data()[i % 2] + room.data()[i % 2] * random.uniform();
+            fits = true;
+            for (std::size_t ball = 0; ball < balls && fits; ++ball) fits = where.takes(places, ball);
+        }
+        states.data()[row] = random.state();
+        all = all && fits;
+    }
+    return all;
+}
+
+float within_one(float value) {
+    return value < -1.0F ? -1.0F : value > 1.0F ? 1.0F : value;
+}
+
+/// What is observed of n tables: x and y from -1 to 1 across the table, and 1; three times 0 for a ball that is not there (NaN).
+/// @param balls  n x a x 2 [m]  @param marks  n x b x 2 [m]  @param middle, half  of the table, 2 each [m]  @param out  n x (a + b) x 3
+void observe(std::size_t tables, const Flat<const double>& balls, const Flat<const double>& marks,
+             const Flat<const double>& middle, const Flat<const double>& half, const Flat<float>& out) {
+    if (tables == 0) return;
+    const std::size_t a = balls.size() / (2 * tables), b = marks.size() / (2 * tables);
+    if (2 * a * tables != balls.size() || 2 * b * tables != marks.size() || middle.size() != 2 ||
+        half.size() != 2 || out.size() != 3 * (a + b) * tables)
+        throw nb::value_error("expected arrays of as many tables");
+    float* to = out.data();
+    const auto put = [&](const double* place) {
+        const bool there = !std::isnan(place[0]);
+        for (int axis = 0; axis < 2; ++axis)
+            *to++ =
+                there
+                    ? within_one(static_cast<float>((place[axis] - middle.data()[axis]) / half.data()[axis]))
+                    : 0.0F;
+        *to++ = there ? 1.0F : 0.0F;
+    };
+    for (std::size_t table = 0; table < tables; ++table) {
+        for (std::size_t i = 0; i < a; ++i) put(balls.data() + 2 * (table * a + i));
+        for (std::size_t i = 0; i < b; ++i) put(marks.data() + 2 * (table * b + i));
+    }
+}
+
 }  // namespace
 
 void add_arrays(nb::module_& m) {
-    m.def("uniforms", uniforms, nb::arg("states").noconvert(), nb::arg("out").noconvert());
+    m.def("random_places", random_places, nb::arg("states").noconvert(), nb::arg("from").noconvert(),
+          nb::arg("room").noconvert(), nb::arg("discs").noconvert(), nb::arg("apart2"), nb::arg("tries"),
+          nb::arg("out").noconvert());
+    m.def("observe", observe, nb::arg("tables"), nb::arg("balls").noconvert(), nb::arg("marks").noconvert(),
+          nb::arg("middle").noconvert(), nb::arg("half").noconvert(), nb::arg("out").noconvert());
     m.def("directions_deg", directions_deg, nb::arg("x").noconvert(), nb::arg("y").noconvert(),
           nb::arg("out").noconvert());
 }

@@ -11,7 +11,6 @@ from carom import _carom
 from carom._record import Record
 from carom._scene import Scene
 from carom._simulate import Shots, ShotStatus, _columns_of, simulate, simulate_many
-from carom.gym._strikes import uniforms
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -64,6 +63,17 @@ class Game:
         if "cue" not in self._tree:
             raise ValueError("scene: it has no [cue], and so no ball to strike")
         self.cue_ball = self.ids.index(self._tree["cue"].get("ball", "cue"))
+        self._half = 0.5 * np.array([self.table.width, self.table.length])
+        self._middle = np.array(self.table.corner) + self._half
+        # Where a random layout may have the centres of its balls.
+        largest = self.radii.max()
+        self._from = np.array(self.table.corner) + largest + _ROOM
+        self._room = np.array([self.table.width, self.table.length]) - 2 * (largest + _ROOM)
+        mouths = np.array([pocket[1:4] for pocket in self.table.pockets]).reshape(-1, 3)
+        mouths[:, 2] += largest
+        mouths[:, 2] *= mouths[:, 2]
+        self._mouths = mouths.reshape(-1)
+        self._apart2 = float((2 * largest + _ROOM) ** 2)
 
     # What subclasses say.
 
@@ -94,13 +104,10 @@ class Game:
 
     def observe(self, states: States) -> NDArray[np.float32]:
         """(n, balls + places, 3): x and y from -1 to 1 across the table, and 1. All three are 0 for a ball that is not on the table."""
-        places = np.concatenate((states.xy, self.points(states)), axis=1)
-        half = 0.5 * np.array([self.table.width, self.table.length])
-        out = np.empty((*places.shape[:2], 3), np.float32)
-        out[:, :, :2] = (places - (np.array(self.table.corner) + half)) / half
-        out[:, :, 2] = 1.0
-        out[np.isnan(places[:, :, 0])] = 0.0
-        return np.clip(out, -1.0, 1.0)
+        balls, marks = np.ascontiguousarray(states.xy), np.ascontiguousarray(self.points(states))
+        out = np.empty((len(balls), balls.shape[1] + marks.shape[1], 3), np.float32)
+        _carom.observe(len(balls), balls.reshape(-1), marks.reshape(-1), self._middle, self._half, out.reshape(-1))
+        return out
 
     def scene_of(self, xy: NDArray[np.float64], cue: NDArray[np.float64] | None = None) -> Scene:
         """One table as a scene, with the strike or without one. Raises SceneError where the balls cannot stand so."""
@@ -127,28 +134,10 @@ class Game:
 
     def random_places(self, states: NDArray[np.uint64], balls: int) -> NDArray[np.float64]:
         """(n, balls, 2) places that leave room between each other and to cushions and pockets, uniform among all such."""
-        low = np.array(self.table.corner) + self.radii.max() + _ROOM
-        size = np.array([self.table.width, self.table.length]) - 2 * (self.radii.max() + _ROOM)
-        mouths = np.array([pocket[1:3] for pocket in self.table.pockets]).reshape(-1, 2)
-        reach = np.array([pocket[3] for pocket in self.table.pockets]) + self.radii.max()
         xy = np.empty((len(states), balls, 2))
-        left = np.arange(len(states))
-        for _ in range(_TRIES):
-            moved = states[left]
-            places = low + size * uniforms(moved, 2 * balls).reshape(-1, balls, 2)
-            states[left] = moved
-            xy[left] = places
-            fits = np.ones(len(left), bool)
-            for i in range(balls):
-                to_mouths = places[:, i, None] - mouths
-                fits &= ((to_mouths * to_mouths).sum(-1) > reach * reach).all(1)
-                for k in range(i):
-                    apart = places[:, i] - places[:, k]
-                    fits &= (apart * apart).sum(-1) > (2 * self.radii.max() + _ROOM) ** 2
-            left = left[~fits]
-            if len(left) == 0:
-                return xy
-        raise ValueError("no random layout fits this table: it is too small for its balls")
+        if not _carom.random_places(states, self._from, self._room, self._mouths, self._apart2, _TRIES, xy.reshape(-1)):
+            raise ValueError("no random layout fits this table: it is too small for its balls")
+        return xy
 
 
 def _placed(ids: Mapping[str, tuple[float, float]]) -> list[dict[str, Any]]:

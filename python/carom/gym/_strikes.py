@@ -1,4 +1,4 @@
-"""Random numbers of environments, and actions as strikes."""
+"""Actions as strikes."""
 
 from __future__ import annotations
 
@@ -14,14 +14,6 @@ if TYPE_CHECKING:
 
 #: [ball radii] How far from the centre scenes let the tip hit; a hair less, so that no rounding passes it.
 _LARGEST_OFFSET = 0.5 * (1 - 1e-12)
-
-
-def uniforms(states: NDArray[np.uint64], draws: int) -> NDArray[np.float64]:
-    """(n, draws) numbers in [0, 1) of the n generators, which move on. A generator is SplitMix64: 64 bits, so that those of many tables are an
-    array, and a table draws the same alone as beside others."""
-    out = np.empty((len(states), draws))
-    _carom.uniforms(states, out.reshape(-1))
-    return out
 
 
 def directions_deg(along: NDArray[np.float64]) -> NDArray[np.float64]:
