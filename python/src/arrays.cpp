@@ -1,7 +1,10 @@
 // Arithmetic on arrays that numpy has no function for, or none with the same bits on every machine, or many that take longer than a shot.
+#include <nanobind/stl/pair.h>
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "base/splitmix64.h"
 #include "carom/games/aim.h"
@@ -10,11 +13,42 @@
 namespace carom::python {
 namespace {
 
-/// Angles of directions from +x towards +y [degrees], from -180 to 180; 0 for no direction, NaN where a number is none.
-void directions_deg(const Flat<const double>& x, const Flat<const double>& y, const Flat<double>& out) {
-    if (x.size() != y.size() || x.size() != out.size()) throw nb::value_error("expected arrays of one size");
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        out.data()[i] = games::direction_deg({x.data()[i], y.data()[i]});
+/// Within [-1, 1]; a number that is none stays.
+template <class T>
+T within_one(T value) {
+    return value < T(-1) ? T(-1) : value > T(1) ? T(1) : value;
+}
+
+/// From the first end at -1 to the second one at 1, both to the bit.
+double between(const std::pair<double, double>& ends, double part) {
+    const double far = 0.5 * (part + 1.0);
+    return ends.first * (1.0 - far) + ends.second * far;
+}
+
+/// Actions as strikes, as Strikes in carom.gym says. numpy's arctan2 has other bits on other processors.
+/// @param actions  n x 5, or n x 6 with the elevation  @param along  n x 2 directions, or empty: the first two numbers of the actions
+/// @param offset   the greatest [ball radii]  @param out  n x 5
+void strikes(std::size_t shots, const Flat<const double>& actions, const Flat<const double>& along,
+             const std::pair<double, double>& speed, const std::pair<double, double>& elevation,
+             double offset, const Flat<double>& out) {
+    if (shots == 0) return;
+    const std::size_t size = actions.size() / shots;
+    if (size * shots != actions.size() || size < 5 || out.size() != 5 * shots ||
+        (along.size() != 0 && along.size() != 2 * shots))
+        throw nb::value_error("expected arrays of as many shots");
+    for (std::size_t shot = 0; shot < shots; ++shot) {
+        const double* const action = actions.data() + size * shot;
+        const auto number = [action](std::size_t k) { return within_one(action[k]); };
+        const double* const ahead = along.size() > 0 ? along.data() + 2 * shot : nullptr;
+        double* const cue = out.data() + 5 * shot;
+        cue[0] = between(speed, number(2));
+        cue[1] =
+            games::direction_deg(ahead != nullptr ? Vec2(ahead[0], ahead[1]) : Vec2(number(0), number(1)));
+        cue[2] = size > 5 ? between(elevation, number(5)) : elevation.first;
+        // The square onto the disc, continuous, one to one and without a change near the centre.
+        const double side = number(3), height = number(4);
+        cue[3] = offset * side * std::sqrt(1.0 - 0.5 * height * height);
+        cue[4] = offset * height * std::sqrt(1.0 - 0.5 * side * side);
     }
 }
 
@@ -67,10 +101,6 @@ bool random_places(const Flat<std::uint64_t>& states, const Flat<const double>& 
     return all;
 }
 
-float within_one(float value) {
-    return value < -1.0F ? -1.0F : value > 1.0F ? 1.0F : value;
-}
-
 /// What is observed of n tables: x and y from -1 to 1 across the table, and 1; three times 0 for a ball that is not there (NaN).
 /// @param balls  n x a x 2 [m]  @param marks  n x b x 2 [m]  @param middle, half  of the table, 2 each [m]  @param out  n x (a + b) x 3
 void observe(std::size_t tables, const Flat<const double>& balls, const Flat<const double>& marks,
@@ -104,8 +134,8 @@ void add_arrays(nb::module_& m) {
           nb::arg("out").noconvert());
     m.def("observe", observe, nb::arg("tables"), nb::arg("balls").noconvert(), nb::arg("marks").noconvert(),
           nb::arg("middle").noconvert(), nb::arg("half").noconvert(), nb::arg("out").noconvert());
-    m.def("directions_deg", directions_deg, nb::arg("x").noconvert(), nb::arg("y").noconvert(),
-          nb::arg("out").noconvert());
+    m.def("strikes", strikes, nb::arg("shots"), nb::arg("actions").noconvert(), nb::arg("along").noconvert(),
+          nb::arg("speed"), nb::arg("elevation"), nb::arg("offset"), nb::arg("out").noconvert());
 }
 
 }  // namespace carom::python

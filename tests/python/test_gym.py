@@ -138,11 +138,15 @@ def test_the_square_of_offsets_is_laid_on_the_whole_disc():
 
 
 def test_directions_are_those_of_numpy():
-    along = np.random.default_rng(1).normal(size=(1000, 2)) * 10.0 ** np.random.default_rng(2).uniform(-40, 3, (1000, 1))
-    assert np.abs(carom.gym._strikes.directions_deg(along) - np.degrees(np.arctan2(along[:, 1], along[:, 0]))).max() < 1e-13
+    def directions_deg(along):
+        actions = np.column_stack((along, np.zeros((len(along), 3))))
+        return carom.gym.Strikes().cue(actions, np.empty((len(along), 0, 2)), 0, np.empty((len(along), 0), bool), np.empty(0))[:, 1]
+
+    along = np.random.default_rng(1).uniform(-1, 1, (1000, 2)) * 10.0 ** np.random.default_rng(2).uniform(-40, 0, (1000, 1))
+    assert np.abs(directions_deg(along) - np.degrees(np.arctan2(along[:, 1], along[:, 0]))).max() < 1e-13
     ends = np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1e-170, 1e-160], [np.nan, 1]], float)
-    assert np.allclose(carom.gym._strikes.directions_deg(ends)[:5], [0, 0, 180, 90, -90], rtol=0, atol=1e-13)
-    assert np.isfinite(carom.gym._strikes.directions_deg(ends)[:6]).all() and np.isnan(carom.gym._strikes.directions_deg(ends)[6])
+    assert np.allclose(directions_deg(ends)[:5], [0, 0, 180, 90, -90], rtol=0, atol=1e-13)
+    assert np.isfinite(directions_deg(ends)[:6]).all() and np.isnan(directions_deg(ends)[6])
 
 
 def test_an_aim_at_a_ball_hits_it_as_full_as_it_says():

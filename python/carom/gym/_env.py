@@ -142,13 +142,13 @@ class TableEnv(gymnasium.Env[Observation, Any]):
         if seed is not None or not self._seeded:
             self._tables.seed(0, self.np_random)
             self._seeded = True
-        self._tables.reset(np.array([0]), options)
+        self._tables.reset(slice(None), options)
         return self._observe(), {}
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         if not self._seeded:
             raise gymnasium.error.ResetNeeded("call reset before step")
-        played, info = self._tables.step(np.array([0]), np.asarray(action)[None])
+        played, info = self._tables.step(slice(None), np.asarray(action)[None])
         said = {key: plain(values[0]) for key, values in info.items()}
         said |= {"message": text for text in played.shots.messages.values()}
         return self._observe(), float(played.reward[0]), bool(played.terminated[0]), bool(played.truncated[0]), said

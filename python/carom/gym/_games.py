@@ -157,8 +157,10 @@ class Pot(Game):
 
     def judge(self, states: States, cue: NDArray[np.float64], shots: Shots) -> Judged:
         foul = self.scratch(shots)
-        potted = (np.delete(shots.pocket, self.cue_ball, axis=1) >= 0).any(1)
-        reward = np.where(foul != "", -1.0, potted.astype(np.float64))
+        potted = shots.pocket >= 0
+        potted[:, self.cue_ball] = False
+        reward = potted.any(1).astype(np.float64)
+        reward[foul != ""] = -1.0
         behind = States(shots.places, states.extra.copy())
         return Judged(behind, reward, np.ones(len(reward), bool), foul)
 

@@ -14,13 +14,7 @@ if TYPE_CHECKING:
 
 #: [ball radii] How far from the centre scenes let the tip hit; a hair less, so that no rounding passes it.
 _LARGEST_OFFSET = 0.5 * (1 - 1e-12)
-
-
-def directions_deg(along: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Angles of (n, 2) directions from +x towards +y [degrees]; 0 for no direction. numpy's arctan2 has other bits on other processors."""
-    out = np.empty(len(along))
-    _carom.directions_deg(np.ascontiguousarray(along[:, 0]), np.ascontiguousarray(along[:, 1]), out)
-    return out
+_NOT_ASKED = np.empty(0)
 
 
 def _norm(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -72,21 +66,11 @@ class Strikes:
         legal: (n, balls) which of them may be hit first
         radii: (balls,)
         """
-        act = np.clip(actions.astype(np.float64), -1.0, 1.0)
+        act = np.ascontiguousarray(actions, np.float64)
+        along = _NOT_ASKED if self.aim == "angle" else _at_balls(np.clip(act, -1.0, 1.0), xy, struck, legal, radii).reshape(-1)
         out = np.empty((len(act), 5))
-        out[:, 0] = _between(self.speed, act[:, 2])
-        out[:, 1] = directions_deg(act[:, :2] if self.aim == "angle" else _at_balls(act, xy, struck, legal, radii))
-        out[:, 2] = _between(self.elevations, act[:, 5]) if self.size == 6 else self.elevations[0]
-        # The square onto the disc, continuous, one to one and without a change near the centre.
-        squared = 0.5 * act[:, 3:5] * act[:, 3:5]
-        out[:, 3:] = _LARGEST_OFFSET * act[:, 3:5] * np.sqrt(1.0 - squared[:, ::-1])
+        _carom.strikes(len(act), act.reshape(-1), along, self.speed, self.elevations, _LARGEST_OFFSET, out.reshape(-1))
         return out
-
-
-def _between(ends: tuple[float, float], part: NDArray[np.float64]) -> NDArray[np.float64]:
-    """From the first end at -1 to the second one at 1, both to the bit."""
-    far = 0.5 * (part + 1.0)
-    return ends[0] * (1.0 - far) + ends[1] * far
 
 
 def _at_balls(

@@ -17,6 +17,8 @@ from carom.gym._strikes import Strikes
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+#: Numbers of tables, or all of them, `slice(None)`.
+Rows = Any
 #: More events than any shot has: one that reaches it is truncated.
 _MOST_EVENTS = 100_000
 
@@ -79,9 +81,9 @@ class Tables:
         self.generators[row], self.noise_seeds[row] = generator.integers(0, 2**64, 2, dtype=np.uint64)
         self.played[row] = 0
 
-    def reset(self, rows: NDArray[np.intp], options: Mapping[str, Any] | None) -> None:
+    def reset(self, rows: Rows, options: Mapping[str, Any] | None) -> None:
         """New episodes on these tables. Raises ValueError for options that are none."""
-        generators = self.generators[rows]
+        generators = self.generators[rows].copy()
         states = self.rules.game.start(generators)
         self.generators[rows] = generators
         if options:
@@ -90,9 +92,8 @@ class Tables:
         self.shots[rows] = 0
         self.cue[rows] = np.nan
 
-    def step(self, rows: NDArray[np.intp], actions: NDArray[np.floating]) -> tuple[Rollout, dict[str, NDArray[Any]]]:
+    def step(self, rows: Rows, actions: NDArray[np.floating]) -> tuple[Rollout, dict[str, NDArray[Any]]]:
         """One shot on each of these tables, and what an environment says about it."""
-        whole = len(rows) == len(self.shots)
         before = self.states.take(rows)
         played = self.rules.rollout(before, actions, self.noise_seeds[rows], self.played[rows])
         self.before.put(rows, before)
@@ -100,7 +101,7 @@ class Tables:
         self.states.put(rows, played.states)
         self.shots[rows] += 1
         self.played[rows] += 1
-        over = (self.shots if whole else self.shots[rows]) >= self.most_shots
+        over = self.shots[rows] >= self.most_shots
         played = played._replace(truncated=played.truncated | (over & ~played.terminated))
         shots = played.shots
         info: dict[str, NDArray[Any]] = {

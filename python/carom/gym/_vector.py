@@ -103,20 +103,20 @@ class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
         act = np.asarray(actions)
         if act.shape != self.action_space.shape:
             raise ValueError(f"actions: expected the shape {self.action_space.shape}, not {act.shape}")
-        resets = np.flatnonzero(over)  # none but with NEXT_STEP
-        rows = np.flatnonzero(~over)
+        some_over = over.any()  # only with NEXT_STEP, which resets them
+        rows = np.flatnonzero(~over) if some_over else slice(None)
         reward, terminated, truncated = np.zeros(self.num_envs), np.zeros(self.num_envs, bool), np.zeros(self.num_envs, bool)
         infos: dict[str, Any] = {}
-        if len(resets):
-            self._tables.reset(resets, None)
-        if len(rows):
-            played, info = self._tables.step(rows, act if len(rows) == self.num_envs else act[rows])
+        if some_over:
+            self._tables.reset(np.flatnonzero(over), None)
+        if not over.all():
+            played, info = self._tables.step(rows, act[rows])
             reward[rows], terminated[rows], truncated[rows] = played.reward, played.terminated, played.truncated
             ended = terminated | truncated
             if mode == AutoresetMode.SAME_STEP and ended.any():
-                infos = self._same_step(rows, played, info, ended)
+                infos = self._same_step(played, info, ended)
             else:
-                infos = self._infos(rows, info, played.shots.messages)
+                infos = self._infos(~over, {key: self._whole(rows, values) for key, values in info.items()}, self._messages(rows, played))
         self._over = terminated | truncated if mode != AutoresetMode.SAME_STEP else np.zeros(self.num_envs, bool)
         return self._observe(), reward, terminated, truncated, infos
 
@@ -131,36 +131,50 @@ class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
         scenes = (self._rules.game.scene_of(xy) for xy in self._tables.states.xy)
         return tuple(next(render(scene, camera="top", size=self._size, times=[0.0])) for scene in scenes)
 
-    def _same_step(self, rows: NDArray[np.intp], played: Rollout, info: dict[str, Any], ended: NDArray[np.bool_]) -> dict[str, Any]:
+    def _same_step(self, played: Rollout, info: dict[str, Any], ended: NDArray[np.bool_]) -> dict[str, Any]:
         """Resets the tables whose episode is over. The info of the others, and how these ended."""
-        going = ~ended[rows]
         said = played.shots.messages
-        infos = self._infos(rows[going], {key: values[going] for key, values in info.items()}, _renumbered(said, going)) if going.any() else {}
-        last = self._observe()
+        infos = {} if ended.all() else self._infos(~ended, info, said)
+        last = self._observe()  # nobody else's, so that its rows need no copies
         final = np.full(self.num_envs, None, object)
-        for row in np.flatnonzero(ended).tolist():
-            final[row] = {key: plain(values[row]) for key, values in last.items()} if isinstance(last, dict) else last[row].copy()
+        which = np.flatnonzero(ended)
+        dicts = isinstance(last, dict)
+        for row in which.tolist():
+            final[row] = {key: values[row] for key, values in last.items()} if dicts else last[row]
         infos["final_obs"], infos["_final_obs"] = final, ended.copy()
-        infos["final_info"] = self._infos(rows[~going], {key: values[~going] for key, values in info.items()}, _renumbered(said, ~going))
-        infos["_final_info"] = ended.copy()
-        self._tables.reset(np.flatnonzero(ended), None)
+        infos["final_info"], infos["_final_info"] = self._infos(ended, info, said), ended.copy()
+        self._tables.reset(slice(None) if len(which) == self.num_envs else which, None)
         return infos
 
-    def _infos(self, rows: NDArray[np.intp], info: Mapping[str, NDArray[Any]], messages: Mapping[int, str]) -> dict[str, Any]:
-        """As `VectorEnv._add_info` puts the info of these environments together."""
+    def _infos(self, mask: NDArray[np.bool_], info: Mapping[str, NDArray[Any]], messages: Mapping[int, str]) -> dict[str, Any]:
+        """As `VectorEnv._add_info` puts the info of these environments together. `info` and `messages` are of all tables."""
         infos: dict[str, Any] = {}
-        mask = np.zeros(self.num_envs, bool)
-        mask[rows] = True
+        others = ~mask
+        some = others.any()
         for key, values in info.items():
-            whole = np.full(self.num_envs, None, object) if values.dtype == object else np.zeros((self.num_envs, *values.shape[1:]), values.dtype)
-            whole[rows] = values
-            infos[key], infos[f"_{key}"] = whole, mask.copy()
-        if messages:
-            texts, told = np.full(self.num_envs, None, object), np.zeros(self.num_envs, bool)
-            for i, text in messages.items():
-                texts[rows[i]], told[rows[i]] = text, True
-            infos["message"], infos["_message"] = texts, told
+            if some:
+                values = values.copy()
+                values[others] = None if values.dtype == object else 0
+            infos[key], infos[f"_{key}"] = values, mask.copy()
+        told = [row for row in messages if mask[row]]
+        if told:
+            infos["message"], infos["_message"] = np.full(self.num_envs, None, object), np.zeros(self.num_envs, bool)
+            for row in told:
+                infos["message"][row], infos["_message"][row] = messages[row], True
         return infos
+
+    def _whole(self, rows: Any, values: NDArray[Any]) -> NDArray[Any]:
+        """Values of some tables in an array of all of them."""
+        if isinstance(rows, slice):
+            return values
+        whole = np.empty((self.num_envs, *values.shape[1:]), values.dtype)
+        whole[rows] = values
+        return whole
+
+    def _messages(self, rows: Any, played: Rollout) -> dict[int, str]:
+        """Messages of shots by their tables."""
+        said = played.shots.messages
+        return said if isinstance(rows, slice) else {int(rows[shot]): text for shot, text in said.items()}
 
     def _observe(self) -> Observation:
         return observed(self._rules.game, self._tables.states, self._observation)
@@ -178,9 +192,3 @@ def _cut(options: Mapping[str, Any], mask: NDArray[np.bool_]) -> dict[str, Any]:
     return {
         key: np.asarray(value)[mask] if key != "scene" and np.ndim(value) == whole.get(key, 1) else value for key, value in options.items()
     }
-
-
-def _renumbered(messages: Mapping[int, str], keep: NDArray[np.bool_]) -> dict[int, str]:
-    """Messages of some of the shots, by their places among these."""
-    places = np.cumsum(keep) - 1
-    return {int(places[i]): text for i, text in messages.items() if keep[i]}
