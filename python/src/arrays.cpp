@@ -52,11 +52,11 @@ void strikes(std::size_t shots, const Flat<const double>& actions, const Flat<co
     }
 }
 
-/// Where balls may be drawn: at from + room * [0, 1)^2, outside every disc, and so far apart from each other.
+/// Where balls may be drawn: at low + room * [0, 1)^2, outside every disc, and so far apart from each other.
 struct Room {
-    Flat<const double> from, room;  ///< [m] 2 each
-    Flat<const double> discs;       ///< m x 3: centre [m] and square of the radius
-    double apart2;                  ///< [m^2]
+    Flat<const double> low, room;  ///< [m] 2 each
+    Flat<const double> discs;      ///< m x 3: centre [m] and square of the radius
+    double apart2;                 ///< [m^2]
 
     bool takes(const double* places, std::size_t ball) const {
         const double x = places[2 * ball], y = places[2 * ball + 1];
@@ -75,15 +75,15 @@ struct Room {
 /// Draws places of balls for every row until they fit, each time all of them: `out` is n x balls x 2. A row has a generator of its own, SplitMix64, which moves on:
 /// a table draws the same alone as beside others.
 /// @return whether all rows have found some in so many tries
-bool random_places(const Flat<std::uint64_t>& states, const Flat<const double>& from,
+bool random_places(const Flat<std::uint64_t>& states, const Flat<const double>& low,
                    const Flat<const double>& room, const Flat<const double>& discs, double apart2, int tries,
                    const Flat<double>& out) {
     const std::size_t rows = states.size();
     if (rows == 0) return true;
     const std::size_t balls = out.size() / (2 * rows);
-    if (balls * 2 * rows != out.size() || from.size() != 2 || room.size() != 2)
+    if (balls * 2 * rows != out.size() || low.size() != 2 || room.size() != 2)
         throw nb::value_error("expected as many places in every row");
-    const Room where = {from, room, discs, apart2};
+    const Room where = {low, room, discs, apart2};
     bool all = true;
     for (std::size_t row = 0; row < rows; ++row) {
         SplitMix64 random(states.data()[row]);
@@ -91,7 +91,7 @@ bool random_places(const Flat<std::uint64_t>& states, const Flat<const double>& 
         bool fits = false;
         for (int round = 0; round < tries && !fits; ++round) {
             for (std::size_t i = 0; i < 2 * balls; ++i)
-                places[i] = from.data()[i % 2] + room.data()[i % 2] * random.uniform();
+                places[i] = low.data()[i % 2] + room.data()[i % 2] * random.uniform();
             fits = true;
             for (std::size_t ball = 0; ball < balls && fits; ++ball) fits = where.takes(places, ball);
         }
@@ -129,7 +129,7 @@ void observe(std::size_t tables, const Flat<const double>& balls, const Flat<con
 }  // namespace
 
 void add_arrays(nb::module_& m) {
-    m.def("random_places", random_places, nb::arg("states").noconvert(), nb::arg("from").noconvert(),
+    m.def("random_places", random_places, nb::arg("states").noconvert(), nb::arg("low").noconvert(),
           nb::arg("room").noconvert(), nb::arg("discs").noconvert(), nb::arg("apart2"), nb::arg("tries"),
           nb::arg("out").noconvert());
     m.def("observe", observe, nb::arg("tables"), nb::arg("balls").noconvert(), nb::arg("marks").noconvert(),

@@ -67,7 +67,7 @@ class Game:
         self._middle = np.array(self.table.corner) + self._half
         # Where a random layout may have the centres of its balls.
         largest = self.radii.max()
-        self._from = np.array(self.table.corner) + largest + _ROOM
+        self._low = np.array(self.table.corner) + largest + _ROOM
         self._room = np.array([self.table.width, self.table.length]) - 2 * (largest + _ROOM)
         mouths = np.array([pocket[1:4] for pocket in self.table.pockets]).reshape(-1, 3)
         mouths[:, 2] += largest
@@ -135,7 +135,7 @@ class Game:
     def random_places(self, states: NDArray[np.uint64], balls: int) -> NDArray[np.float64]:
         """(n, balls, 2) places that leave room between each other and to cushions and pockets, uniform among all such."""
         xy = np.empty((len(states), balls, 2))
-        if not _carom.random_places(states, self._from, self._room, self._mouths, self._apart2, _TRIES, xy.reshape(-1)):
+        if not _carom.random_places(states, self._low, self._room, self._mouths, self._apart2, _TRIES, xy.reshape(-1)):
             raise ValueError("no random layout fits this table: it is too small for its balls")
         return xy
 
