@@ -379,6 +379,57 @@ TEST(Batch, BallsThatAreLeftOutAreNotThere) {
     EXPECT_THROW(simulate_many(scene, 1, {}, kIsa, options), std::invalid_argument);
 }
 
+// A judge sees the record of every shot that has a result, with and without all balls, and what it throws ends the batch.
+TEST(Batch, AJudgeReadsTheRecordsOfSingleShots) {
+    SplitMix64 random(17);
+    const Scene scene = scene_of("side_bank");
+    const std::size_t balls = scene.ball.size();
+    Columns columns(80);
+    columns.add("cue.aim_deg", random, 0.0, 360.0).add("cue.speed", random, -0.5, 6.0);
+    std::vector<std::uint8_t> absent(columns.shots * balls);
+    for (std::size_t i = 0; i < columns.shots; i += 3) absent[i * balls + 1] = 1;
+    std::vector<BatchColumn> list;
+    for (std::size_t k = 0; k < columns.keys.size(); ++k)
+        list.push_back({columns.keys[k], columns.values[k]});
+    BatchOptions options;
+    options.absent = absent;
+    for (const bool hash : {false, true}) {
+        options.hash = hash;
+        options.judge = nullptr;
+        const Batch unjudged = simulate_many(scene, columns.shots, list, kIsa, options);
+        for (const int threads : {1, 3}) {
+            options.threads = threads;
+            std::vector<Record> records(columns.shots);
+            std::vector<int> judged(columns.shots);
+            options.judge = [&](std::size_t shot, const Outcome& outcome, const Record& record) {
+                records[shot] = record;
+                ++judged[shot];
+                EXPECT_EQ(outcome.duration, record.duration);
+                EXPECT_EQ(outcome.balls.size(), record.tracks.size());
+            };
+            const Batch batch = simulate_many(scene, columns.shots, list, kIsa, options);
+            EXPECT_EQ(batch.status, unjudged.status);
+            EXPECT_EQ(batch.duration, unjudged.duration);
+            EXPECT_EQ(batch.cushions, unjudged.cushions);
+            EXPECT_EQ(batch.hash, unjudged.hash);
+            int refused = 0;
+            for (std::size_t i = 0; i < columns.shots; ++i) {
+                refused += !has_result(batch.status[i]);
+                ASSERT_EQ(judged[i], has_result(batch.status[i])) << i;
+                if (judged[i] == 0) continue;
+                Scene shot = columns.shot(scene, i);
+                if (absent[i * balls + 1] != 0) shot.ball.erase(shot.ball.begin() + 1);
+                EXPECT_EQ(records[i], simulate(make_plan(shot, kIsa))) << i;
+            }
+            EXPECT_GT(refused, 0);
+        }
+    }
+    options.judge = [](std::size_t shot, const Outcome&, const Record&) {
+        if (shot > 20) throw std::domain_error("no such shot");
+    };
+    EXPECT_THROW(simulate_many(scene, columns.shots, list, kIsa, options), std::domain_error);
+}
+
 TEST(Batch, OnlyShotsWithTheseNumbersAreHashed) {
     const Variation variation =
         Variation::from_text(read_source("scenes/draw.toml"), "draw", {"cue.aim_deg=normal(2)"}, 5);
@@ -526,12 +577,18 @@ TEST(RunBuffers, GiveTheSameBitsAfterAnything) {
         plans.push_back(make_plan(scene_of(name), kIsa));
     SimulateOptions options;
     options.hash = true;
+    Record kept;
     for (int round = 0; round < 2; ++round) {
         for (const Plan& plan : plans) {
             const Record want = simulate(plan);
             EXPECT_EQ(simulate(plan, buffers), want);
-            Outcome outcome;
+            Outcome outcome, of_record;
             simulate(plan, buffers, outcome, options);
+            simulate(plan, buffers, of_record, kept, options);
+            EXPECT_EQ(of_record, outcome);
+            EXPECT_EQ(kept, want);
+            // Nor do the orientations of the shot before stay.
+            EXPECT_EQ(kept.orientation_at(0, 1.0).coeffs(), want.orientation_at(0, 1.0).coeffs());
             EXPECT_EQ(fmt::format("{:016x}", outcome.hash), want.hash());
             EXPECT_EQ(outcome.clusters, static_cast<int>(want.clusters.size()));
             SimulateOptions given_up;
