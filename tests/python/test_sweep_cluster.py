@@ -289,30 +289,30 @@ print("4711;cluster")
 """
 
 
-def test_an_array_of_slurm_and_another_one_for_what_is_missing(tmp_path, once):
+def test_an_array_of_slurm_and_another_one_for_what_is_missing(tmp_path, once, capsys, monkeypatch):
     plan, file, files = once
     (tmp_path / "bin").mkdir()
     stub, log = tmp_path / "bin/sbatch", tmp_path / "log"
     stub.write_text(SBATCH.format(python=sys.executable, log=str(log)))
     stub.chmod(stub.stat().st_mode | stat.S_IXUSR)
-    environment = {"env": os.environ | {"PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}"}}
+    monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}:{os.environ['PATH']}")
     folder = tmp_path / "a"
     arguments = [file, "-o", folder, "--slurm", "--elements", "4", "--sbatch=--time=60"]
-    code, out, err = sweep_command(*arguments, **environment)
+    code, out, err = sweep_command(*arguments)
     assert (code, out) == (0, "job 4711: --array=0-3 for 24 of 24 shards; --status says how far they are\n"), err
     before = stamps(folder)
     missing = sweep.status(folder).missing
     assert 1 <= len(missing) <= 6 and len({shard % 4 for shard in missing}) == 1
-    code, out, err = sweep_command(file, "-o", folder, "--missing")
+    code, out, err = sweep_in_process(capsys, monkeypatch, file, "-o", folder, "--missing")
     assert (code, [int(run.split("-")[0]) for run in out.strip().split(",")]) == (0, list(missing))
-    code, out, err = sweep_command(*arguments, **environment)
+    code, out, err = sweep_in_process(capsys, monkeypatch, *arguments)
     assert code == 0 and f"--array={missing[0] % 4} for {len(missing)} of 24 shards" in out, err
     assert before.items() <= stamps(folder).items()
     assert whole(folder, plan, files)
-    assert sweep_command(*arguments, **environment)[1] == f"{folder}: nothing is missing\n"
+    assert sweep_in_process(capsys, monkeypatch, *arguments)[1] == f"{folder}: nothing is missing\n"
     assert log.read_text() == f"0-3 60\n{missing[0] % 4} 60\n"
     stub.write_text("#!/bin/sh\necho 'sbatch: error: invalid partition' >&2\nexit 1\n")
-    code, out, err = sweep_command(file, "-o", tmp_path / "b", "--slurm", **environment)
+    code, out, err = sweep_in_process(capsys, monkeypatch, file, "-o", tmp_path / "b", "--slurm")
     assert (code, err) == (1, "carom.sweep: sbatch failed with the status 1: sbatch: error: invalid partition\n")
 
 
@@ -321,7 +321,7 @@ def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path, caps
     arguments = ["--scene", SOURCE / "scenes/draw.toml", "--vary", "cue.aim_deg=normal(2)", "--vary", "cue.speed=uniform(1,4)", "--seed", 4, "--shard", 20]
     assert sweep_command(file, *arguments, "--shots", 60) == (0, f"{file}: 60 shots in 3 shards\n", "")
     assert sweep.Plan.load(file) == draw_plan(60, 20)
-    assert sweep_command(file, *arguments, "--shots", 60)[0] == 0
+    assert sweep_in_process(capsys, monkeypatch, file, *arguments, "--shots", 60)[0] == 0
     for words, code, message in [
         ([file, *arguments, "--shots", 61], 1, f"{file}: there is another plan already; remove it, or write to another place"),
         ([file, *arguments], 2, "--scene needs --vary and --shots"),
@@ -340,15 +340,15 @@ def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path, caps
     code, out, err = sweep_command(file, "--part", "1/2")
     assert code == 0 and re.search(r"^1 of 1 shards, 0 left, 20 rows, \d+ shots/s, 0 failed$", err, re.MULTILINE), err
     assert out.startswith(f"{folder}: 20 rows (at_rest 20), 20 of them played in ")
-    assert sweep_command(file, "--status") == (1, f"{folder}: 1 of 3 shards, 20 of 60 rows\nmissing: 0,2\n", "")
-    code, out, err = sweep_command(folder / "plan.json", "--threads", "2")
+    assert sweep_in_process(capsys, monkeypatch, file, "--status") == (1, f"{folder}: 1 of 3 shards, 20 of 60 rows\nmissing: 0,2\n", "")
+    code, out, err = sweep_in_process(capsys, monkeypatch, folder / "plan.json", "--threads", "2")
     assert code == 0 and out.startswith(f"{folder}: 60 rows (at_rest 60), 40 of them played in "), err
-    assert sweep_command(file, "--check") == (0, f"{folder}: 60 of 60 rows are there and as they were written (at_rest 60)\n", "")
+    assert sweep_in_process(capsys, monkeypatch, file, "--check") == (0, f"{folder}: 60 of 60 rows are there and as they were written (at_rest 60)\n", "")
     path = folder / "shard-1.parquet"
     path.write_bytes(path.read_bytes()[:-1])
-    code, out, err = sweep_command(file, "--check")
+    code, out, err = sweep_in_process(capsys, monkeypatch, file, "--check")
     assert code == 1 and err.startswith(f"carom.sweep: {path}: no whole Parquet file"), err
-    code, out, err = sweep_command(file)
+    code, out, err = sweep_in_process(capsys, monkeypatch, file)
     assert code == 1 and err.startswith(f"carom.sweep: {path}: no whole Parquet file"), err
 
 
