@@ -194,6 +194,72 @@ def test_noise_is_that_of_the_seed():
     assert cue[:, 1].std() > 0.4 and (cue[:, [0, 2, 3, 4]] == exact[0, [0, 2, 3, 4]]).all()
 
 
+# Layouts and observations.
+
+
+def uniforms(states, draws):
+    """Of SplitMix64, by whole numbers of Python; the generators move on."""
+    bits, out = (1 << 64) - 1, np.empty((len(states), draws))
+    for row in range(len(states)):
+        state = int(states[row])
+        for k in range(draws):
+            state = (state + 0x9E3779B97F4A7C15) & bits
+            z = ((state ^ (state >> 30)) * 0xBF58476D1CE4E5B9) & bits
+            z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & bits
+            out[row, k] = ((z ^ (z >> 31)) >> 11) * 2.0**-53
+        states[row] = state
+    return out
+
+
+@pytest.mark.parametrize("name", ["NineBallRun", "SumToThree"])
+def test_layouts_are_drawn_until_their_balls_have_room(name):
+    game = carom.gym.GAMES[name]()
+    table, R, b = game.table, game.radii.max(), len(game.ids)
+    states = np.random.default_rng(8).integers(0, 2**64, 30, dtype=np.uint64)
+    expected, left, rounds = states.copy(), np.arange(30), 0
+    wanted = np.empty((30, b, 2))
+    low, size = np.array(table.corner) + R + 1e-3, np.array([table.width, table.length]) - 2 * (R + 1e-3)
+    while len(left):
+        moved = expected[left]
+        xy = wanted[left] = low + size * uniforms(moved, 2 * b).reshape(-1, b, 2)
+        expected[left] = moved
+        fits = np.ones(len(left), bool)
+        for i in range(b):
+            for _, x, y, radius, *_ in table.pockets:
+                fits &= ((xy[:, i] - [x, y]) ** 2).sum(-1) > (radius + R) ** 2
+            for k in range(i):
+                fits &= ((xy[:, i] - xy[:, k]) ** 2).sum(-1) > (2 * R + 1e-3) ** 2
+        left = left[~fits]
+        rounds += 1
+    assert rounds > 1 or name == "SumToThree"
+    made = game.start(states)
+    assert np.array_equal(made.xy, wanted) and np.array_equal(states, expected)
+
+
+def test_a_table_without_room_for_a_layout_is_refused():
+    places = [{"id": f"b{i}", "position": [0.1 + 0.1 * (i % 10), 0.2 + 0.1 * (i // 10)]} for i in range(120)]
+    full = carom.Scene(ball=places, cue={"ball": "b0", "speed": 2.0, "aim_deg": 0.0})
+    with pytest.raises(ValueError, match="no random layout fits"):
+        carom.gym.make_env("Pot", scene=full).reset(seed=1)
+
+
+def test_an_observation_is_the_table_from_minus_one_to_one():
+    game = carom.gym.Position()
+    random = np.random.default_rng(3)
+    xy = random.uniform([-0.3, -0.3], [1.6, 2.9], (200, 2, 2))
+    xy[::7, 1] = np.nan
+    states = carom.gym.States(xy, random.uniform([0, 0], [1.27, 2.54], (200, 2)))
+    half = 0.5 * np.array([game.table.width, game.table.length])
+    places = np.concatenate((xy, states.extra[:, None]), axis=1)
+    wanted = np.ones((200, 3, 3), np.float32)
+    wanted[:, :, :2] = (places - (np.array(game.table.corner) + half)) / half
+    wanted[np.isnan(places[:, :, 0])] = 0.0
+    wanted = np.clip(wanted, -1.0, 1.0)
+    assert same_bits(game.observe(states), wanted) and (np.abs(wanted) == 1).any()
+    # Of any piece of other arrays.
+    assert same_bits(game.observe(carom.gym.States(xy[::-2], states.extra[::-2])), wanted[::-2].copy())
+
+
 # Games, and shots without an end.
 
 
@@ -260,6 +326,26 @@ def test_what_a_shot_is_worth_is_what_the_rules_say(name):
             seen["goes on"] += goes_on
             seen["fair" if fair else "foul"] += 1
     assert seen["goes on"] > 0 and seen["fair"] > 0 and (seen["foul"] > 0 or name in ("ThreeCushion", "SumToThree")), seen
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_playing_and_judging_in_one_pass_or_in_two_is_the_same(name):
+    env = carom.gym.make_vector_env(name, 50, speed=(3.0, 8.0), elevation_deg=(0.0, 30.0), hashes=True)
+    env.reset(seed=5)
+    env.action_space.seed(6)
+    states = env.states
+    states.xy[3] = np.nan  # no balls, so no shot
+    played = env.rollout(states, env.action_space.sample())
+    assert played.truncated[3] and played.shots.messages[3] and played.foul[3] == "" and np.isnan(played.states.xy[3]).all()
+    game = env._rules.game
+    judged = game.judge(states, played.cue, played.shots)
+    whole = ~played.truncated
+    for one, other in ((judged.reward, played.reward), (judged.terminated, played.terminated), (judged.foul, played.foul), *zip(judged.states, played.states)):
+        assert same_bits(one[whole], other[whole])
+    for threads in (1, 2):
+        shots, again = game.play(states, played.cue, max_events=None, threads=threads, hashes=True)
+        assert all(same_bits(a, b) for a, b in zip(shots, played.shots)) and same_bits(again.reward[whole], played.reward[whole])
+        assert same_bits(again.states.xy[whole], played.states.xy[whole])
 
 
 def test_the_scene_of_a_point_is_a_point():
