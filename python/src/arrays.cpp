@@ -72,8 +72,8 @@ struct Room {
     }
 };
 
-/// Draws places of balls for every row until they fit, each time all of them: `out` is n x balls x 2. A row has a generator of its own, SplitMix64, which moves on:
-/// a table draws the same alone as beside others.
+/// Draws places of balls for every row until they fit, each time all of them: `out` is n x balls x 2. A row has a
+/// generator of its own, SplitMix64, which moves on: a table draws the same alone as beside others.
 /// @return whether all rows have found some in so many tries
 bool random_places(const Flat<std::uint64_t>& states, const Flat<const double>& low,
                    const Flat<const double>& room, const Flat<const double>& discs, double apart2, int tries,

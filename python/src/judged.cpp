@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -27,7 +28,8 @@ games::Game game_of(const std::string& name) {
     return static_cast<games::Game>(at - names.begin());
 }
 
-/// Plays and judges n shots without the GIL: simulate_many, and beside it arrays of n and of n x balls (x and y in turns), as games::JudgedArrays has them.
+/// Plays and judges n shots without the GIL: simulate_many, and beside it arrays of n and of n x balls (x and y in turns), as
+/// games::JudgedArrays has them.
 std::vector<Failure> judge_many(const NativeScene& native, const std::string& name, std::size_t shots,
                                 const std::vector<Column>& columns, const Flat<const std::uint8_t>& absent,
                                 std::optional<std::int64_t> max_events, int threads, const ShotArrays& out,

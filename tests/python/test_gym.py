@@ -340,12 +340,29 @@ def test_playing_and_judging_in_one_pass_or_in_two_is_the_same(name):
     game = env._rules.game
     judged = game.judge(states, played.cue, played.shots)
     whole = ~played.truncated
-    for one, other in ((judged.reward, played.reward), (judged.terminated, played.terminated), (judged.foul, played.foul), *zip(judged.states, played.states)):
-        assert same_bits(one[whole], other[whole])
+    for field in ("reward", "terminated", "foul"):
+        assert same_bits(getattr(judged, field)[whole], getattr(played, field)[whole])
+    assert same_bits(judged.states.take(whole), played.states.take(whole))
     for threads in (1, 2):
         shots, again = game.play(states, played.cue, max_events=None, threads=threads, hashes=True)
         assert all(same_bits(a, b) for a, b in zip(shots, played.shots)) and same_bits(again.reward[whole], played.reward[whole])
         assert same_bits(again.states.xy[whole], played.states.xy[whole])
+
+
+def test_a_subclass_may_judge_by_itself():
+    class Strict(carom.gym.NineBallRun):
+        def judge(self, states, cue, shots):
+            judged = super().judge(states, cue, shots)
+            return judged._replace(reward=judged.reward - (judged.foul != ""))
+
+    env = carom.gym.TableVectorEnv(Strict(), 30, autoreset_mode="SameStep", aim="ball")
+    plain = carom.gym.make_vector_env("NineBallRun", 30, autoreset_mode="SameStep", aim="ball")
+    env.reset(seed=1)
+    plain.reset(seed=1)
+    actions = np.random.default_rng(1).uniform(-1, 1, (30, 5)).astype(np.float32)
+    strict, usual = env.step(actions), plain.step(actions)
+    fouls = usual[4]["final_info"]["foul"][usual[2]] != ""
+    assert fouls.any() and np.array_equal(strict[1][usual[2]], usual[1][usual[2]] - fouls) and same_bits(strict[0], usual[0])
 
 
 def test_the_scene_of_a_point_is_a_point():

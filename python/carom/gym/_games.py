@@ -159,7 +159,7 @@ class Pot(Game):
         foul = self.scratch(shots)
         potted = shots.pocket >= 0
         potted[:, self.cue_ball] = False
-        reward = potted.any(1).astype(np.float64)
+        reward = np.asarray(potted.any(1), np.float64)
         reward[foul != ""] = -1.0
         behind = States(shots.places, states.extra.copy())
         return Judged(behind, reward, np.ones(len(reward), bool), foul)
@@ -206,9 +206,15 @@ class _Ruled(Game):
 
     def judge(self, states: States, cue: NDArray[np.float64], shots: Shots) -> Judged:
         # An outcome does not have all that rules ask, so the shots are played once more.
-        return self.play(states, cue, max_events=None, threads=1, hashes=False)[1]
+        return self._played(states, cue, None, 1, False)[1]
 
     def play(self, states: States, cue: NDArray[np.float64], *, max_events: int | None, threads: int, hashes: bool) -> tuple[Shots, Judged]:
+        if type(self).judge is not _Ruled.judge:  # a subclass has a judge of its own
+            return super().play(states, cue, max_events=max_events, threads=threads, hashes=hashes)
+        return self._played(states, cue, max_events, threads, hashes)
+
+    def _played(self, states: States, cue: NDArray[np.float64], max_events: int | None, threads: int, hashes: bool) -> tuple[Shots, Judged]:
+        """Plays and judges in one pass."""
         n, columns, absent = _columns_of(self.scene, cue, states.xy)
         shots = Shots.empty(n, len(self.ids), hashes=hashes)
         xy, group = states.xy.copy(), self._group(states)

@@ -28,8 +28,8 @@ struct JudgedArrays {
 /// The state of a game in the middle of a turn of player 0, who has these balls of eight-ball.
 State state_of_turn(Game game, Group group);
 
-/// Plays shots as simulate_many() does, and each thread judges what it has played: by judge(), for player 0 in the middle of a turn. Of eight-ball the first
-/// ball that counts and falls is taken as called.
+/// Plays shots as simulate_many() does, and each thread judges what it has played: by judge(), for player 0 in the middle of a turn. Of
+/// eight-ball the first ball that counts and falls is taken as called.
 /// @param options  `judge` is not read
 /// @return the messages of simulate_many()
 /// @throws what simulate_many() and judge() throw
