@@ -22,6 +22,7 @@ Vec2 own_spot(const Table& table, const std::string& ball, int shooter) {
 
 /// A ball whose spot is taken goes to the spot of the ball that is in the way.
 std::vector<Respot> spotted(const Facts& facts, const std::vector<std::string>& balls, int shooter) {
+    if (balls.empty()) return {};
     std::vector<Respot> respots;
     const auto lies = [&](const std::string& other) {
         for (const Respot& done : respots)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Steps of the environment Pot per CPU second, beside the plain batch of the same shots, in one process, in turns.
+"""Steps of the environments per CPU second, beside the plain batch of the same shots, in one process, in turns.
 
 A step of a vector with the autoreset mode SameStep plays a shot on every table, judges it, and draws and observes a new layout. The plain batch
-is `simulate_many` with the arrays of the same strikes and places, and nothing else. CPU time of the thread, one thread; the least of the rounds, and the
-median of the ratios of a round. With --pooltool also an environment over pooltool 0.6.0 with the same actions and layouts on its own table and models, in
+is `simulate_many` with the arrays of the same strikes and places, and nothing else; the judged batch is the same with what the game makes of its shots.
+CPU time of the thread, one thread; the least of the rounds, and the medians of the ratios of a round: of the judged batch and of a step to the plain batch. With --pooltool also an environment over pooltool 0.6.0 with the same actions and layouts on its own table and models, in
 a throw-away virtual environment (PyPI; side_by_side_shots.py knows what it needs). Neither the build nor a test needs this script.
 
     tools/measure/gym_speed.py [--package build/release/python] [--rounds 15] [--pooltool]
@@ -35,26 +35,28 @@ def timed(work):
 
 
 def vector(game, tables, rounds):
-    """Steps per second of the vector and of the plain batch, and the median of their ratios."""
+    """Per second: steps of the vector, shots of the plain and of the judged batch; the medians of the ratios of the judged batch and of the vector to the plain one."""
     import carom
     import carom.gym
 
     env = carom.gym.make_vector_env(game, tables, autoreset_mode="SameStep")
     env.reset(seed=1)
     env.action_space.seed(1)
-    scene = env._rules.game.scene
+    game = env._rules.game
     rows = []
     for _ in range(rounds):
         actions = [env.action_space.sample() for _ in range(STEPS)]
-        ours = plain = 0.0
+        ours = plain = judged = 0.0
         for act in actions:
             states = env.states
             cue = env.rollout(states, act).cue
             ours += timed(lambda: env.step(act))
-            plain += timed(lambda: carom.simulate_many(scene, cue=cue, xy=states.xy))
-        rows.append((ours, plain))
+            plain += timed(lambda: carom.simulate_many(game.scene, cue=cue, xy=states.xy))
+            judged += timed(lambda: game.play(states, cue, max_events=None, threads=1, hashes=False))
+        rows.append((ours, plain, judged))
     count = tables * STEPS
-    return count / min(a for a, _ in rows), count / min(b for _, b in rows), statistics.median(b / a for a, b in rows)
+    rates = [count / min(column) for column in zip(*rows)]
+    return *rates, statistics.median(plain / judged for _, plain, judged in rows), statistics.median(plain / ours for ours, plain, _ in rows)
 
 
 def single(game, rounds):
@@ -128,13 +130,13 @@ def main():
     sys.path.insert(0, args.package)
     model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine())
     print(f"{model}, Python {platform.python_version()}, CAROM_ISA={os.environ.get('CAROM_ISA', '(the widest)')}")
-    print(f"{'game':<16}{'tables':>7}{'steps/s':>12}{'plain batch':>14}   median of the ratio")
+    print(f"{'game':<16}{'tables':>7}{'steps/s':>12}{'plain batch':>14}{'judged batch':>14}   medians of the ratios")
     import carom.gym
 
     for game in args.games or carom.gym.GAMES:
         for tables in (64, 256, 1024):
-            ours, plain, ratio = vector(game, tables, args.rounds)
-            print(f"{game:<16}{tables:>7}{ours:>10.0f}/s{plain:>12.0f}/s   {ratio:.2f}")
+            ours, plain, judged, of_judged, of_step = vector(game, tables, args.rounds)
+            print(f"{game:<16}{tables:>7}{ours:>10.0f}/s{plain:>12.0f}/s{judged:>12.0f}/s   {of_judged:.2f} {of_step:.2f}")
         print(f"{game:<16}{'one':>7}{single(game, args.rounds):>10.0f}/s")
     if args.pooltool:
         print(f"{'over pooltool':<16}{'one':>7}{pooltool_rate(args.shots):>10.0f}/s")
