@@ -211,13 +211,13 @@ def uniforms(states, draws):
     return out
 
 
-@pytest.mark.parametrize("name", ["NineBallRun", "SumToThree"])
+@pytest.mark.parametrize("name", ["EightBallRun", "SumToThree"])
 def test_layouts_are_drawn_until_their_balls_have_room(name):
     game = carom.gym.GAMES[name]()
-    table, R, b = game.table, game.radii.max(), len(game.ids)
-    states = np.random.default_rng(8).integers(0, 2**64, 30, dtype=np.uint64)
-    expected, left, rounds = states.copy(), np.arange(30), 0
-    wanted = np.empty((30, b, 2))
+    table, R, b, n = game.table, game.radii.max(), len(game.ids), 300
+    states = np.random.default_rng(8).integers(0, 2**64, n, dtype=np.uint64)
+    expected, left, rounds = states.copy(), np.arange(n), 0
+    wanted = np.empty((n, b, 2))
     low, size = np.array(table.corner) + R + 1e-3, np.array([table.width, table.length]) - 2 * (R + 1e-3)
     while len(left):
         moved = expected[left]
