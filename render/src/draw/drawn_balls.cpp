@@ -65,11 +65,9 @@ PixelBox whole(FrameSize size) {
     return {0, 0, size.width, size.height};
 }
 
-// Pixels that the ball and its shadow may cover; the whole image if part of the ball is behind the eye.
-PixelBox box_of(const DrawBall& ball, const Camera& camera) {
-    const double reach = (ball.in_pocket ? 1.0 : shadow_reach(ball)) * ball.radius;
-    // Down to the shadow of one in the air.
-    const double down = ball.in_pocket ? ball.radius : std::max(ball.radius, ball.center.z());
+// Pixels that show a place within `reach` of the centre on either side, `down` below it and a radius above; the whole image if part of
+// that is behind the eye.
+PixelBox box_around_ball(const DrawBall& ball, const Camera& camera, double reach, double down) {
     const PixelBox all = whole(camera.size);
     Vec2 low(1e9, 1e9), high(-1e9, -1e9);
     for (int i = 0; i < 8; ++i) {
@@ -87,19 +85,12 @@ PixelBox box_of(const DrawBall& ball, const Camera& camera) {
             inside(high.y() + 3.0, all.y1)};
 }
 
-// Plain balls and others are drawn by different programs, one after the other, so their boxes must not overlap. A
-// plain ball that overlaps another one is therefore drawn by the other program.
-void spread_not_plain(std::vector<DrawnBall>& balls) {
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (DrawnBall& ball : balls) {
-            if (!ball.plain) continue;
-            ball.plain = std::none_of(balls.begin(), balls.end(), [&](const DrawnBall& other) {
-                return !other.plain && other.box.meets(ball.box);
-            });
-            changed = changed || !ball.plain;
-        }
-    }
+// Pixels that the ball and its shadow may cover.
+PixelBox box_of(const DrawBall& ball, const Camera& camera) {
+    if (ball.in_pocket) return box_around_ball(ball, camera, ball.radius, ball.radius);
+    // Down to the shadow of one in the air.
+    return box_around_ball(ball, camera, shadow_reach(ball) * ball.radius,
+                           std::max(ball.radius, ball.center.z()));
 }
 
 }  // namespace
@@ -137,14 +128,13 @@ std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth
         if (box.x1 <= box.x0 || box.y1 <= box.y0) continue;
         BallInstance instance = make_instance(ball, place_of(ball, *list.table), origin, distance);
         add_neighbours(instance, ball, list.balls);
-        const bool alone = instance.near[0][3] == 0.0F;
-        balls.push_back({instance, box, !ball.in_pocket && alone && cloth.all_cloth(box)});
+        const PixelBox body = box_around_ball(ball, list.camera, ball.radius, ball.radius);
+        balls.push_back({instance, box, body, !ball.in_pocket && cloth.all_cloth(box)});
     }
     // Balls are drawn from far to near, so that the soft edges of near balls blend over the far ones.
     std::stable_sort(balls.begin(), balls.end(), [](const DrawnBall& a, const DrawnBall& b) {
         return a.instance.pattern[2] > b.instance.pattern[2];
     });
-    spread_not_plain(balls);
     return balls;
 }
 

@@ -22,7 +22,7 @@ enum class BallPlace : std::uint8_t {
     kCushion,  ///< near a cushion, which gets a shadow, too
 };
 
-/// The vertex attributes of the ball shaders, one set per ball.
+/// What a ball looks like, in single precision.
 struct BallInstance {
     float center_radius[4];
     float orientation[4];
@@ -35,9 +35,9 @@ struct BallInstance {
 
 struct DrawnBall {
     BallInstance instance;
-    PixelBox box;  ///< pixels that the ball and its shadow may cover
-    /// Its box, and every box that overlaps it, show only cloth, and no neighbour darkens it
-    bool plain = false;
+    PixelBox box;        ///< pixels that the ball and its shadow may cover
+    PixelBox body;       ///< those that the ball may cover
+    bool plain = false;  ///< its box shows only cloth: nothing hides it
 
     bool operator==(const DrawnBall&) const = default;
 };

@@ -7,26 +7,11 @@
 #include <cstdint>
 #include <utility>
 
+#include "draw/screen_values.h"
+
 namespace carom::render {
 
 namespace {
-
-// The inverse of to_screen() in shaders/common.glsl for every value of a channel.
-std::array<float, 256> make_linear() {
-    std::array<float, 256> linear{};
-    for (std::size_t i = 0; i < linear.size(); ++i) {
-        const double screen = std::min(static_cast<double>(i), 254.5) / 255.0, square = screen * screen;
-        linear[i] = static_cast<float>(square <= 0.5 ? square : std::sqrt(0.5 / (1.0 - square)) - 0.5);
-    }
-    return linear;
-}
-
-std::uint8_t to_screen(float linear) {
-    const float over = 1.0F + std::max(linear - 0.5F, 0.0F);
-    const float square = std::min(linear, 0.5F) + 0.5F - 0.5F / (over * over);
-    constexpr float kToNearest = 0.5F;  // std::lround would be a call for each channel
-    return static_cast<std::uint8_t>(255.0F * std::sqrt(square) + kToNearest);
-}
 
 // Integral of clamp(z, 0, 1).
 float integral(float z) {
@@ -79,12 +64,12 @@ class Smoother {
     }
 
     void apply() {
-        static const std::array<float, 256> kLinear = make_linear();
+        const auto& linear = radiance_of_screen();
         for (const Fix& fix : fixes_) {
             std::uint8_t* pixel = image_.rgbx.data() + 4 * fix.pixel;
             for (std::size_t k = 0; k < 3; ++k) {
-                const float here = kLinear[pixel[k]], there = kLinear[fix.other[k]];
-                pixel[k] = to_screen(here + fix.share * (there - here));
+                const float here = linear[pixel[k]], there = linear[fix.other[k]];
+                pixel[k] = screen_of_radiance(here + fix.share * (there - here));
             }
         }
     }

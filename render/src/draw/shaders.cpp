@@ -16,9 +16,7 @@ constexpr const char* kVersion = "#version 330 core\n";
 
 GLuint make_program(const gl::Api& api, const char* vertex, const char* fragment,
                     std::initializer_list<const char*> samplers, const std::string& defines) {
-    const std::string numbers =
-        fmt::format("#define SHADOW_REACH {:.3f}\n#define MAX_HOLES {}\n#define MAX_NEAR {}\n", kShadowReach,
-                    kMaxHoles, kMaxNear);
+    const std::string numbers = fmt::format("#define MAX_HOLES {}\n", kMaxHoles);
     const std::array<const char*, 4> prologue{kVersion, numbers.c_str(), defines.c_str(), kCommon};
     return gl::make_program(api, prologue, vertex, fragment, samplers);
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "draw/mean_picture.h"
 #include "draw/shaders.h"
 #include "gl/objects.h"
 
@@ -23,59 +24,18 @@ double r2(int i, double step) {
 
 }  // namespace
 
-// Memory that only drawing the table with many samples needs: two images of 16-bit floats, and the depths of the first
-// four passes.
-struct StaticLayer::Scratch {
-    static constexpr std::size_t kDepths = 4;  // [-] one for each channel of the occluder texture
-    const gl::Api& api;
-    GLuint pass, sum, sum_framebuffer;
-    std::array<GLuint, kDepths> depth{}, pass_framebuffer{};
-
-    Scratch(const gl::Api& a, int width, int height) : api(a) {
-        pass = gl::make_texture(api, width, height, GL_RGBA16F, GL_RGBA, GL_FLOAT, nullptr);
-        sum = gl::make_texture(api, width, height, GL_RGBA16F, GL_RGBA, GL_FLOAT, nullptr);
-        sum_framebuffer = gl::make_framebuffer(api, sum, 0);
-        for (std::size_t i = 0; i < kDepths; ++i) {
-            depth[i] = gl::make_texture(api, width, height, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT,
-                                        GL_FLOAT, nullptr);
-            pass_framebuffer[i] = gl::make_framebuffer(api, pass, depth[i]);
-        }
-    }
-    ~Scratch() {
-        api.BindFramebuffer(GL_FRAMEBUFFER, 0);
-        api.DeleteFramebuffers(1, &sum_framebuffer);
-        api.DeleteFramebuffers(kDepths, pass_framebuffer.data());
-        api.DeleteTextures(kDepths, depth.data());
-        api.DeleteTextures(1, &pass);
-        api.DeleteTextures(1, &sum);
-    }
-    Scratch(const Scratch&) = delete;
-    Scratch& operator=(const Scratch&) = delete;
-
-    // Passes after the fourth share the depth buffer of the fourth, whose depths have been copied by then.
-    std::size_t slot(int number) const { return std::min(static_cast<std::size_t>(number), kDepths - 1); }
-};
-
 StaticLayer::StaticLayer(const gl::Api& api) : api_(api) {
-    add_program_ = shaders::make_program(api, shaders::kFullscreenVertex, shaders::kAddFragment, {"u_pass"});
-    add_weight_ = api.GetUniformLocation(add_program_, "u_weight");
-    depth_program_ = shaders::make_program(api, shaders::kFullscreenVertex, shaders::kDepthFragment,
-                                           {"u_depth0", "u_depth1", "u_depth2", "u_depth3"});
-    resolve_program_ =
-        shaders::make_program(api, shaders::kFullscreenVertex, shaders::kResolveFragment, {"u_pass"});
-    api.GenVertexArrays(1, &empty_array_);
-    api.GenVertexArrays(1, &vertex_array_);
-    api.GenBuffers(1, &buffer_);
+    api_.GenVertexArrays(1, &vertex_array_);
+    api_.GenBuffers(1, &buffer_);
 }
 
 StaticLayer::~StaticLayer() = default;
 
-StaticLayer::Programs StaticLayer::make_programs(const char* output) const {
+void StaticLayer::make_programs() {
     using namespace shaders;
-    Programs programs;
     const auto make = [&](Part part, const std::string& kind) {
-        Program& program = programs[static_cast<std::size_t>(part)];
-        program.id = make_program(api_, kTableVertex, kTableFragment, {}, kind + output);
+        Program& program = programs_[static_cast<std::size_t>(part)];
+        program.id = make_program(api_, kTableVertex, kTableFragment, {}, kind);
         program.jitter = api_.GetUniformLocation(program.id, "u_jitter");
     };
     make(Part::kCloth, kClothOnly);
@@ -87,10 +47,10 @@ StaticLayer::Programs StaticLayer::make_programs(const char* output) const {
     make(Part::kChalk, kChalkOnly);
     make(Part::kShade, kShadeOnly);
     make(Part::kCutShade, std::string(kShadeOnly) + kHoles);
-    return programs;
 }
 
-void StaticLayer::upload(const TableMesh& table, const TableEdges* edges, const Programs& programs) {
+void StaticLayer::upload(const TableMesh& table, const TableEdges* edges) {
+    if (programs_[0].id == 0) make_programs();
     parts_ = sort_parts(table, edges == nullptr ? std::vector<std::uint8_t>{} : edges->faces);
     api_.BindVertexArray(vertex_array_);
     api_.BindBuffer(GL_ARRAY_BUFFER, buffer_);
@@ -106,23 +66,23 @@ void StaticLayer::upload(const TableMesh& table, const TableEdges* edges, const 
     attribute(1, 3, offsetof(MeshVertex, nx));
     attribute(2, 4, offsetof(MeshVertex, u));  // u, v, material, and the face behind the vertex
     static_assert(offsetof(PartVertex, face) == offsetof(MeshVertex, material) + sizeof(float));
-    for (const Program& program : programs) set_table_uniforms(table, program.id);
+    for (const Program& program : programs_) set_table_uniforms(table, program.id);
     uploaded_ = &table;
 }
 
-void StaticLayer::resize(int width, int height) {
-    if (width == width_ && height == height_) return;
-    if (color_ != 0) {
-        const GLuint textures[] = {color_, occluders_, depth_},
-                     framebuffers[] = {color_framebuffer_, occluders_framebuffer_, once_framebuffer_};
-        api_.DeleteFramebuffers(3, framebuffers);
-        api_.DeleteTextures(3, textures);
+void StaticLayer::resize(FrameSize size) {
+    if (size == size_) return;
+    if (framebuffer_ != 0) {
+        const GLuint textures[] = {color_, depth_};
+        api_.DeleteFramebuffers(1, &framebuffer_);
+        api_.DeleteTextures(2, textures);
+        framebuffer_ = 0;
     }
-    occluders_ = depth_ = occluders_framebuffer_ = once_framebuffer_ = 0;
-    color_ = gl::make_texture(api_, width, height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-    color_framebuffer_ = gl::make_framebuffer(api_, color_, 0);
-    width_ = width;
-    height_ = height;
+    color_ = gl::make_texture(api_, size.width, size.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    depth_ = gl::make_texture(api_, size.width, size.height, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT,
+                              GL_FLOAT, nullptr);
+    framebuffer_ = gl::make_framebuffer(api_, color_, depth_);
+    size_ = size;
 }
 
 void StaticLayer::set_table_uniforms(const TableMesh& table, GLuint program) const {
@@ -143,7 +103,11 @@ void StaticLayer::set_table_uniforms(const TableMesh& table, GLuint program) con
                    static_cast<float>(high.x()), static_cast<float>(high.y()));
 }
 
-void StaticLayer::draw_parts(const Programs& programs, double jitter_x, double jitter_y) {
+void StaticLayer::draw_parts(double jitter_x, double jitter_y) {
+    api_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    api_.Viewport(0, 0, size_.width, size_.height);
+    const float room = std::sqrt(kRoom);  // to_screen() of the background
+    api_.ClearColor(room, room, room, 0.0F);
     api_.DepthMask(GL_TRUE);
     api_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     api_.Enable(GL_DEPTH_TEST);
@@ -157,92 +121,62 @@ void StaticLayer::draw_parts(const Programs& programs, double jitter_x, double j
         if (part == Part::kChalk) api_.DepthMask(GL_FALSE);
         // The shading is blended over the cloth and keeps its alpha.
         if (part == Part::kShade) api_.Enable(GL_BLEND);
-        api_.UseProgram(programs[i].id);
-        api_.Uniform2f(programs[i].jitter, static_cast<float>(2.0 * jitter_x / width_),
-                       static_cast<float>(2.0 * jitter_y / height_));
+        api_.UseProgram(programs_[i].id);
+        api_.Uniform2f(programs_[i].jitter, static_cast<float>(2.0 * jitter_x / size_.width),
+                       static_cast<float>(2.0 * jitter_y / size_.height));
         api_.DrawArrays(GL_TRIANGLES, static_cast<GLint>(first),
                         static_cast<GLsizei>(parts_.ends[i] - first));
         first = parts_.ends[i];
     }
 }
 
-void StaticLayer::draw_pass(const Scratch& scratch, int pass, int samples) {
-    // The steps of the R2 sequence are 1 / p and 1 / p^2, with the plastic number p.
-    const double jx = samples == 1 ? 0.0 : r2(pass, 0.75487766624669276),
-                 jy = samples == 1 ? 0.0 : r2(pass, 0.56984029099805327);
-    api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.pass_framebuffer[scratch.slot(pass)]);
-    api_.ClearColor(kRoom, kRoom, kRoom, 0.0F);
-    draw_parts(sum_programs_, jx, jy);
+void StaticLayer::read_color(std::vector<std::uint8_t>& rgba) {
+    rgba.resize(std::size_t{4} * static_cast<std::size_t>(size_.width) *
+                static_cast<std::size_t>(size_.height));
+    api_.PixelStorei(GL_PACK_ALIGNMENT, 4);
+    api_.ReadPixels(0, 0, size_.width, size_.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+}
+
+void StaticLayer::read_depths(std::vector<float>& depths) {
+    depths.resize(static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(size_.height));
+    api_.ReadPixels(0, 0, size_.width, size_.height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
 }
 
 void StaticLayer::draw_once(const TableMesh& table, FrameSize size) {
-    if (screen_programs_[0].id == 0) screen_programs_ = make_programs(shaders::kScreen);
     if (uploaded_ != &table || !edges_) {
         edges_ = std::make_shared<const TableEdges>(find_edges(table));
-        upload(table, edges_.get(), screen_programs_);
+        upload(table, edges_.get());
     }
-    resize(size.width, size.height);
-    if (depth_ == 0) {
-        depth_ = gl::make_texture(api_, width_, height_, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT,
-                                  nullptr);
-        once_framebuffer_ = gl::make_framebuffer(api_, color_, depth_);
-    }
-    api_.Viewport(0, 0, width_, height_);
-    api_.BindFramebuffer(GL_FRAMEBUFFER, once_framebuffer_);
-    const float room = std::sqrt(kRoom);  // to_screen() of the background
-    api_.ClearColor(room, room, room, 0.0F);
-    draw_parts(screen_programs_, 0.0, 0.0);
-}
-
-void StaticLayer::add_pass(const Scratch& scratch, int pass) {
-    api_.Disable(GL_DEPTH_TEST);
-    api_.BindVertexArray(empty_array_);
-    api_.BindFramebuffer(GL_FRAMEBUFFER, scratch.sum_framebuffer);
-    // The first pass replaces the sum of the previous drawing.
-    pass == 0 ? api_.Disable(GL_BLEND) : api_.Enable(GL_BLEND);
-    api_.BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ONE);
-    api_.UseProgram(add_program_);
-    gl::bind_texture(api_, 0, scratch.pass);
-    api_.DrawArrays(GL_TRIANGLES, 0, 3);
-    api_.Disable(GL_BLEND);
-}
-
-// Writes one channel for each of the first four passes; with fewer passes the last one fills the rest.
-void StaticLayer::keep_depths(const Scratch& scratch, int samples) {
-    api_.BindFramebuffer(GL_FRAMEBUFFER, occluders_framebuffer_);
-    api_.UseProgram(depth_program_);
-    for (int i = 0; i < static_cast<int>(Scratch::kDepths); ++i)
-        gl::bind_texture(api_, i, scratch.depth[scratch.slot(std::min(i, samples - 1))]);
-    api_.DrawArrays(GL_TRIANGLES, 0, 3);
+    resize(size);
+    draw_parts(0.0, 0.0);
+    picture_.size = size;
+    read_color(picture_.rgba);
+    read_depths(picture_.depths[0]);
+    picture_.depth_count = 1;
 }
 
 void StaticLayer::draw(const TableMesh& table, FrameSize size, int samples,
                        const std::function<void(int, int)>& on_pass) {
     samples = std::max(samples, 1);
-    if (sum_programs_[0].id == 0) sum_programs_ = make_programs("");
-    if (uploaded_ != &table || edges_) upload(table, nullptr, sum_programs_);
+    if (uploaded_ != &table || edges_) upload(table, nullptr);
     edges_ = nullptr;
-    resize(size.width, size.height);
-    if (occluders_ == 0) {
-        occluders_ = gl::make_texture(api_, width_, height_, GL_RGBA32F, GL_RGBA, GL_FLOAT, nullptr);
-        occluders_framebuffer_ = gl::make_framebuffer(api_, occluders_, 0);
+    resize(size);
+    picture_.size = size;
+    picture_.depth_count = std::min(samples, static_cast<int>(picture_.depths.size()));
+    draw_parts(0.0, 0.0);
+    read_color(picture_.rgba);
+    read_depths(picture_.depths[0]);
+    MeanPicture mean(picture_.rgba);
+    std::vector<std::uint8_t> rgba;
+    for (int pass = 1; pass < samples; ++pass) {
+        // The steps of the R2 sequence are 1 / p and 1 / p^2, with the plastic number p.
+        draw_parts(r2(pass, 0.75487766624669276), r2(pass, 0.56984029099805327));
+        read_color(rgba);
+        mean.add(rgba);
+        if (pass < picture_.depth_count) read_depths(picture_.depths[static_cast<std::size_t>(pass)]);
+        if (on_pass) on_pass(pass + 1, samples);
     }
-    const Scratch scratch(api_, width_, height_);
-    api_.Viewport(0, 0, width_, height_);
-    api_.UseProgram(add_program_);
-    api_.Uniform1f(add_weight_, 1.0F / static_cast<float>(samples));
-    for (int pass = 0; pass < samples; ++pass) {
-        draw_pass(scratch, pass, samples);
-        add_pass(scratch, pass);
-        if (pass == std::min(samples, static_cast<int>(Scratch::kDepths)) - 1) keep_depths(scratch, samples);
-        if (!on_pass) continue;
-        api_.Finish();
-        on_pass(pass + 1, samples);
-    }
-    api_.BindFramebuffer(GL_FRAMEBUFFER, color_framebuffer_);
-    api_.UseProgram(resolve_program_);
-    gl::bind_texture(api_, 0, scratch.sum);
-    api_.DrawArrays(GL_TRIANGLES, 0, 3);
+    mean.finish();
 }
 
 }  // namespace carom::render

@@ -1,14 +1,16 @@
-// The table seen by one camera, kept as textures: drawn with many samples per pixel, or with one for a camera that moves.
+// Draws the table by OpenGL as seen by one camera: with many samples per pixel, or with one for a camera that moves.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "carom/render/draw_list.h"
 #include "draw/table_edges.h"
 #include "draw/table_parts.h"
+#include "draw/table_picture.h"
 #include "gl/api.h"
 
 namespace carom::render {
@@ -31,38 +33,32 @@ class StaticLayer {
     /// The edges of the table of the last draw_once().
     const std::shared_ptr<const TableEdges>& edges() const { return edges_; }
 
-    GLuint color() const { return color_; }  ///< RGBA8; alpha: share of the pixel that is cloth, or the face
-    /// RGBA32F: distances along the view direction at four positions in the pixel; after draw_once() the depth buffer
-    GLuint occluders() const { return edges_ ? depth_ : occluders_; }
-    GLuint framebuffer() const { return color_framebuffer_; }
+    /// What the last of them drew.
+    const TablePicture& picture() const { return picture_; }
 
   private:
-    struct Scratch;
     struct Program {
         GLuint id = 0;
         GLint jitter = -1;  ///< location of u_jitter
     };
     using Programs = std::array<Program, kPartCount>;
-    Programs make_programs(const char* output) const;
-    void upload(const TableMesh& table, const TableEdges* edges, const Programs& programs);
-    void resize(int width, int height);
+    void make_programs();
+    void upload(const TableMesh& table, const TableEdges* edges);
+    void resize(FrameSize size);
     void set_table_uniforms(const TableMesh& table, GLuint program) const;
-    void draw_parts(const Programs& programs, double jitter_x, double jitter_y);
-    void draw_pass(const Scratch& scratch, int pass, int samples);
-    void add_pass(const Scratch& scratch, int pass);
-    void keep_depths(const Scratch& scratch, int samples);
+    void draw_parts(double jitter_x, double jitter_y);
+    void read_color(std::vector<std::uint8_t>& rgba);
+    void read_depths(std::vector<float>& depths);
 
     const gl::Api& api_;
-    Programs sum_programs_, screen_programs_;  ///< of draw() and draw_once(); made when they are first needed
-    TableParts parts_;                         ///< without the vertices, which are in buffer_
-    GLuint add_program_, depth_program_, resolve_program_;
-    GLint add_weight_;
-    GLuint vertex_array_ = 0, buffer_ = 0, empty_array_ = 0;
+    Programs programs_;  ///< made when they are first needed
+    TableParts parts_;   ///< without the vertices, which are in buffer_
+    GLuint vertex_array_ = 0, buffer_ = 0;
     const TableMesh* uploaded_ = nullptr;
-    int width_ = 0, height_ = 0;
+    FrameSize size_{0, 0};
     std::shared_ptr<const TableEdges> edges_;
-    GLuint color_ = 0, occluders_ = 0, color_framebuffer_ = 0, occluders_framebuffer_ = 0;
-    GLuint depth_ = 0, once_framebuffer_ = 0;  ///< of draw_once(), with color_
+    GLuint color_ = 0, depth_ = 0, framebuffer_ = 0;
+    TablePicture picture_;
 };
 
 }  // namespace carom::render

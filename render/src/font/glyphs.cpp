@@ -117,4 +117,20 @@ std::vector<std::uint8_t> glyph_atlas() {
     return atlas;
 }
 
+float glyph_nearness(const std::vector<std::uint8_t>& atlas, int cell, float x, float y) {
+    const float across = (static_cast<float>(cell % kGlyphColumns) + x) * kGlyphWidth - 0.5F,
+                down = (static_cast<float>(cell / kGlyphColumns) + y) * kGlyphHeight - 0.5F;
+    const auto texel = [&](int i, int j) {
+        i = std::clamp(i, 0, kGlyphColumns * kGlyphWidth - 1);
+        j = std::clamp(j, 0, kGlyphRows * kGlyphHeight - 1);
+        return static_cast<float>(atlas[static_cast<std::size_t>(j) * kGlyphColumns * kGlyphWidth +
+                                        static_cast<std::size_t>(i)]) /
+               255.0F;
+    };
+    const int i = static_cast<int>(std::floor(across)), j = static_cast<int>(std::floor(down));
+    const float u = across - static_cast<float>(i), v = down - static_cast<float>(j);
+    return (1.0F - v) * ((1.0F - u) * texel(i, j) + u * texel(i + 1, j)) +
+           v * ((1.0F - u) * texel(i, j + 1) + u * texel(i + 1, j + 1));
+}
+
 }  // namespace carom::render

@@ -22,4 +22,7 @@ int glyph_index(char c);
 /// One byte per texel, row 0 at the top: 255 on the centre line of a stroke, 0 at the distance kGlyphReach and beyond.
 std::vector<std::uint8_t> glyph_atlas();
 
+/// The atlas between its texels, 0..1, at a place within a cell: x and y are 0..1 from its upper left corner.
+float glyph_nearness(const std::vector<std::uint8_t>& atlas, int cell, float x, float y);
+
 }  // namespace carom::render

@@ -21,13 +21,6 @@ vec3 to_screen(vec3 c) {
 }
 vec3 from_screen(vec3 c) { return c * c; }
 
-// Corner i of an octagon around the unit circle, in the order of a triangle strip, for round shapes.
-vec2 octagon_corner(int i) {
-    int around = (i & 1) == 0 ? i / 2 : 7 - i / 2;
-    float a = (float(around) + 0.5) * 0.78539816;
-    return vec2(cos(a), sin(a)) * 1.0823922;   // 1 / cos(pi / 8): the circle lies inside
-}
-
 // Light of the lamp on a surface at p with normal n; 1 straight below the lamp. Only the nearest point of a rectangle
 // of 0.6 of its size is used: this is smooth and needs one square root, where an integral would need dozens.
 float lamp_light(vec3 p, vec3 n) {
@@ -47,29 +40,3 @@ float lamp_mirror(vec3 p, vec3 r, float blur) {
     vec2 e = abs(at) - half_size;
     return smoothstep(blur, -blur, e.x) * smoothstep(blur, -blur, e.y);
 }
-
-vec3 pixel_ray(vec2 pixel) {
-    vec2 s = 2.0 * pixel / u_size - 1.0;
-    return u_forward + s.x * u_right_scaled - s.y * u_up_scaled;
-}
-
-// Share of the pixel at which nothing of the table is nearer than this distance along the view direction.
-#if defined(PLAIN)
-float seen(ivec2 pixel, float depth) { return 1.0; }
-#elif defined(ONE_SAMPLE)
-uniform sampler2D u_occluders;   // the depth buffer of the table
-float seen(ivec2 pixel, float depth) {
-    float z = texelFetch(u_occluders, pixel, 0).r;
-    return step(depth * (u_planes.y - z * (u_planes.y - u_planes.x)), u_planes.x * u_planes.y);
-}
-float table_distance(ivec2 pixel) {
-    float z = texelFetch(u_occluders, pixel, 0).r;
-    return u_planes.x * u_planes.y / (u_planes.y - z * (u_planes.y - u_planes.x));
-}
-#else
-uniform sampler2D u_occluders;   // four distances of the table along the view direction
-float seen(ivec2 pixel, float depth) {
-    return dot(step(vec4(depth), texelFetch(u_occluders, pixel, 0)), vec4(0.25));
-}
-float table_distance(ivec2 pixel) { return dot(texelFetch(u_occluders, pixel, 0), vec4(0.25)); }
-#endif

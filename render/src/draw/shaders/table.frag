@@ -80,14 +80,7 @@ vec3 floor_color(vec3 p) {
     return mix(vec3(0.004), near, 1.0 / (1.0 + 0.25 * away * away));
 }
 
-// What is written: screen values in a picture with one sample, or radiance to be averaged.
-vec4 written(vec3 radiance) {
-#ifdef SCREEN
-    return vec4(to_screen(radiance), v_face);
-#else
-    return vec4(radiance, v_face);
-#endif
-}
+vec4 written(vec3 radiance) { return vec4(to_screen(radiance), v_face); }
 
 void main() {
     vec2 p = v_position.xy;
@@ -106,11 +99,7 @@ void main() {
 #elif defined(SHADE)
     // Only the opacity counts: black is blended over the cloth. In screen values, of which the square is the radiance,
     // the same darkening needs another opacity.
-#ifdef SCREEN
     color = vec4(0.0, 0.0, 0.0, 1.0 - sqrt(1.0 - v_uv.x));
-#else
-    color = vec4(0.0, 0.0, 0.0, v_uv.x);
-#endif
 #elif defined(WOOD)
     color = written(glossy(lit(wood_albedo(v_uv), n), n, vec3(1.7, 1.0, 0.62), 0.5));
 #elif defined(FLOOR)

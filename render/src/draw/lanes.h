@@ -1,0 +1,141 @@
+// Four pixels at a time: vectors of floats and what GLSL calls vec3, for painting on pictures in memory.
+//
+// The vector extensions of gcc and clang give + - * / and comparisons on every processor; a comparison has all bits set
+// where it holds. Every lane is computed alike, so a pixel has the same bits whichever pixels are painted with it.
+#pragma once
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace carom::render::lanes {
+
+inline constexpr int kLanes = 4;
+using Floats = float __attribute__((vector_size(16)));
+using Ints = std::int32_t __attribute__((vector_size(16)));
+
+inline Floats all(float value) {
+    return Floats{value, value, value, value};
+}
+
+inline Floats choose(Ints where, Floats yes, Floats no) {
+    return where ? yes : no;
+}
+
+#ifdef __SSE2__
+inline Floats min(Floats a, Floats b) {
+    return _mm_min_ps(a, b);
+}
+inline Floats max(Floats a, Floats b) {
+    return _mm_max_ps(a, b);
+}
+inline Floats sqrt(Floats a) {
+    return _mm_sqrt_ps(a);
+}
+inline bool any(Ints where) {
+    return _mm_movemask_epi8(reinterpret_cast<__m128i>(where)) != 0;
+}
+#else
+inline Floats min(Floats a, Floats b) {
+    return choose(a < b, a, b);
+}
+inline Floats max(Floats a, Floats b) {
+    return choose(a > b, a, b);
+}
+inline Floats sqrt(Floats a) {
+    for (int i = 0; i < kLanes; ++i) a[i] = std::sqrt(a[i]);
+    return a;
+}
+inline bool any(Ints where) {
+    return (where[0] | where[1] | where[2] | where[3]) != 0;
+}
+#endif
+
+inline Floats min(Floats a, float b) {
+    return min(a, all(b));
+}
+inline Floats max(Floats a, float b) {
+    return max(a, all(b));
+}
+inline Floats clamp(Floats a, float low, float high) {
+    return min(max(a, low), high);
+}
+inline Floats abs(Floats a) {
+    return max(a, -a);
+}
+inline Floats inversesqrt(Floats a) {
+    return 1.0F / sqrt(a);
+}
+inline Floats mix(Floats a, Floats b, Floats t) {
+    return a + (b - a) * t;
+}
+inline Floats smoothstep(float low, float high, Floats a) {
+    const Floats t = clamp((a - low) * (1.0F / (high - low)), 0.0F, 1.0F);
+    return t * t * (3.0F - 2.0F * t);
+}
+
+struct Vec {
+    Floats x, y, z;
+};
+
+inline Vec vec(const float (&v)[3]) {
+    return {all(v[0]), all(v[1]), all(v[2])};
+}
+inline Vec operator+(const Vec& a, const Vec& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vec operator-(const Vec& a, const Vec& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vec operator*(const Vec& a, Floats f) {
+    return {a.x * f, a.y * f, a.z * f};
+}
+inline Vec operator*(const Vec& a, const Vec& b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+inline Floats dot(const Vec& a, const Vec& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline Vec cross(const Vec& a, const Vec& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline Vec mix(const Vec& a, const Vec& b, Floats t) {
+    return a + (b - a) * t;
+}
+
+/// Four neighbours in a row of an image of four bytes a pixel; fewer at the end of the row.
+class Pixels {
+  public:
+    Pixels(std::uint8_t* rgba, int count) : at_(rgba), bytes_(static_cast<std::size_t>(count) * 4) {
+        if (bytes_ == sizeof bits_)
+            std::memcpy(&bits_, at_, sizeof bits_);
+        else
+            std::memcpy(&bits_, at_, bytes_);
+    }
+
+    /// 0..255
+    Floats channel(int shift) const { return __builtin_convertvector((bits_ >> shift) & 255, Floats); }
+
+    /// Writes the channels back, rounded; they must be within 0..255.
+    void put(Floats r, Floats g, Floats b, Floats a) {
+        bits_ = rounded(r) | rounded(g) << 8 | rounded(b) << 16 | rounded(a) << 24;
+        if (bytes_ == sizeof bits_)
+            std::memcpy(at_, &bits_, sizeof bits_);
+        else
+            std::memcpy(at_, &bits_, bytes_);
+    }
+
+  private:
+    static Ints rounded(Floats a) { return __builtin_convertvector(a + 0.5F, Ints); }
+
+    Ints bits_{};
+    std::uint8_t* at_;
+    std::size_t bytes_;
+};
+
+}  // namespace carom::render::lanes

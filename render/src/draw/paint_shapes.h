@@ -1,0 +1,20 @@
+// Lines and boxes of an overlay, painted over a picture of the table.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "carom/render/draw_list.h"
+#include "draw/canvas.h"
+
+namespace carom::render {
+
+/// Paints a line where the table does not hide it. @param box pixels that it may cover
+/// @param origin of the coordinates of the table mesh (TableMesh::origin)
+void paint_line(const Canvas& canvas, const DrawLine& line, const PixelBox& box, const Vec2& origin);
+
+/// Paints a filled rectangle or a character. @param glyphs the atlas of glyph_atlas()
+void paint_box(const Canvas& canvas, const DrawBox& box, const PixelBox& pixels,
+               const std::vector<std::uint8_t>& glyphs);
+
+}  // namespace carom::render
