@@ -108,34 +108,34 @@ inline Vec mix(const Vec& a, const Vec& b, Floats t) {
     return a + (b - a) * t;
 }
 
-/// Four neighbours in a row of an image of four bytes a pixel; fewer at the end of the row.
-class Pixels {
-  public:
-    Pixels(std::uint8_t* rgba, int count) : at_(rgba), bytes_(static_cast<std::size_t>(count) * 4) {
-        if (bytes_ == sizeof bits_)
-            std::memcpy(&bits_, at_, sizeof bits_);
-        else
-            std::memcpy(&bits_, at_, bytes_);
-    }
+/// Values of four neighbours, of four bytes each; fewer at the end of a row.
+template <class Four>
+Four load(const void* from, int count) {
+    static_assert(sizeof(Four) == 16);
+    Four four{};
+    if (count == kLanes)
+        std::memcpy(&four, from, sizeof four);
+    else
+        std::memcpy(&four, from, static_cast<std::size_t>(count) * 4);
+    return four;
+}
 
-    /// 0..255
-    Floats channel(int shift) const { return __builtin_convertvector((bits_ >> shift) & 255, Floats); }
+/// One of the bytes of each of four pixels: 0..255.
+inline Floats channel(Ints pixels, int shift) {
+    return __builtin_convertvector((pixels >> shift) & 255, Floats);
+}
 
-    /// Writes the channels back, rounded; they must be within 0..255.
-    void put(Floats r, Floats g, Floats b, Floats a) {
-        bits_ = rounded(r) | rounded(g) << 8 | rounded(b) << 16 | rounded(a) << 24;
-        if (bytes_ == sizeof bits_)
-            std::memcpy(at_, &bits_, sizeof bits_);
-        else
-            std::memcpy(at_, &bits_, bytes_);
-    }
+/// The other way: rounded; the values must be within 0..255.
+inline Ints pixels_of(Floats r, Floats g, Floats b, Floats a) {
+    const auto rounded = [](Floats value) { return __builtin_convertvector(value + 0.5F, Ints); };
+    return rounded(r) | rounded(g) << 8 | rounded(b) << 16 | rounded(a) << 24;
+}
 
-  private:
-    static Ints rounded(Floats a) { return __builtin_convertvector(a + 0.5F, Ints); }
-
-    Ints bits_{};
-    std::uint8_t* at_;
-    std::size_t bytes_;
-};
+inline void store(std::uint8_t* to, Ints pixels, int count) {
+    if (count == kLanes)
+        std::memcpy(to, &pixels, sizeof pixels);
+    else
+        std::memcpy(to, &pixels, static_cast<std::size_t>(count) * 4);
+}
 
 }  // namespace carom::render::lanes

@@ -157,18 +157,17 @@ Floats light_in_pocket(Floats z) {
 
 // On cushions and wood, which have any direction: a soft darkening around the ball, down to the cloth.
 void paint_shadow_beside(const Canvas& canvas, const DrawnBall& ball, float strength) {
-    const float *center = ball.instance.center_radius, R = center[3];
-    const float* eye = canvas.view.eye;
+    const float *center = ball.instance.center_radius, *eye = canvas.view().eye;
     const Vec from_ball{all(eye[0] - center[0]), all(eye[1] - center[1]), all(eye[2] - center[2])};
-    Canvas::each(ball.box, [&](int x, int y, int count) {
-        const std::size_t first = canvas.index(x, y);
-        const Vec way = canvas.ray(x, y) * canvas.table_distance(first, count),
-                  away = (from_ball + way) * all(1.0F / R);
+    const float eye_z = eye[2], per_radius = 1.0F / center[3];
+    canvas.each(ball.box, [=, background = canvas.background(), brush = canvas.brush()](
+                              std::size_t first, int count, const Vec& ray) {
+        const Vec way = ray * background.distance(first, count), away = (from_ball + way) * all(per_radius);
         const Floats near = clamp(1.0F - (dot(away, away) - 1.0F) * (1.0F / 3.4F), 0.0F, 1.0F);
         if (!any(near > 0.0F)) return;
-        const Floats dark = 0.6F * near * near * smoothstep(0.0F, 0.1F, (eye[2] + way.z) / R) *
-                            (1.0F - canvas.cloth(first, count));
-        canvas.darken(x, y, count, dark * strength);
+        const Floats dark = 0.6F * near * near * smoothstep(0.0F, 0.1F, (eye_z + way.z) * per_radius) *
+                            (1.0F - background.cloth(first, count));
+        brush.darken(first, count, dark * strength);
     });
 }
 
@@ -177,7 +176,7 @@ void paint_shadow_beside(const Canvas& canvas, const DrawnBall& ball, float stre
 void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
     const auto place = static_cast<BallPlace>(static_cast<int>(ball.instance.pattern[1] + 0.5F));
     if (place == BallPlace::kPocket) return;
-    const View& view = canvas.view;
+    const View& view = canvas.view();
     const float *center = ball.instance.center_radius, R = center[3];
     const float strength = std::clamp(center[2] / R, 0.0F, 1.0F);  // a ball that falls has no shadow left
     // The shadow of a ball in the air is wider, in proportion to the height of its centre, and so farther off.
@@ -191,11 +190,13 @@ void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
     away_x *= limit;
     away_y *= limit;
     constexpr auto kReach = static_cast<float>(shaders::kShadowReach);
-    Canvas::each(ball.box, [&](int x, int y, int count) {
-        const Vec ray = canvas.ray(x, y);
-        const Floats way = -view.eye[2] / ray.z;  // to the plane of the cloth
-        const Floats px = (ray.x * way + (view.eye[0] - center[0])) * unit,
-                     py = (ray.y * way + (view.eye[1] - center[1])) * unit;
+    const float eye_z = view.eye[2], from_x = view.eye[0] - center[0], from_y = view.eye[1] - center[1];
+    const float of_sky = 0.55F / (lift * lift), of_lamp = 0.55F / lift;
+    const bool plain = ball.plain;
+    canvas.each(ball.box, [=, background = canvas.background(), brush = canvas.brush()](
+                              std::size_t first, int count, const Vec& ray) {
+        const Floats way = -eye_z / ray.z;  // to the plane of the cloth
+        const Floats px = (ray.x * way + from_x) * unit, py = (ray.y * way + from_y) * unit;
         // Share of the sky hidden by a sphere that rests on a plane: (1 + d^2)^(-3/2) at d radii from the contact. The polynomial differs by less
         // than 0.03 up to 2 radii and ends.
         const Floats near = max(1.0F - (px * px + py * py) * (1.0F / (kReach * kReach)), 0.0F);
@@ -205,17 +206,16 @@ void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
         const Floats dx = px - away_x, dy = py - away_y;
         const Floats inner = max(1.0F - (dx * dx + dy * dy) * (1.0F / 3.4F), 0.0F);
         // From higher up a ball hides less of the sky and of the wide lamp.
-        Floats dark =
-            1.0F - (1.0F - hidden * (0.55F / (lift * lift))) * (1.0F - inner * inner * (0.55F / lift));
-        dark = choose(way > 0.0F, dark * strength, all(0.0F));
-        if (!ball.plain) dark *= canvas.cloth(canvas.index(x, y), count);
-        canvas.darken(x, y, count, dark);
+        Floats dark = (1.0F - (1.0F - hidden * of_sky) * (1.0F - inner * inner * of_lamp)) * strength;
+        dark = choose(way > 0.0F, dark, all(0.0F));
+        if (!plain) dark *= background.cloth(first, count);
+        brush.darken(first, count, dark);
     });
     if (place == BallPlace::kCushion) paint_shadow_beside(canvas, ball, strength);
 }
 
 void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<std::uint8_t>& glyphs) {
-    const View& view = canvas.view;
+    const View& view = canvas.view();
     const float* center = ball.instance.center_radius;
     const float R = center[3];
     const Vec middle{all(center[0]), all(center[1]), all(center[2])}, oc = middle - vec(view.eye);
@@ -225,8 +225,10 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
     const Skin skin(ball.instance, glyphs);
     const Vec cloth = from_screen(0.055F, 0.50F, 0.345F), dim{all(0.10F), all(0.10F), all(0.10F)};
     const bool sunk = center[2] < 0.999F * R;
-    Canvas::each(ball.body, [&](int x, int y, int count) {
-        const Vec ray = canvas.ray(x, y);
+    const bool plain = ball.plain;
+    const BallInstance instance = ball.instance;
+    canvas.each(ball.body, [=, background = canvas.background(), brush = canvas.brush()](
+                               std::size_t first, int count, const Vec& ray) {
         const Floats per_depth = inversesqrt(dot(ray, ray));
         const Vec dir = ray * per_depth;
         // Foot of the perpendicular from the centre to the ray: this avoids the difference of large squares.
@@ -240,7 +242,7 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
         const Vec n = (perpendicular - dir * rise) *
                       (1.0F / max(miss, R));  // R long inside, outside as far as the ray is from the centre
         const Vec p = middle + n * all(R);
-        if (!ball.plain) cover *= canvas.seen(canvas.index(x, y), count, (along - rise) * per_depth - 0.001F);
+        if (!plain) cover *= background.seen(first, count, (along - rise) * per_depth - 0.001F);
 
         const Floats toward = -dot(n, dir), facing = max(toward, 0.08F);
         Floats shine;
@@ -248,8 +250,7 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
         // Light: the lamp, the dim room above, and the reflection of the cloth from below.
         const Floats under = 0.5F - 0.5F * n.z;
         const Floats above = lamp.light(p, n) + 0.20F * (1.0F - under), below = 0.75F * under * under;
-        const Floats open =
-            (1.0F - 0.45F * smoothstep(0.55F, 1.0F, under)) * past_neighbours(ball.instance, n);
+        const Floats open = (1.0F - 0.45F * smoothstep(0.55F, 1.0F, under)) * past_neighbours(instance, n);
         Vec shade = base * (Vec{above, above, above} + cloth * below) * open;
         // Specular reflection: a mirror image of the lamp, and of the room at grazing angles.
         const Vec r = dir + n * (2.0F * toward);
@@ -259,7 +260,7 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
         const Floats bright = 11.0F * shine * lamp.mirror(p, r);
         shade = shade + (room + Vec{bright, bright, bright}) * fresnel;
         if (sunk) shade = shade * light_in_pocket(p.z);
-        canvas.blend(x, y, count, {to_screen(shade.x), to_screen(shade.y), to_screen(shade.z)}, cover);
+        brush.blend(first, count, {to_screen(shade.x), to_screen(shade.y), to_screen(shade.z)}, cover);
     });
 }
 

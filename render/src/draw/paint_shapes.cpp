@@ -41,20 +41,22 @@ LineEnd to_pixels(const LineEnd& end, const View& view) {
 
 void paint_line(const Canvas& canvas, const DrawLine& line, const PixelBox& box, const Vec2& origin) {
     const Vec3 shift(origin.x(), origin.y(), 0.0);
-    LineEnd a = line_end(canvas.view, line.a - shift), b = line_end(canvas.view, line.b - shift);
+    LineEnd a = line_end(canvas.view(), line.a - shift), b = line_end(canvas.view(), line.b - shift);
     // The part behind the eye is clipped.
     constexpr double kNear = 0.01;
     if (!(std::max(a.depth, b.depth) >= kNear)) return;
     if (a.depth < kNear) a = between(a, b, kNear);
     if (b.depth < kNear) b = between(b, a, kNear);
-    a = to_pixels(a, canvas.view);
-    b = to_pixels(b, canvas.view);
+    a = to_pixels(a, canvas.view());
+    b = to_pixels(b, canvas.view());
     const double along_x = b.x - a.x, along_y = b.y - a.y, square = along_x * along_x + along_y * along_y;
     if (!std::isfinite(square)) return;
     const double half = 0.5 * double(line.width), reach = half + 1.0;
     const double scale = 1.0 / std::max(square, 1e-6);
     const Vec color{all(line.color[0]), all(line.color[1]), all(line.color[2])};
     const float near_a = static_cast<float>(1.0 / a.depth), near_b = static_cast<float>(1.0 / b.depth);
+    const Canvas::Background background = canvas.background();
+    const Canvas::Brush brush = canvas.brush();
     for (int y = box.y0; y < box.y1; ++y) {
         // In this row a line that is not level covers little of its box.
         const double down = y + 0.5 - a.y;
@@ -66,21 +68,23 @@ void paint_line(const Canvas& canvas, const DrawLine& line, const PixelBox& box,
             high = std::min(high, std::ceil(middle + wide));
         }
         if (!(low < high)) continue;
-        const PixelBox part{static_cast<int>(low), y, static_cast<int>(high), y + 1};
-        Canvas::each(part, [&](int x, int, int count) {
+        const auto dx = static_cast<float>(along_x), dy = static_cast<float>(along_y),
+                   to_row = static_cast<float>(down);
+        const int end = static_cast<int>(high);
+        for (int x = static_cast<int>(low); x < end; x += kLanes) {
             const Floats right = Floats{0.5F, 1.5F, 2.5F, 3.5F} + static_cast<float>(x - a.x);
-            const auto dx = static_cast<float>(along_x), dy = static_cast<float>(along_y),
-                       to_row = static_cast<float>(down);
             const Floats t = clamp((right * dx + to_row * dy) * static_cast<float>(scale), 0.0F, 1.0F);
             const Floats off_x = right - t * dx, off_y = to_row - t * dy;
             Floats cover =
                 clamp(static_cast<float>(half) + 0.5F - sqrt(off_x * off_x + off_y * off_y), 0.0F, 1.0F) *
                 line.color[3];
-            if (!any(cover > 0.0F)) return;
+            if (!any(cover > 0.0F)) continue;
+            const std::size_t first = canvas.index(x, y);
+            const int count = std::min(kLanes, end - x);
             const Floats depth = 1.0F / mix(all(near_a), all(near_b), t);
-            cover *= canvas.seen(canvas.index(x, y), count, depth * 0.998F - 0.002F);
-            canvas.blend(x, y, count, color, cover);
-        });
+            cover *= background.seen(first, count, depth * 0.998F - 0.002F);
+            brush.blend(first, count, color, cover);
+        }
     }
 }
 
@@ -90,22 +94,23 @@ void paint_box(const Canvas& canvas, const DrawBox& box, const PixelBox& pixels,
     const float low_x = f(box.low.x()), low_y = f(box.low.y()), wide = f(box.high.x()) - low_x,
                 high = f(box.high.y()) - low_y;
     const Vec color{all(box.color[0]), all(box.color[1]), all(box.color[2])};
-    Canvas::each(pixels, [&](int x, int y, int count) {
-        const Floats at_x = Floats{0.5F, 1.5F, 2.5F, 3.5F} + (static_cast<float>(x) - low_x);
-        const float at_y = static_cast<float>(y) + 0.5F - low_y;
-        Floats cover = clamp(min(at_x, wide - at_x) + 0.5F, 0.0F, 1.0F) *
-                       std::clamp(std::min(at_y, high - at_y) + 0.5F, 0.0F, 1.0F);
-        if (!any(cover > 0.0F)) return;
-        if (box.glyph >= 0) {
-            for (int i = 0; i < kLanes; ++i) {
+    const Canvas::Brush brush = canvas.brush();
+    for (int y = pixels.y0; y < pixels.y1; ++y) {
+        const float at_y = static_cast<float>(y) + 0.5F - low_y,
+                    row = std::clamp(std::min(at_y, high - at_y) + 0.5F, 0.0F, 1.0F);
+        for (int x = pixels.x0; x < pixels.x1; x += kLanes) {
+            const Floats at_x = Floats{0.5F, 1.5F, 2.5F, 3.5F} + (static_cast<float>(x) - low_x);
+            Floats cover = clamp(min(at_x, wide - at_x) + 0.5F, 0.0F, 1.0F) * row;
+            if (!any(cover > 0.0F)) continue;
+            for (int i = 0; i < kLanes && box.glyph >= 0; ++i) {
                 const float near = glyph_nearness(glyphs, box.glyph, std::clamp(at_x[i] / wide, 0.02F, 0.98F),
                                                   std::clamp(at_y / high, 0.02F, 0.98F));
                 // Distances are in units of the glyph; the height of the cell is 9 units.
                 cover[i] *= std::clamp(0.5F - ((1.0F - near) * 1.5F - 0.5F) * high / 9.0F, 0.0F, 1.0F);
             }
+            brush.blend(canvas.index(x, y), std::min(kLanes, pixels.x1 - x), color, cover * box.color[3]);
         }
-        canvas.blend(x, y, count, color, cover * box.color[3]);
-    });
+    }
 }
 
 }  // namespace carom::render

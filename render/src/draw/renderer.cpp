@@ -114,7 +114,7 @@ struct Renderer::Impl {
         std::vector<PixelBox> boxes = differing_boxes(*target.shows, *next, size);
         const Inside redrawn = inside(*next, boxes, size);
         copy_boxes(table_layer->picture().rgba, boxes, target.image);
-        paint(*next, redrawn, {target.image, table_layer->picture(), view}, list.table->origin);
+        paint(*next, redrawn, Canvas(target.image, table_layer->picture(), view), list.table->origin);
         target.shows = std::move(next);
     }
 
