@@ -6,16 +6,18 @@
 
 namespace carom::render {
 
-void MeanPicture::add(const std::vector<std::uint8_t>& rgba) {
+void MeanPicture::add(const std::vector<std::uint8_t>& rgba, const std::vector<PixelBox>& boxes) {
     const auto& linear = radiance_of_screen();
     ++count_;
-    constexpr std::size_t kBytes = 32;  // that are compared at once
-    for (std::size_t start = 0; start < rgba_.size(); start += kBytes) {
-        const std::size_t end = start + kBytes < rgba_.size() ? start + kBytes : rgba_.size();
-        if (std::memcmp(&rgba_[start], &rgba[start], end - start) == 0) continue;
-        for (std::size_t i = start; i < end; i += 4) {
-            for (std::size_t k = i; k < i + 3; ++k) beyond_[k] += linear[rgba[k]] - linear[rgba_[k]];
-            beyond_[i + 3] += static_cast<float>(rgba[i + 3]) - static_cast<float>(rgba_[i + 3]);
+    for (const PixelBox& box : boxes) {
+        for (int y = box.y0; y < box.y1; ++y) {
+            const std::size_t row = static_cast<std::size_t>(y) * row_,
+                              end = row + static_cast<std::size_t>(box.x1) * 4;
+            for (std::size_t i = row + static_cast<std::size_t>(box.x0) * 4; i < end; i += 4) {
+                if (std::memcmp(&rgba_[i], &rgba[i], 4) == 0) continue;
+                for (std::size_t k = i; k < i + 3; ++k) beyond_[k] += linear[rgba[k]] - linear[rgba_[k]];
+                beyond_[i + 3] += static_cast<float>(rgba[i + 3]) - static_cast<float>(rgba_[i + 3]);
+            }
         }
     }
 }

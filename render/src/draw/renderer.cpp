@@ -74,7 +74,7 @@ struct Renderer::Impl {
         if (list.camera_moves)
             table_layer->draw_once(*list.table, size);
         else
-            table_layer->draw(*list.table, size, list.table_samples, on_table);
+            table_layer->draw(*list.table, view, size, list.table_samples, on_table);
         table = list.table;
         camera = list.camera;
         table_samples = list.table_samples;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "draw/busy_tiles.h"
 #include "draw/mean_picture.h"
 #include "draw/shaders.h"
 #include "gl/objects.h"
@@ -103,13 +104,19 @@ void StaticLayer::set_table_uniforms(const TableMesh& table, GLuint program) con
                    static_cast<float>(high.x()), static_cast<float>(high.y()));
 }
 
-void StaticLayer::draw_parts(double jitter_x, double jitter_y) {
+// @param depths what the depth buffer begins with; null: the far plane
+void StaticLayer::draw_parts(double jitter_x, double jitter_y, const float* depths) {
     api_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     api_.Viewport(0, 0, size_.width, size_.height);
     const float room = std::sqrt(kRoom);  // to_screen() of the background
     api_.ClearColor(room, room, room, 0.0F);
     api_.DepthMask(GL_TRUE);
-    api_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    api_.Clear(depths == nullptr ? GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT : GL_COLOR_BUFFER_BIT);
+    if (depths != nullptr) {
+        api_.BindTexture(GL_TEXTURE_2D, depth_);
+        api_.TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size_.width, size_.height, GL_DEPTH_COMPONENT, GL_FLOAT,
+                           depths);
+    }
     api_.Enable(GL_DEPTH_TEST);
     api_.DepthFunc(GL_LEQUAL);
     api_.Disable(GL_BLEND);
@@ -148,14 +155,14 @@ void StaticLayer::draw_once(const TableMesh& table, FrameSize size) {
         upload(table, edges_.get());
     }
     resize(size);
-    draw_parts(0.0, 0.0);
+    draw_parts(0.0, 0.0, nullptr);
     picture_.size = size;
     read_color(picture_.rgba);
     read_depths(picture_.depths[0]);
     picture_.depth_count = 1;
 }
 
-void StaticLayer::draw(const TableMesh& table, FrameSize size, int samples,
+void StaticLayer::draw(const TableMesh& table, const View& view, FrameSize size, int samples,
                        const std::function<void(int, int)>& on_pass) {
     samples = std::max(samples, 1);
     if (uploaded_ != &table || edges_) upload(table, nullptr);
@@ -163,17 +170,36 @@ void StaticLayer::draw(const TableMesh& table, FrameSize size, int samples,
     resize(size);
     picture_.size = size;
     picture_.depth_count = std::min(samples, static_cast<int>(picture_.depths.size()));
-    draw_parts(0.0, 0.0);
+    draw_parts(0.0, 0.0, nullptr);
     read_color(picture_.rgba);
     read_depths(picture_.depths[0]);
-    MeanPicture mean(picture_.rgba);
+    const std::vector<PixelBox> busy = busy_tiles(picture_.rgba, size, table, view);
+    // Everywhere else the depth buffer begins with the near plane, so that nothing is drawn there.
+    std::vector<float> begin(picture_.depths[0].size(), 0.0F), depths;
+    const auto each_row = [&](const auto& at) {
+        for (const PixelBox& box : busy) {
+            for (int y = box.y0; y < box.y1; ++y) {
+                const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width);
+                at(row + static_cast<std::size_t>(box.x0), static_cast<std::size_t>(box.x1 - box.x0));
+            }
+        }
+    };
+    each_row([&](std::size_t first, std::size_t count) { std::fill_n(begin.data() + first, count, 1.0F); });
+    MeanPicture mean(picture_.rgba, size.width);
     std::vector<std::uint8_t> rgba;
     for (int pass = 1; pass < samples; ++pass) {
         // The steps of the R2 sequence are 1 / p and 1 / p^2, with the plastic number p.
-        draw_parts(r2(pass, 0.75487766624669276), r2(pass, 0.56984029099805327));
+        draw_parts(r2(pass, 0.75487766624669276), r2(pass, 0.56984029099805327), begin.data());
         read_color(rgba);
-        mean.add(rgba);
-        if (pass < picture_.depth_count) read_depths(picture_.depths[static_cast<std::size_t>(pass)]);
+        mean.add(rgba, busy);
+        if (pass < picture_.depth_count) {
+            std::vector<float>& kept = picture_.depths[static_cast<std::size_t>(pass)];
+            kept = picture_.depths[0];
+            read_depths(depths);
+            each_row([&](std::size_t first, std::size_t count) {
+                std::copy_n(depths.data() + first, count, kept.data() + first);
+            });
+        }
         if (on_pass) on_pass(pass + 1, samples);
     }
     mean.finish();

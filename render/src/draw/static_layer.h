@@ -11,6 +11,7 @@
 #include "draw/table_edges.h"
 #include "draw/table_parts.h"
 #include "draw/table_picture.h"
+#include "draw/view.h"
 #include "gl/api.h"
 
 namespace carom::render {
@@ -22,9 +23,9 @@ class StaticLayer {
     StaticLayer(const StaticLayer&) = delete;
     StaticLayer& operator=(const StaticLayer&) = delete;
 
-    /// Draws the table in `samples` jittered passes, averaged in linear light. `on_pass`, if set, is called after every
-    /// finished pass; it may throw.
-    void draw(const TableMesh& table, FrameSize size, int samples,
+    /// Draws the table in `samples` jittered passes, averaged in linear light; after the first one only what is busy (busy_tiles.h). `on_pass`,
+    /// if set, is called after every finished pass; it may throw.
+    void draw(const TableMesh& table, const View& view, FrameSize size, int samples,
               const std::function<void(int done, int total)>& on_pass);
 
     /// Draws the table in one pass. The fourth channel gets the mark of the face (table_edges.h).
@@ -46,7 +47,7 @@ class StaticLayer {
     void upload(const TableMesh& table, const TableEdges* edges);
     void resize(FrameSize size);
     void set_table_uniforms(const TableMesh& table, GLuint program) const;
-    void draw_parts(double jitter_x, double jitter_y);
+    void draw_parts(double jitter_x, double jitter_y, const float* depths);
     void read_color(std::vector<std::uint8_t>& rgba);
     void read_depths(std::vector<float>& depths);
 
