@@ -11,14 +11,13 @@ namespace carom::render::shaders {
 extern const char* const kCommon;
 
 namespace {
-constexpr const char* kVersion = "#version 330 core\n";
+constexpr const char* kVersion = "#version 330 core\n#extension GL_ARB_separate_shader_objects : require\n";
 }
 
-GLuint make_program(const gl::Api& api, const char* vertex, const char* fragment,
-                    std::initializer_list<const char*> samplers, const std::string& defines) {
+GLuint make_stage(const gl::Api& api, GLenum stage, const char* source, const std::string& defines) {
     const std::string numbers = fmt::format("#define MAX_HOLES {}\n", kMaxHoles);
-    const std::array<const char*, 4> prologue{kVersion, numbers.c_str(), defines.c_str(), kCommon};
-    return gl::make_program(api, prologue, vertex, fragment, samplers);
+    const std::array<const char*, 5> sources{kVersion, numbers.c_str(), defines.c_str(), kCommon, source};
+    return gl::make_stage(api, stage, sources);
 }
 
 }  // namespace carom::render::shaders

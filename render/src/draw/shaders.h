@@ -1,7 +1,6 @@
 // The GLSL sources, shaders/*.vert and *.frag, which CMake embeds in the library (shaders/embed.cmake).
 #pragma once
 
-#include <initializer_list>
 #include <string>
 
 #include "gl/api.h"
@@ -26,10 +25,8 @@ inline constexpr const char* kTheRest = "#define REST\n";
 /// Added to one of these where a hole may be: what lies in a hole is not drawn.
 inline constexpr const char* kHoles = "#define HOLES\n";
 
-/// Compiles and links a program. Each source is preceded by the version of the language, the shared numbers, `defines`
-/// (whole lines) and shaders/common.glsl. The first of `samplers` reads the texture of unit 0, and so on.
-/// @throws RenderError with the compiler's log
-GLuint make_program(const gl::Api& api, const char* vertex, const char* fragment,
-                    std::initializer_list<const char*> samplers = {}, const std::string& defines = "");
+/// One stage of a program (gl::make_stage()): the source after the version of the language, the shared numbers, `defines` (whole lines) and
+/// shaders/common.glsl. @throws RenderError with the compiler's log
+GLuint make_stage(const gl::Api& api, GLenum stage, const char* source, const std::string& defines = "");
 
 }  // namespace carom::render::shaders

@@ -34,10 +34,12 @@ StaticLayer::~StaticLayer() = default;
 
 void StaticLayer::make_programs() {
     using namespace shaders;
+    vertex_program_ = make_stage(api_, GL_VERTEX_SHADER, kTableVertex);
+    jitter_ = api_.GetUniformLocation(vertex_program_, "u_jitter");
     const auto make = [&](Part part, const std::string& kind) {
         Program& program = programs_[static_cast<std::size_t>(part)];
-        program.id = make_program(api_, kTableVertex, kTableFragment, {}, kind);
-        program.jitter = api_.GetUniformLocation(program.id, "u_jitter");
+        program.fragment = make_stage(api_, GL_FRAGMENT_SHADER, kTableFragment, kind);
+        program.pipeline = gl::make_pipeline(api_, vertex_program_, program.fragment);
     };
     make(Part::kCloth, kClothOnly);
     make(Part::kWood, kWoodOnly);
@@ -51,7 +53,7 @@ void StaticLayer::make_programs() {
 }
 
 void StaticLayer::upload(const TableMesh& table, const TableEdges* edges) {
-    if (programs_[0].id == 0) make_programs();
+    if (vertex_program_ == 0) make_programs();
     parts_ = sort_parts(table, edges == nullptr ? std::vector<std::uint8_t>{} : edges->faces);
     api_.BindVertexArray(vertex_array_);
     api_.BindBuffer(GL_ARRAY_BUFFER, buffer_);
@@ -67,7 +69,7 @@ void StaticLayer::upload(const TableMesh& table, const TableEdges* edges) {
     attribute(1, 3, offsetof(MeshVertex, nx));
     attribute(2, 4, offsetof(MeshVertex, u));  // u, v, material, and the face behind the vertex
     static_assert(offsetof(PartVertex, face) == offsetof(MeshVertex, material) + sizeof(float));
-    for (const Program& program : programs_) set_table_uniforms(table, program.id);
+    for (const Program& program : programs_) set_table_uniforms(table, program.fragment);
     uploaded_ = &table;
 }
 
@@ -122,15 +124,17 @@ void StaticLayer::draw_parts(double jitter_x, double jitter_y, const float* dept
     api_.Disable(GL_BLEND);
     api_.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
     api_.BindVertexArray(vertex_array_);
+    api_.UseProgram(vertex_program_);
+    api_.Uniform2f(jitter_, static_cast<float>(2.0 * jitter_x / size_.width),
+                   static_cast<float>(2.0 * jitter_y / size_.height));
+    api_.UseProgram(0);  // the pipelines are in force
     std::size_t first = 0;
     for (std::size_t i = 0; i < kPartCount; ++i) {
         const auto part = static_cast<Part>(i);
         if (part == Part::kChalk) api_.DepthMask(GL_FALSE);
         // The shading is blended over the cloth and keeps its alpha.
         if (part == Part::kShade) api_.Enable(GL_BLEND);
-        api_.UseProgram(programs_[i].id);
-        api_.Uniform2f(programs_[i].jitter, static_cast<float>(2.0 * jitter_x / size_.width),
-                       static_cast<float>(2.0 * jitter_y / size_.height));
+        api_.BindProgramPipeline(programs_[i].pipeline);
         api_.DrawArrays(GL_TRIANGLES, static_cast<GLint>(first),
                         static_cast<GLsizei>(parts_.ends[i] - first));
         first = parts_.ends[i];

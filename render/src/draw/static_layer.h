@@ -39,10 +39,8 @@ class StaticLayer {
 
   private:
     struct Program {
-        GLuint id = 0;
-        GLint jitter = -1;  ///< location of u_jitter
+        GLuint fragment = 0, pipeline = 0;
     };
-    using Programs = std::array<Program, kPartCount>;
     void make_programs();
     void upload(const TableMesh& table, const TableEdges* edges);
     void resize(FrameSize size);
@@ -52,7 +50,10 @@ class StaticLayer {
     void read_depths(std::vector<float>& depths);
 
     const gl::Api& api_;
-    Programs programs_;  ///< made when they are first needed
+    std::array<Program, kPartCount>
+        programs_;  ///< made when they are first needed, like this one, which they share:
+    GLuint vertex_program_ = 0;
+    GLint jitter_ = -1;  ///< location of its u_jitter
     TableParts parts_;   ///< without the vertices, which are in buffer_
     GLuint vertex_array_ = 0, buffer_ = 0;
     const TableMesh* uploaded_ = nullptr;

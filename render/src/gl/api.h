@@ -13,6 +13,7 @@ namespace carom::render::gl {
     X(PFNGLBINDBUFFERPROC, BindBuffer) \
     X(PFNGLBINDBUFFERBASEPROC, BindBufferBase) \
     X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer) \
+    X(PFNGLBINDPROGRAMPIPELINEPROC, BindProgramPipeline) \
     X(PFNGLBINDTEXTUREPROC, BindTexture) \
     X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray) \
     X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate) \
@@ -40,6 +41,7 @@ namespace carom::render::gl {
     X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D) \
     X(PFNGLGENBUFFERSPROC, GenBuffers) \
     X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers) \
+    X(PFNGLGENPROGRAMPIPELINESPROC, GenProgramPipelines) \
     X(PFNGLGENTEXTURESPROC, GenTextures) \
     X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays) \
     X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog) \
@@ -49,6 +51,7 @@ namespace carom::render::gl {
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation) \
     X(PFNGLLINKPROGRAMPROC, LinkProgram) \
     X(PFNGLPIXELSTOREIPROC, PixelStorei) \
+    X(PFNGLPROGRAMPARAMETERIPROC, ProgramParameteri) \
     X(PFNGLREADPIXELSPROC, ReadPixels) \
     X(PFNGLSHADERSOURCEPROC, ShaderSource) \
     X(PFNGLTEXIMAGE2DPROC, TexImage2D) \
@@ -60,6 +63,7 @@ namespace carom::render::gl {
     X(PFNGLUNIFORM4FPROC, Uniform4f) \
     X(PFNGLUNIFORM4FVPROC, Uniform4fv) \
     X(PFNGLUSEPROGRAMPROC, UseProgram) \
+    X(PFNGLUSEPROGRAMSTAGESPROC, UseProgramStages) \
     X(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor) \
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer) \
     X(PFNGLVIEWPORTPROC, Viewport)

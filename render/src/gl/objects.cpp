@@ -10,10 +10,8 @@ namespace carom::render::gl {
 
 namespace {
 
-GLuint compile(const Api& api, GLenum stage, std::span<const char* const> prologue, const char* source) {
+GLuint compile(const Api& api, GLenum stage, std::span<const char* const> sources) {
     const GLuint shader = api.CreateShader(stage);
-    std::vector<const char*> sources(prologue.begin(), prologue.end());
-    sources.push_back(source);
     api.ShaderSource(shader, static_cast<GLsizei>(sources.size()), sources.data(), nullptr);
     api.CompileShader(shader);
     GLint compiled = 0;
@@ -30,14 +28,12 @@ GLuint compile(const Api& api, GLenum stage, std::span<const char* const> prolog
 
 }  // namespace
 
-GLuint make_program(const Api& api, std::span<const char* const> prologue, const char* vertex,
-                    const char* fragment, std::span<const char* const> samplers) {
-    const GLuint program = api.CreateProgram();
-    const std::array<GLuint, 2> stages{compile(api, GL_VERTEX_SHADER, prologue, vertex),
-                                       compile(api, GL_FRAGMENT_SHADER, prologue, fragment)};
-    for (GLuint stage : stages) api.AttachShader(program, stage);
+GLuint make_stage(const Api& api, GLenum stage, std::span<const char* const> sources) {
+    const GLuint program = api.CreateProgram(), shader = compile(api, stage, sources);
+    api.ProgramParameteri(program, GL_PROGRAM_SEPARABLE, GL_TRUE);
+    api.AttachShader(program, shader);
     api.LinkProgram(program);
-    for (GLuint stage : stages) api.DeleteShader(stage);
+    api.DeleteShader(shader);
     GLint linked = 0;
     api.GetProgramiv(program, GL_LINK_STATUS, &linked);
     if (linked == 0) {
@@ -47,10 +43,15 @@ GLuint make_program(const Api& api, std::span<const char* const> prologue, const
         log.resize(static_cast<std::size_t>(length));
         throw RenderError("the OpenGL driver cannot link a shader of carom: " + log);
     }
-    api.UseProgram(program);
-    for (std::size_t unit = 0; unit < samplers.size(); ++unit)
-        api.Uniform1i(api.GetUniformLocation(program, samplers[unit]), static_cast<GLint>(unit));
     return program;
+}
+
+GLuint make_pipeline(const Api& api, GLuint vertex, GLuint fragment) {
+    GLuint pipeline = 0;
+    api.GenProgramPipelines(1, &pipeline);
+    api.UseProgramStages(pipeline, GL_VERTEX_SHADER_BIT, vertex);
+    api.UseProgramStages(pipeline, GL_FRAGMENT_SHADER_BIT, fragment);
+    return pipeline;
 }
 
 GLuint make_texture(const Api& api, int width, int height, GLenum internal_format, GLenum format, GLenum type,

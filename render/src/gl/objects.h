@@ -8,10 +8,12 @@
 
 namespace carom::render::gl {
 
-/// Compiles and links a program; the sources of `prologue` precede both shaders. The first of `samplers` reads the
-/// texture of unit 0, and so on. @throws RenderError with the compiler's log
-GLuint make_program(const Api& api, std::span<const char* const> prologue, const char* vertex,
-                    const char* fragment, std::span<const char* const> samplers);
+/// Compiles and links a program of one stage (GL_VERTEX_SHADER or GL_FRAGMENT_SHADER), which make_pipeline() joins with one of the other stage:
+/// several pipelines may share it, so that the driver translates it once. @throws RenderError with the compiler's log
+GLuint make_stage(const Api& api, GLenum stage, std::span<const char* const> sources);
+
+/// Joins two stages. It is in force when no program is in use.
+GLuint make_pipeline(const Api& api, GLuint vertex, GLuint fragment);
 
 /// A texture without mipmaps, with nearest (or linear) filtering, clamped at the edges.
 GLuint make_texture(const Api& api, int width, int height, GLenum internal_format, GLenum format, GLenum type,

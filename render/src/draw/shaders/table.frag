@@ -1,8 +1,8 @@
-in vec3 v_position;
-in vec3 v_normal;
-in vec2 v_uv;
-flat in int v_material;
-flat in float v_face;
+layout(location = 0) in vec3 v_position;
+layout(location = 1) in vec3 v_normal;
+layout(location = 2) in vec2 v_uv;
+layout(location = 3) flat in int v_material;
+layout(location = 4) flat in float v_face;
 uniform vec4 u_holes[MAX_HOLES];   // x, y, radius
 uniform int u_hole_count;
 uniform vec4 u_inner;         // low x, low y, high x, high y of the box inside the wooden frame

@@ -2,11 +2,12 @@ layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
 layout(location = 2) in vec4 a_surface;   // u, v, material, alpha of the picture
 uniform vec2 u_jitter;                    // offset of this pass in clip space
-out vec3 v_position;
-out vec3 v_normal;
-out vec2 v_uv;
-flat out int v_material;
-flat out float v_face;
+out gl_PerVertex { vec4 gl_Position; };
+layout(location = 0) out vec3 v_position;
+layout(location = 1) out vec3 v_normal;
+layout(location = 2) out vec2 v_uv;
+layout(location = 3) flat out int v_material;
+layout(location = 4) flat out float v_face;
 void main() {
     v_position = a_position;
     v_normal = a_normal;
