@@ -1,17 +1,22 @@
 #include "draw/busy_tiles.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+
+#include "draw/table_edges.h"
 
 namespace carom::render {
 
 namespace {
 
-constexpr int kTile = 32;      // [pixels]
+constexpr int kTile = 8;       // [pixels] small, because edges are thin
 constexpr int kFewLevels = 3;  // [of 255] between neighbours in a tile that is not busy
-constexpr float kThinnest =
-    1.5F;  // [pixels] A triangle that is thinner, upright or level, may lie between the samples
+
+struct ScreenPoint {
+    float x, y, w;  // clip space; then pixels
+};
 
 class Tiles {
   public:
@@ -52,34 +57,20 @@ class Tiles {
         }
     }
 
-    void look_at(const std::vector<MeshVertex>& triangles, const View& view) {
+    void look_at(const std::vector<TableEdge>& edges, const View& view) {
+        for (const TableEdge& edge : edges) {
+            // Where a curved surface turns away from the eye, contrast tells.
+            if (!edge.smooth) mark_line(project(edge.a, view), project(edge.b, view), view);
+        }
+    }
+
+    // Lines of chalk are thin, and no edges of the mesh.
+    void look_at_chalk(const std::vector<MeshVertex>& triangles, const View& view) {
         for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
-            float low_x = 1e9F, low_y = 1e9F, high_x = -1e9F, high_y = -1e9F;
-            bool in_front = true;
-            for (std::size_t k = i; k < i + 3; ++k) {
-                const float* m = view.view_projection;
-                const MeshVertex& v = triangles[k];
-                const auto row = [&](int r) {
-                    return m[r] * v.x + m[r + 4] * v.y + m[r + 8] * v.z + m[r + 12];
-                };
-                in_front = in_front && row(3) > view.planes[0];
-                const float x = (0.5F + 0.5F * row(0) / row(3)) * view.size[0],
-                            y = (0.5F + 0.5F * row(1) / row(3)) * view.size[1];
-                low_x = std::min(low_x, x);
-                high_x = std::max(high_x, x);
-                low_y = std::min(low_y, y);
-                high_y = std::max(high_y, y);
-            }
-            // One that is partly behind the eye comes near it, and is not thin.
-            if (!in_front || std::min(high_x - low_x, high_y - low_y) >= kThinnest) continue;
-            const auto tile = [](float at, int limit) {
-                return static_cast<int>(std::clamp(at / kTile, -1.0F, static_cast<float>(limit)));
-            };
-            for (int y = std::max(0, tile(low_y - 1.0F, rows_));
-                 y <= std::min(rows_ - 1, tile(high_y + 1.0F, rows_)); ++y) {
-                for (int x = std::max(0, tile(low_x - 1.0F, columns_));
-                     x <= std::min(columns_ - 1, tile(high_x + 1.0F, columns_)); ++x)
-                    mark(x, y);
+            if (triangles[i].material != static_cast<float>(Material::kChalk)) continue;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const MeshVertex &a = triangles[i + k], &b = triangles[i + (k + 1) % 3];
+                mark_line(project({a.x, a.y, a.z}, view), project({b.x, b.y, b.z}, view), view);
             }
         }
     }
@@ -104,6 +95,61 @@ class Tiles {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
                static_cast<std::size_t>(column);
     }
+    static ScreenPoint project(const std::array<float, 3>& p, const View& view) {
+        const float* m = view.view_projection;
+        const auto row = [&](int r) { return m[r] * p[0] + m[r + 4] * p[1] + m[r + 8] * p[2] + m[r + 12]; };
+        return {row(0), row(1), row(3)};
+    }
+
+    // Marks what lies within a pixel of a line.
+    void mark_line(ScreenPoint a, ScreenPoint b, const View& view) {
+        const float near = view.planes[0];
+        if (std::max(a.w, b.w) <= near) return;
+        const auto to_near = [near](ScreenPoint& behind, const ScreenPoint& front) {
+            if (behind.w >= near) return;
+            const float share = (near - behind.w) / (front.w - behind.w);
+            behind = {behind.x + share * (front.x - behind.x), behind.y + share * (front.y - behind.y), near};
+        };
+        to_near(a, b);
+        to_near(b, a);
+        const float ax = (0.5F + 0.5F * a.x / a.w) * view.size[0],
+                    ay = (0.5F + 0.5F * a.y / a.w) * view.size[1];
+        const float dx = (0.5F + 0.5F * b.x / b.w) * view.size[0] - ax,
+                    dy = (0.5F + 0.5F * b.y / b.w) * view.size[1] - ay;
+        // The shares of the line between which it is in the picture.
+        float from = 0.0F, to = 1.0F;
+        const auto clip = [&](float start, float step, float limit) {
+            constexpr float kBeyond = 4.0F;  // [pixels]
+            if (step == 0.0F) {
+                if (start < -kBeyond || start > limit + kBeyond) to = -1.0F;
+                return;
+            }
+            const float s = (-kBeyond - start) / step, t = (limit + kBeyond - start) / step;
+            from = std::max(from, std::min(s, t));
+            to = std::min(to, std::max(s, t));
+        };
+        clip(ax, dx, view.size[0]);
+        clip(ay, dy, view.size[1]);
+        if (!(from <= to)) return;
+        // Boxes around points of the line, so close that they leave nothing out.
+        constexpr float kStep = 4.0F, kAround = 0.5F * kStep + 1.0F;  // [pixels]
+        const int steps = static_cast<int>(std::max(std::abs(dx), std::abs(dy)) * (to - from) / kStep) + 1;
+        for (int i = 0; i <= steps; ++i) {
+            const float share = from + (to - from) * (static_cast<float>(i) / static_cast<float>(steps));
+            mark_around(ax + share * dx, ay + share * dy, kAround);
+        }
+    }
+
+    void mark_around(float x, float y, float around) {
+        const auto tile = [](float at, int limit) {
+            return std::clamp(static_cast<int>(std::floor(at / kTile)), 0, limit - 1);
+        };
+        for (int row = tile(y - around, rows_); row <= tile(y + around, rows_); ++row) {
+            for (int column = tile(x - around, columns_); column <= tile(x + around, columns_); ++column)
+                mark(column, row);
+        }
+    }
+
     void mark(int column, int row) { busy_[place(column, row)] = 1; }
 
     FrameSize size_;
@@ -117,8 +163,8 @@ std::vector<PixelBox> busy_tiles(const std::vector<std::uint8_t>& rgba, FrameSiz
                                  const TableMesh& table, const View& view) {
     Tiles tiles(size);
     tiles.look_at(rgba);
-    tiles.look_at(table.solid, view);
-    tiles.look_at(table.blended, view);
+    tiles.look_at(find_edges(table).edges, view);
+    tiles.look_at_chalk(table.blended, view);
     return tiles.boxes();
 }
 

@@ -10,9 +10,9 @@
 
 namespace carom::render {
 
-/// Boxes of tiles that have an edge, or a texture with contrast, or a triangle that may lie between the samples. In all other tiles a pixel
-/// differs from each of its neighbours by few levels, so that no place within it differs by more.
-/// @param rgba a picture with one sample in the middle of each pixel. Its alpha tells cloth from the rest.
+/// Boxes outside of which one sample in the middle of a pixel is as good as many: no edge or line of the table passes within a pixel, and each pixel
+/// differs from its neighbours by few levels. (A wall that cuts into another one, the border of a hole and grain are seen by their contrast.)
+/// @param rgba a picture with one such sample. Its alpha tells cloth from the rest.
 std::vector<PixelBox> busy_tiles(const std::vector<std::uint8_t>& rgba, FrameSize size,
                                  const TableMesh& table, const View& view);
 
