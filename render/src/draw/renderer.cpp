@@ -29,13 +29,8 @@ struct Renderer::Impl {
     std::unique_ptr<StaticLayer> table_layer;
     std::vector<std::uint8_t> glyphs = glyph_atlas();
     GLuint view_buffer = 0;
-    // Two images are used alternately, so that read_previous() has the one before the last.
-    struct Target {
-        Image image;
-        std::shared_ptr<const DrawnPicture> shows = std::make_shared<DrawnPicture>();
-    };
-    std::array<Target, 2> targets;
-    std::size_t current = 0;  // the target of the last draw()
+    Image image;                                                                   // the last draw()
+    std::shared_ptr<const DrawnPicture> shows = std::make_shared<DrawnPicture>();  // what is in it
     FrameSize size{0, 0};
     std::shared_ptr<const TableMesh> table;  // the mesh that the static layer shows
     Camera camera;
@@ -55,10 +50,8 @@ struct Renderer::Impl {
     void resize(FrameSize wanted) {
         if (wanted == size) return;
         if (wanted.width < 1 || wanted.height < 1) throw RenderError("an image needs at least one pixel");
-        for (Target& target : targets) {
-            target.image.resize(wanted);
-            target.shows = std::make_shared<DrawnPicture>();
-        }
+        image.resize(wanted);
+        shows = std::make_shared<DrawnPicture>();
         size = wanted;
     }
 
@@ -104,18 +97,16 @@ struct Renderer::Impl {
         const View view = make_view(list.camera, *list.table);
         resize(list.camera.size);
         draw_table(list, view);
-        current = 1 - current;
-        Target& target = targets[current];
         auto next = std::make_shared<DrawnPicture>();
         next->table = drawn_table;
         next->balls = visible_balls(list, cloth);
         next->shapes = drawn_shapes(list);
         if (camera_moves) next->edges = edges_to_smooth(list, view);
-        std::vector<PixelBox> boxes = differing_boxes(*target.shows, *next, size);
+        std::vector<PixelBox> boxes = differing_boxes(*shows, *next, size);
         const Inside redrawn = inside(*next, boxes, size);
-        copy_boxes(table_layer->picture().rgba, boxes, target.image);
-        paint(*next, redrawn, Canvas(target.image, table_layer->picture(), view), list.table->origin);
-        target.shows = std::move(next);
+        copy_boxes(table_layer->picture().rgba, boxes, image);
+        paint(*next, redrawn, Canvas(image, table_layer->picture(), view), list.table->origin);
+        shows = std::move(next);
     }
 
     // Paints what a picture shows over the table, as far as it is to be redrawn.
@@ -153,14 +144,14 @@ struct Renderer::Impl {
         return edges;
     }
 
-    void read(const Target& target, Image& image, std::shared_ptr<const DrawnPicture>& shows) {
-        if (!(image.size == size)) shows.reset();
-        image.resize(size);
-        copy_boxes(target.image.rgbx, differing_boxes(shows ? *shows : DrawnPicture{}, *target.shows, size),
-                   image);
-        shows = target.shows;
-        if (const auto& smooth = target.shows->edges)
-            smooth_edges(image, smooth->table->edges, smooth->view, smooth->skip);
+    void read(Image& copy, std::shared_ptr<const DrawnPicture>& copy_shows) const {
+        if (!(copy.size == size)) copy_shows.reset();
+        copy.resize(size);
+        copy_boxes(image.rgbx, differing_boxes(copy_shows ? *copy_shows : DrawnPicture{}, *shows, size),
+                   copy);
+        copy_shows = shows;
+        if (const auto& smooth = shows->edges)
+            smooth_edges(copy, smooth->table->edges, smooth->view, smooth->skip);
     }
 };
 
@@ -176,19 +167,13 @@ void Renderer::on_table(std::function<void(int, int)> pass) {
     impl_->on_table = std::move(pass);
 }
 
-void Renderer::finish() {}
-
 void Renderer::read(Image& image) {
     std::shared_ptr<const DrawnPicture> nothing;
-    impl_->read(impl_->targets[impl_->current], image, nothing);
+    impl_->read(image, nothing);
 }
 
 void Renderer::read(KeptImage& image) {
-    impl_->read(impl_->targets[impl_->current], image.image_, image.shows_);
-}
-
-void Renderer::read_previous(KeptImage& image) {
-    impl_->read(impl_->targets[1 - impl_->current], image.image_, image.shows_);
+    impl_->read(image.image_, image.shows_);
 }
 
 }  // namespace carom::render

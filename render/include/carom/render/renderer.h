@@ -20,26 +20,18 @@ class Renderer {
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// Starts to draw the list. If table and camera are unchanged, only the parts that changed are redrawn; the
+    /// Draws the list. If table and camera are unchanged, only the parts that changed are redrawn; the
     /// pixels are the same as those of a complete drawing.
     void draw(const DrawList& list);
 
-    /// Sets a function that is called after every finished pass over the table; it may throw to stop. With an
-    /// empty function, which is the default, the renderer does not wait for each pass.
+    /// Sets a function that is called after every finished pass over the table; it may throw to stop. By default it is empty.
     void on_table(std::function<void(int done, int total)> pass);
-
-    /// Waits until the last draw() is finished, so that a caller can measure its time.
-    void finish();
 
     /// Copies the pixels of the last draw().
     void read(Image& image);
 
     /// The same, but copies only the pixels that may differ from those in the image.
     void read(KeptImage& image);
-
-    /// Copies the pixels of the draw() before the last one, while the last one continues in the threads of the
-    /// driver. Requires two earlier draws of the same size.
-    void read_previous(KeptImage& image);
 
   private:
     struct Impl;
