@@ -1,4 +1,4 @@
-// The mean of several pictures in linear light.
+// The mean of several pictures in linear light, in a part of a picture.
 #pragma once
 
 #include <cstddef>
@@ -12,19 +12,24 @@ namespace carom::render {
 class MeanPicture {
   public:
     /// @param rgba the first of the pictures, four bytes a pixel; it becomes the mean. It must outlive this object.
-    MeanPicture(std::vector<std::uint8_t>& rgba, int width)
-        : rgba_(rgba), row_(static_cast<std::size_t>(width) * 4), beyond_(rgba.size(), 0.0F) {}
+    /// @param boxes where the others count, none of them twice; elsewhere the mean is the first picture
+    MeanPicture(std::vector<std::uint8_t>& rgba, int width, std::vector<PixelBox> boxes);
 
-    /// Adds the boxes of one more picture of the same size: the same boxes each time. Elsewhere the mean is the first picture.
-    void add(const std::vector<std::uint8_t>& rgba, const std::vector<PixelBox>& boxes);
+    /// One more picture of the same size.
+    void add(const std::vector<std::uint8_t>& rgba);
 
     /// Turns the first picture into the mean of all: of radiance, and of alpha as it is.
     void finish();
 
   private:
+    // Calls at(byte, sum) for every pixel of the boxes, with the places of its first byte and of its sums.
+    template <class At>
+    void each_pixel(const At& at) const;
+
     std::vector<std::uint8_t>& rgba_;
-    std::size_t row_;            // [bytes]
-    std::vector<float> beyond_;  // sum of what the others have more than the first one
+    std::size_t row_;  // [bytes]
+    std::vector<PixelBox> boxes_;
+    std::vector<float> beyond_;  // sum of what the others have more than the first one; box after box
     int count_ = 1;
 };
 

@@ -189,13 +189,13 @@ void StaticLayer::draw(const TableMesh& table, const View& view, FrameSize size,
         }
     };
     each_row([&](std::size_t first, std::size_t count) { std::fill_n(begin.data() + first, count, 1.0F); });
-    MeanPicture mean(picture_.rgba, size.width);
+    MeanPicture mean(picture_.rgba, size.width, busy);
     std::vector<std::uint8_t> rgba;
     for (int pass = 1; pass < samples; ++pass) {
         // The steps of the R2 sequence are 1 / p and 1 / p^2, with the plastic number p.
         draw_parts(r2(pass, 0.75487766624669276), r2(pass, 0.56984029099805327), begin.data());
         read_color(rgba);
-        mean.add(rgba, busy);
+        mean.add(rgba);
         if (pass < picture_.depth_count) {
             std::vector<float>& kept = picture_.depths[static_cast<std::size_t>(pass)];
             kept = picture_.depths[0];
