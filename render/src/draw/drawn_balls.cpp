@@ -1,7 +1,10 @@
 #include "draw/drawn_balls.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -65,6 +68,15 @@ PixelBox whole(FrameSize size) {
     return {0, 0, size.width, size.height};
 }
 
+// The pixels between two places, and a soft edge around them.
+PixelBox clipped(const Vec2& low, const Vec2& high, FrameSize size) {
+    const auto inside = [](double value, int limit) {
+        return static_cast<int>(std::clamp(value, 0.0, double(limit)));
+    };
+    return {inside(low.x() - 2.0, size.width), inside(low.y() - 2.0, size.height),
+            inside(high.x() + 3.0, size.width), inside(high.y() + 3.0, size.height)};
+}
+
 // Pixels that show a place within `reach` of the centre on either side, `down` below it and a radius above; the whole image if part of
 // that is behind the eye.
 PixelBox box_around_ball(const DrawBall& ball, const Camera& camera, double reach, double down) {
@@ -78,11 +90,48 @@ PixelBox box_around_ball(const DrawBall& ball, const Camera& camera, double reac
         low = low.cwiseMin(*pixel);
         high = high.cwiseMax(*pixel);
     }
-    const auto inside = [](double value, int limit) {
-        return static_cast<int>(std::clamp(value, 0.0, double(limit)));
+    return clipped(low, high, camera.size);
+}
+
+// Pixels that a disc with these two radii may cover, as far as it is in front of the eye.
+PixelBox box_of_disc(const Vec3& center, const Vec3& right, const Vec3& up, const Camera& camera) {
+    constexpr double kNear = 0.01;  // [m]
+    constexpr int kCorners = 8;
+    std::array<Vec3, kCorners> corners;  // of an octagon around it
+    for (int i = 0; i < kCorners; ++i) {
+        const double angle = (i + 0.5) * std::numbers::pi / 4.0, out = 1.0823922;  // 1 / cos(pi / 8)
+        corners[static_cast<std::size_t>(i)] =
+            center + out * (std::cos(angle) * right + std::sin(angle) * up);
+    }
+    Vec2 low(1e9, 1e9), high(-1e9, -1e9);
+    const auto add = [&](const Vec3& corner) {
+        const std::optional<Vec2> pixel = camera.project(corner);
+        if (!pixel) return;
+        low = low.cwiseMin(*pixel);
+        high = high.cwiseMax(*pixel);
     };
-    return {inside(low.x() - 2.0, all.x1), inside(low.y() - 2.0, all.y1), inside(high.x() + 3.0, all.x1),
-            inside(high.y() + 3.0, all.y1)};
+    for (std::size_t i = 0; i < kCorners; ++i) {
+        const Vec3 &a = corners[i], &b = corners[(i + 1) % kCorners];
+        const double from = camera.depth(a) - kNear, to = camera.depth(b) - kNear;
+        if (from >= 0.0) add(a);
+        if ((from < 0.0) != (to < 0.0)) add(a + (1e-9 + from / (from - to)) * (b - a));
+    }
+    if (!(low.x() <= high.x())) return {0, 0, 0, 0};
+    return clipped(low, high, camera.size);
+}
+
+// The same for a ball around the centre: the disc faces the eye.
+PixelBox box_of_sphere(const Vec3& center, double radius, const Camera& camera) {
+    const Vec3 to_eye = camera.eye - center;
+    const double distance = to_eye.norm();
+    if (distance <= 1.01 * radius) return whole(camera.size);
+    const double silhouette = radius * distance / std::sqrt(distance * distance - radius * radius);
+    Vec3 right = camera.image_up().cross(to_eye);
+    // The eye straight above or below the centre: any direction will do.
+    if (right.norm() < 1e-9 * distance) right = camera.right();
+    right.normalize();
+    const Vec3 up = to_eye.cross(right) / distance;
+    return box_of_disc(center, silhouette * right, silhouette * up, camera);
 }
 
 // Pixels that the ball and its shadow may cover.
@@ -128,8 +177,12 @@ std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth
         if (box.x1 <= box.x0 || box.y1 <= box.y0) continue;
         BallInstance instance = make_instance(ball, place_of(ball, *list.table), origin, distance);
         add_neighbours(instance, ball, list.balls);
-        const PixelBox body = box_around_ball(ball, list.camera, ball.radius, ball.radius);
-        balls.push_back({instance, box, body, !ball.in_pocket && cloth.all_cloth(box)});
+        const double reach = shadow_reach(ball) * ball.radius;
+        const Vec3 below(ball.center.x(), ball.center.y(), 0.0);
+        const PixelBox body = box_of_sphere(ball.center, ball.radius, list.camera),
+                       shadow = box_of_disc(below, Vec3(reach, 0.0, 0.0), Vec3(0.0, reach, 0.0), list.camera),
+                       beside = box_of_sphere(ball.center, 2.15 * ball.radius, list.camera);
+        balls.push_back({instance, box, body, shadow, beside, !ball.in_pocket && cloth.all_cloth(box)});
     }
     // Balls are drawn from far to near, so that the soft edges of near balls blend over the far ones.
     std::stable_sort(balls.begin(), balls.end(), [](const DrawnBall& a, const DrawnBall& b) {

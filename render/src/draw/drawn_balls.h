@@ -37,6 +37,8 @@ struct DrawnBall {
     BallInstance instance;
     PixelBox box;        ///< pixels that the ball and its shadow may cover
     PixelBox body;       ///< those that the ball may cover
+    PixelBox shadow;     ///< those that its shadow on the cloth may cover
+    PixelBox beside;     ///< those of what stands around it and is darkened
     bool plain = false;  ///< its box shows only cloth: nothing hides it
 
     bool operator==(const DrawnBall&) const = default;

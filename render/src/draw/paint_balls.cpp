@@ -160,8 +160,8 @@ void paint_shadow_beside(const Canvas& canvas, const DrawnBall& ball, float stre
     const float *center = ball.instance.center_radius, *eye = canvas.view().eye;
     const Vec from_ball{all(eye[0] - center[0]), all(eye[1] - center[1]), all(eye[2] - center[2])};
     const float eye_z = eye[2], per_radius = 1.0F / center[3];
-    canvas.each(ball.box, [=, background = canvas.background(), brush = canvas.brush()](
-                              std::size_t first, int count, const Vec& ray) {
+    canvas.each(ball.beside, [=, background = canvas.background(), brush = canvas.brush()](
+                                 std::size_t first, int count, const Vec& ray) {
         const Vec way = ray * background.distance(first, count), away = (from_ball + way) * all(per_radius);
         const Floats near = clamp(1.0F - (dot(away, away) - 1.0F) * (1.0F / 3.4F), 0.0F, 1.0F);
         if (!any(near > 0.0F)) return;
@@ -193,8 +193,8 @@ void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
     const float eye_z = view.eye[2], from_x = view.eye[0] - center[0], from_y = view.eye[1] - center[1];
     const float of_sky = 0.55F / (lift * lift), of_lamp = 0.55F / lift;
     const bool plain = ball.plain;
-    canvas.each(ball.box, [=, background = canvas.background(), brush = canvas.brush()](
-                              std::size_t first, int count, const Vec& ray) {
+    canvas.each(ball.shadow, [=, background = canvas.background(), brush = canvas.brush()](
+                                 std::size_t first, int count, const Vec& ray) {
         const Floats way = -eye_z / ray.z;  // to the plane of the cloth
         const Floats px = (ray.x * way + from_x) * unit, py = (ray.y * way + from_y) * unit;
         // Share of the sky hidden by a sphere that rests on a plane: (1 + d^2)^(-3/2) at d radii from the contact. The polynomial differs by less
