@@ -1,4 +1,4 @@
-// The patterns of balls as shaders/ball.frag draws them, for pictures that are wrapped around a sphere.
+// The patterns of balls as draw/paint_balls.cpp paints them, for pictures that are wrapped around a sphere.
 #include "carom/render/ball_texture.h"
 
 #include <algorithm>
