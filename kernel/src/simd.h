@@ -360,5 +360,19 @@ CAROM_INLINE void transpose(Pack<4>& a, Pack<4>& b, Pack<4>& c, Pack<4>& d) {
 
 #endif
 
+// Lane kLane of eight in all lanes.
+#if defined(__AVX512F__)
+template <int kLane>
+CAROM_INLINE Pack<8> broadcast_lane(Pack<8> v) {
+    return __builtin_shufflevector(v, v, kLane, kLane, kLane, kLane, kLane, kLane, kLane, kLane);
+}
+#else
+template <int kLane>
+CAROM_INLINE Pack<8> broadcast_lane(Pack<8> v) {
+    const Pack<4> all = broadcast_lane<kLane % 4>(kLane < 4 ? v.lo : v.hi);
+    return {all, all};
+}
+#endif
+
 }  // namespace
 }  // namespace carom::kernel

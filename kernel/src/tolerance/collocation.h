@@ -26,12 +26,6 @@ constexpr int kMostSweeps = 24;
 // The error of the rows (EndRows) from which on they are computed anew, as a share of the tolerance.
 constexpr double kRowsGoal = 0.1;
 
-// A variable at the N nodes of a stretch.
-template <int N>
-struct Lanes {
-    Pack<4> v[N / 4];
-};
-
 // The constants of one impact.
 struct Model {
     double mu_b, mu_s, sigma, kappa;
@@ -71,152 +65,158 @@ struct Stretch {
 
 // The sum over j of column j of the table times f_j.
 template <int N>
-CAROM_INLINE Pack<4> combine(const double* table, int row, const Lanes<N>& f) {
-    const auto column = [&](int j) { return load<4>(table + N * j + 4 * row); };
-    Pack<4> total = (column(0) * broadcast_lane<0>(f.v[0]) + column(1) * broadcast_lane<1>(f.v[0])) +
-                    (column(2) * broadcast_lane<2>(f.v[0]) + column(3) * broadcast_lane<3>(f.v[0]));
+CAROM_INLINE Pack<N> combine(const double* table, Pack<N> f) {
+    const auto column = [&](int j) { return load<N>(table + N * j); };
+    Pack<N> total = (column(0) * broadcast_lane<0>(f) + column(1) * broadcast_lane<1>(f)) +
+                    (column(2) * broadcast_lane<2>(f) + column(3) * broadcast_lane<3>(f));
     if constexpr (N == 8) {
-        total += (column(4) * broadcast_lane<0>(f.v[1]) + column(5) * broadcast_lane<1>(f.v[1])) +
-                 (column(6) * broadcast_lane<2>(f.v[1]) + column(7) * broadcast_lane<3>(f.v[1]));
+        total += (column(4) * broadcast_lane<4>(f) + column(5) * broadcast_lane<5>(f)) +
+                 (column(6) * broadcast_lane<6>(f) + column(7) * broadcast_lane<7>(f));
     }
     return total;
 }
 
 template <int N>
-CAROM_INLINE double dot(const double* weights, const Lanes<N>& f) {
-    Pack<4> total = load<4>(weights) * f.v[0];
-    if constexpr (N == 8) total += load<4>(weights + 4) * f.v[1];
-    return sum(total);
+CAROM_INLINE double dot(const double* weights, Pack<N> f) {
+    return sum(load<N>(weights) * f);
 }
 
 // Rows that integrate a force over compression and over restitution, for an end of compression at t_c = 2 p_c/p - 1.
 template <int N>
 struct EndRows {
     double t;  // the t_c of these rows
-    Lanes<N> before, before_late, after_late;
+    Pack<N> before, before_late, after_late;
 };
 
 template <int N>
-CAROM_INLINE Lanes<N> row_at(const double* table, double t) {
-    Lanes<N> row;
-    const Pack<4> T = broadcast<4>(t);
-    for (int k = 0; k < N / 4; ++k) {
-        const auto coefficient = [&](int power) { return load<4>(table + N * power + 4 * k); };
-        const Pack<4> T2 = T * T;
-        Pack<4> value = (coefficient(0) + coefficient(1) * T) + (coefficient(2) + coefficient(3) * T) * T2;
-        if constexpr (N == 8) {
-            value += ((coefficient(4) + coefficient(5) * T) + (coefficient(6) + coefficient(7) * T) * T2) *
-                     (T2 * T2);
-        }
-        row.v[k] = value;
+CAROM_INLINE Pack<N> row_at(const double* table, double t, double unit) {
+    const Pack<N> T = broadcast<N>(t), T2 = T * T;
+    const auto coefficient = [&](int power) { return load<N>(table + N * power); };
+    Pack<N> value = (coefficient(0) + coefficient(1) * T) + (coefficient(2) + coefficient(3) * T) * T2;
+    if constexpr (N == 8) {
+        value += ((coefficient(4) + coefficient(5) * T) + (coefficient(6) + coefficient(7) * T) * T2) * (T2 * T2);
     }
-    return row;
+    return value * unit;
 }
 
+// The rows act on a force in units of `unit`.
 template <int N>
-CAROM_INLINE void set_rows(double t, EndRows<N>& rows) {
+CAROM_INLINE void set_rows(double t, double unit, EndRows<N>& rows) {
     rows.t = t;
-    rows.before = row_at<N>(Gauss<N>::before[0], t);
-    rows.before_late = row_at<N>(Gauss<N>::before_late[0], t);
-    rows.after_late = row_at<N>(Gauss<N>::after_late[0], t);
-}
-
-template <int N>
-CAROM_INLINE double dot(const Lanes<N>& weights, const Lanes<N>& f) {
-    Pack<4> total = weights.v[0] * f.v[0];
-    if constexpr (N == 8) total += weights.v[1] * f.v[1];
-    return sum(total);
+    rows.before = row_at<N>(Gauss<N>::before[0], t, unit);
+    rows.before_late = row_at<N>(Gauss<N>::before_late[0], t, unit);
+    rows.after_late = row_at<N>(Gauss<N>::after_late[0], t, unit);
 }
 
 // Int_0^1 (1 - tau) f dtau
 template <int N>
-CAROM_INLINE double late_share(const Lanes<N>& f) {
-    Lanes<N> late;
-    for (int k = 0; k < N / 4; ++k) late.v[k] = (1.0 - load<4>(Gauss<N>::nodes + 4 * k)) * f.v[k];
-    return dot<N>(Gauss<N>::weights, late);
+CAROM_INLINE double late_share(Pack<N> f) {
+    return dot<N>(Gauss<N>::weights, (1.0 - load<N>(Gauss<N>::nodes)) * f);
 }
 
-// The impulse at which the stretch ends, by quadrature of the cloth force g_b. Compression ends where v = 0,
+// The impulse at which the stretch ends, by quadrature of the cloth force mu_b mu_s g_b. Compression ends where v = 0,
 // restitution where the work of the normal impulse is e_b^2 times that of compression.
 template <int N, End kEnd>
-CAROM_INLINE void find_end(const Model& m, const State& start, const Lanes<N>& g_b, const EndRows<N>& rows,
-                           Stretch& stretch) {
+CAROM_INLINE void find_end(const Model& m, const State& start, Pack<N> g_b, const EndRows<N>& rows, Stretch& stretch) {
     using G = Gauss<N>;
+    const double unit = m.mu_b * m.mu_s;
     if constexpr (kEnd == End::kWhole) {
-        const double p_c = 1.0 / (2.0 - dot<N>(rows.before, g_b));
-        const double gain = 1.0 / (1.0 - dot<N>(rows.after_late, g_b));
-        const double work = p_c * (1.0 - p_c * (1.0 - dot<N>(rows.before_late, g_b)));
+        const double p_c = 1.0 / (2.0 - sum(rows.before * g_b));
+        const double gain = 1.0 / (1.0 - sum(rows.after_late * g_b));
+        const double work = p_c * (1.0 - p_c * (1.0 - sum(rows.before_late * g_b)));
         stretch.p_c = p_c;
         stretch.h = p_c + m.e_b * square_root(work * gain);
     } else if constexpr (kEnd == End::kToZero) {
-        stretch.h = -start.v / (2.0 - dot<N>(G::weights, g_b));
+        stretch.h = -start.v / (2.0 - unit * dot<N>(G::weights, g_b));
     } else if constexpr (kEnd == End::kToWork) {
-        const double lost = 1.0 - late_share<N>(g_b);
+        const double lost = 1.0 - unit * late_share<N>(g_b);
         stretch.h =
             2.0 * stretch.work / (start.v + square_root(start.v * start.v + 4.0 * lost * stretch.work));
     }
 }
 
+// The values at the nodes. Forces are in units of mu_b, those of the cloth in units of mu_b mu_s.
 template <int N>
 struct Nodes {
-    Lanes<N> x, z, a, b;          // the slips
-    Lanes<N> root_s, root_u;      // 1/|s|, 1/|u|
-    Lanes<N> xi, zeta, g_a, g_b;  // the forces
+    Pack<N> x, z, a, b;          // the slips
+    Pack<N> root_s, root_u;      // 1/|s|, 1/|u|
+    Pack<N> xi, zeta, g_a, g_b;  // the forces
 };
 
 // Forces at the nodes. The reciprocal roots are computed afresh (kExact), or those of the sweep before are corrected
-// by one cubic Newton step. Returns the squares of their relative errors before the correction.
+// by one cubic Newton step: T f, f = 15/8 - 5/4 q + 3/8 q^2 with q = |.|^2 T^2. Returns the squares of their relative
+// errors before the correction. Every sweep waits for this, so the slips are scaled before the factor is known.
 template <int N, bool kExact>
-CAROM_INLINE Pack<4> forces(const Model& m, Nodes<N>& n) {
-    Pack<4> worst{};
-    for (int k = 0; k < N / 4; ++k) {
-        const Pack<4> ss = n.x.v[k] * n.x.v[k] + n.z.v[k] * n.z.v[k],
-                      uu = n.a.v[k] * n.a.v[k] + n.b.v[k] * n.b.v[k];
-        if constexpr (kExact) {
-            n.root_s.v[k] = 1.0 / square_root(ss);
-            n.root_u.v[k] = 1.0 / square_root(uu);
-        } else {
-            const Pack<4> rs = 1.0 - ss * (n.root_s.v[k] * n.root_s.v[k]);
-            const Pack<4> ru = 1.0 - uu * (n.root_u.v[k] * n.root_u.v[k]);
-            n.root_s.v[k] += n.root_s.v[k] * (rs * (0.5 + 0.375 * rs));
-            n.root_u.v[k] += n.root_u.v[k] * (ru * (0.5 + 0.375 * ru));
-            worst += rs * rs + ru * ru;
-        }
-        n.xi.v[k] = (m.mu_b * n.root_s.v[k]) * n.x.v[k];
-        n.zeta.v[k] = (m.mu_b * n.root_s.v[k]) * n.z.v[k];
-        const Pack<4> t = (m.mu_s * n.root_u.v[k]) * n.zeta.v[k];
-        n.g_a.v[k] = t * n.a.v[k];
-        n.g_b.v[k] = t * n.b.v[k];
+CAROM_INLINE Pack<N> forces(Nodes<N>& n) {
+    Pack<N> worst{};
+    Pack<N> e_a, e_b;
+    if constexpr (kExact) {
+        n.root_s = 1.0 / square_root(n.x * n.x + n.z * n.z);
+        n.root_u = 1.0 / square_root(n.a * n.a + n.b * n.b);
+        n.xi = n.root_s * n.x;
+        n.zeta = n.root_s * n.z;
+        e_a = n.root_u * n.a;
+        e_b = n.root_u * n.b;
+    } else {
+        const Pack<N> x = n.x * n.root_s, z = n.z * n.root_s, a = n.a * n.root_u, b = n.b * n.root_u;
+        const Pack<N> s = x * x + z * z, u = a * a + b * b;
+        const Pack<N> by_s = (1.875 - 1.25 * s) + 0.375 * (s * s), by_u = (1.875 - 1.25 * u) + 0.375 * (u * u);
+        n.root_s = n.root_s * by_s;
+        n.root_u = n.root_u * by_u;
+        n.xi = x * by_s;
+        n.zeta = z * by_s;
+        e_a = a * by_u;
+        e_b = b * by_u;
+        worst = (1.0 - s) * (1.0 - s) + (1.0 - u) * (1.0 - u);
     }
+    n.g_a = n.zeta * e_a;
+    n.g_b = n.zeta * e_b;
     return worst;
 }
 
 // The slips at the nodes from the forces there. Returns the squares of their changes as shares of |s| and of |u|, the
 // latter weighted by the largest effect that it can have.
 template <int N>
-CAROM_INLINE Pack<4> slips(const Model& m, const State& start, double h, Nodes<N>& n) {
-    Pack<4> change{};
-    Lanes<N> dx, dz, da, db;
-    for (int k = 0; k < N / 4; ++k) {
-        dx.v[k] = n.g_a.v[k] - 7.0 * n.xi.v[k];
-        dz.v[k] = 2.5 * n.g_b.v[k] - 5.0 * n.zeta.v[k];
-        da.v[k] = n.xi.v[k] - m.kappa * n.g_a.v[k];
-        db.v[k] = 1.0 - (m.sigma * n.zeta.v[k] + m.kappa * n.g_b.v[k]);
-    }
-    for (int k = 0; k < N / 4; ++k) {
-        const Pack<4> x = start.x + h * combine<N>(Gauss<N>::integral[0], k, dx);
-        const Pack<4> z = start.z + h * combine<N>(Gauss<N>::integral[0], k, dz);
-        const Pack<4> a = start.a + h * combine<N>(Gauss<N>::integral[0], k, da);
-        const Pack<4> b = start.b + h * combine<N>(Gauss<N>::integral[0], k, db);
-        const Pack<4> ex = (x - n.x.v[k]) * n.root_s.v[k], ez = (z - n.z.v[k]) * n.root_s.v[k];
-        const Pack<4> ea = (a - n.a.v[k]) * n.root_u.v[k], eb = (b - n.b.v[k]) * n.root_u.v[k];
-        change += (ex * ex + ez * ez) + (m.mu_s * m.mu_s) * (ea * ea + eb * eb);
-        n.x.v[k] = x;
-        n.z.v[k] = z;
-        n.a.v[k] = a;
-        n.b.v[k] = b;
-    }
+CAROM_INLINE Pack<N> slips(const Model& m, const State& start, double h, Nodes<N>& n) {
+    const Pack<N> H = broadcast<N>(h);
+    const Pack<N> xi = combine<N>(Gauss<N>::integral[0], n.xi), zeta = combine<N>(Gauss<N>::integral[0], n.zeta);
+    const Pack<N> g_a = combine<N>(Gauss<N>::integral[0], n.g_a), g_b = combine<N>(Gauss<N>::integral[0], n.g_b);
+    const double cloth = m.mu_b * m.mu_s;
+    const Pack<N> x = (start.x - (H * (7.0 * m.mu_b)) * xi) + (H * cloth) * g_a;
+    const Pack<N> z = (start.z - (H * (5.0 * m.mu_b)) * zeta) + (H * (2.5 * cloth)) * g_b;
+    const Pack<N> a = (start.a + (H * m.mu_b) * xi) - (H * (m.kappa * cloth)) * g_a;
+    const Pack<N> b = (start.b + H * load<N>(Gauss<N>::nodes) - (H * (m.sigma * m.mu_b)) * zeta) -
+                      (H * (m.kappa * cloth)) * g_b;
+    const Pack<N> dx = x - n.x, dz = z - n.z, da = a - n.a, db = b - n.b;
+    const Pack<N> change = (dx * dx + dz * dz) * (n.root_s * n.root_s) +
+                           (m.mu_s * m.mu_s) * ((da * da + db * db) * (n.root_u * n.root_u));
+    n.x = x;
+    n.z = z;
+    n.a = a;
+    n.b = b;
     return change;
+}
+
+// First guess: the cloth slip goes straight, as if the normal impulse alone moved it, and where it is half way decides
+// about the cloth's force; the slip between the balls turns as the forces of the start turn it. The end of a whole
+// impact is guessed with that cloth force.
+template <int N, End kEnd>
+CAROM_INLINE void guess(const Model& m, const State& start, double root_s, Stretch& stretch, Nodes<N>& n) {
+    const double e_x = root_s * start.x, e_z = root_s * start.z, xi = m.mu_b * e_x, zeta = m.mu_b * e_z;
+    const double half = start.b + 0.5 * stretch.h;
+    // The direction of a small cloth slip soon turns: it counts less.
+    const double by_u = m.mu_s / square_root((start.a * start.a + half * half) + 0.01);
+    const double g_a = (by_u * start.a) * zeta, g_b = (by_u * half) * zeta;
+    const double x = g_a - 7.0 * xi, z = 2.5 * g_b - 5.0 * zeta;
+    const double turn = (e_x * z - e_z * x) * (0.5 * root_s);
+    const double x2 = 7.0 * (turn * zeta), z2 = -5.0 * (turn * xi);
+    const double a = xi - m.kappa * g_a, b = 1.0 - (m.sigma * zeta + m.kappa * g_b);
+    if constexpr (kEnd == End::kWhole) stretch.h += (0.5 * stretch.h) * g_b;
+    const Pack<N> p = stretch.h * load<N>(Gauss<N>::nodes);
+    n.x = start.x + p * (x + p * x2);
+    n.z = start.z + p * (z + p * z2);
+    n.a = start.a + p * a;
+    n.b = start.b + p * b;
 }
 
 // Adds the impulses of a stretch to the state and to the total.
@@ -241,63 +241,47 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
     using G = Gauss<N>;
     const State start = state;
     Nodes<N> n;
-    // First guess: the friction between the balls stays as at the start, and the cloth exerts no force.
-    const double share = m.mu_b * root_s;
-    const double xi0 = share * start.x, zeta0 = share * start.z;
-    for (int k = 0; k < N / 4; ++k) {
-        const Pack<4> p = stretch.h * load<4>(G::nodes + 4 * k);
-        n.x.v[k] = start.x - p * (7.0 * xi0);
-        n.z.v[k] = start.z - p * (5.0 * zeta0);
-        n.a.v[k] = start.a + p * xi0;
-        n.b.v[k] = start.b + p * (1.0 - m.sigma * zeta0);
-    }
-    forces<N, true>(m, n);
-    const double reach = 7.0 * m.mu_b * stretch.h;
+    guess<N, kEnd>(m, start, root_s, stretch, n);
+    forces<N, true>(n);
+    const double reach = 7.0 * m.mu_b * stretch.h, cloth = m.mu_b * m.mu_s;
     // A change of the slips leaves an error of contraction * change in the next forces, which act over `reach`.
-    Pack<4> tight = n.root_s.v[0] * n.root_s.v[0] + (m.mu_s * m.mu_s) * (n.root_u.v[0] * n.root_u.v[0]);
-    if constexpr (N == 8) {
-        tight += n.root_s.v[1] * n.root_s.v[1] + (m.mu_s * m.mu_s) * (n.root_u.v[1] * n.root_u.v[1]);
-    }
-    const double steep = sum(tight), slope = (reach * reach) * (reach * reach) * (steep * (1.0 / (N * N)));
-    const double end_slope = 40.0 * ((m.mu_b * m.mu_b) * (m.mu_s * m.mu_s));
+    const double steep = sum(n.root_s * n.root_s + (m.mu_s * m.mu_s) * (n.root_u * n.root_u)),
+                 slope = (reach * reach) * (reach * reach) * (steep * (1.0 / (N * N)));
+    const double end_slope = 40.0 * (cloth * cloth);
     bool converged = false;
-    double dh_before = 0.0, t_c = 2.0 / (1.0 + m.e_b) - 1.0;
+    double t_c = 2.0 / (1.0 + m.e_b) - 1.0;
     EndRows<N> rows;
-    if constexpr (kEnd == End::kWhole) set_rows<N>(t_c, rows);
+    if constexpr (kEnd == End::kWhole) set_rows<N>(t_c, cloth, rows);
     int k = 1;
     for (; k < kMostSweeps && !converged; ++k) {
         const double h = stretch.h;
-        const Pack<4> change = slips<N>(m, start, h, n);
+        const Pack<N> change = slips<N>(m, start, h, n);
         find_end<N, kEnd>(m, start, n.g_b, rows, stretch);
         // The rows follow the end of compression one sweep late, so that no sweep has to wait for them.
         if constexpr (kEnd == End::kWhole) {
-            if (absolute(t_c - rows.t) * m.mu_b * m.mu_s > stretch.row_goal) set_rows<N>(t_c, rows);
+            if (absolute(t_c - rows.t) * cloth > stretch.row_goal) set_rows<N>(t_c, cloth, rows);
             t_c = 2.0 * stretch.p_c / stretch.h - 1.0;
         }
-        const Pack<4> root = k < exact ? forces<N, true>(m, n) : forces<N, false>(m, n);
+        const Pack<N> root = k < exact ? forces<N, true>(n) : forces<N, false>(n);
         const double dh = stretch.h - h;
-        // The end is the fixed point of an iteration too, with a contraction of at most a few mu_s mu_b.
-        const double r = sum(root);
         // Many sweeps mean a contraction near 1: then the error that is left exceeds the last change.
         const double slow = 1.0 + 0.03125 * (k * k);
-        converged =
-            ((sum(change) + dh * dh * steep) * slope + (dh * dh + dh_before * dh_before) * end_slope) *
-                    slow <=
-                stretch.sweep_goal &&
-            r * r * r <= stretch.root_goal;
-        dh_before = dh;
+        // The end is the fixed point of an iteration too, with a contraction of at most a few mu_s mu_b.
+        converged = ((sum(change) + dh * dh * steep) * slope + dh * dh * end_slope) * slow <= stretch.sweep_goal &&
+                    all_below(root * root * root, stretch.root_goal);
     }
     stretch.sweeps += k;
     if (!converged) return false;
     find_end<N, kEnd>(m, start, n.g_b, rows, stretch);
-    const double h = stretch.h;
-    const double xi = h * dot<N>(G::weights, n.xi), zeta = h * dot<N>(G::weights, n.zeta);
-    const double g_a = h * dot<N>(G::weights, n.g_a), g_b = h * dot<N>(G::weights, n.g_b);
+    const double h = stretch.h, hb = h * m.mu_b, hg = h * cloth;
+    const double xi = hb * dot<N>(G::weights, n.xi), zeta = hb * dot<N>(G::weights, n.zeta);
+    const double g_a = hg * dot<N>(G::weights, n.g_a), g_b = hg * dot<N>(G::weights, n.g_b);
     const double tx = dot<N>(G::top, n.xi), tz = dot<N>(G::top, n.zeta), ta = dot<N>(G::top, n.g_a),
                  tb = dot<N>(G::top, n.g_b);
-    stretch.s_top = square_root(tx * tx + tz * tz);
-    stretch.g_top = square_root(ta * ta + tb * tb);
-    if constexpr (kEnd != End::kWhole) stretch.done = start.v * h + h * h * (1.0 - late_share<N>(n.g_b));
+    stretch.s_top = m.mu_b * square_root(tx * tx + tz * tz);
+    stretch.g_top = cloth * square_root(ta * ta + tb * tb);
+    if constexpr (kEnd != End::kWhole)
+        stretch.done = start.v * h + h * h * (1.0 - cloth * late_share<N>(n.g_b));
     add_stretch(m, {h, xi, zeta, g_a, g_b}, state, total);
     return true;
 }
