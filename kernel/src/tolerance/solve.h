@@ -246,7 +246,7 @@ inline bool solve_adaptive(const Problem& problem, Solution& solution) {
         Stretch stretch{run.asked, run.left, 0.0, 0.0, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0};
         State next = run.at;
         Impulses sum_next = run.total;
-        const int exact = run.shrink < 1.0 ? kMostSweeps : 3;
+        const int exact = run.shrink < 1.0 ? kMostSweeps : 1;
         bool ok;
         if (!run.last)
             ok = collocate<N, End::kFixed>(run.m, next, sum_next, stretch, run.root_s, exact);
