@@ -14,6 +14,7 @@
 #pragma once
 
 #include "frame.h"
+#include "loop_marks.h"
 #include "simd.h"
 #include "tolerance/gauss.h"
 
@@ -237,7 +238,7 @@ CAROM_INLINE void add_stretch(const Model& m, const Impulses& t, State& state, I
 // sweeps compute fresh roots, later ones correct those of the sweep before; `root_s` is 1/|s| at the start.
 template <int N, End kEnd>
 CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stretch& stretch, double root_s,
-                            int exact) {
+                            bool exact) {
     using G = Gauss<N>;
     const State start = state;
     Nodes<N> n;
@@ -254,6 +255,7 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
     if constexpr (kEnd == End::kWhole) set_rows<N>(t_c, cloth, rows);
     int k = 1;
     for (; k < kMostSweeps && !converged; ++k) {
+        CAROM_LOOP_BEGIN("sweep");
         const double h = stretch.h;
         const Pack<N> change = slips<N>(m, start, h, n);
         find_end<N, kEnd>(m, start, n.g_b, rows, stretch);
@@ -262,13 +264,14 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
             if (absolute(t_c - rows.t) * cloth > stretch.row_goal) set_rows<N>(t_c, cloth, rows);
             t_c = 2.0 * stretch.p_c / stretch.h - 1.0;
         }
-        const Pack<N> root = k < exact ? forces<N, true>(n) : forces<N, false>(n);
+        const Pack<N> root = exact ? forces<N, true>(n) : forces<N, false>(n);
         const double dh = stretch.h - h;
         // Many sweeps mean a contraction near 1: then the error that is left exceeds the last change.
         const double slow = 1.0 + 0.03125 * (k * k);
         // The end is the fixed point of an iteration too, with a contraction of at most a few mu_s mu_b.
         converged = ((sum(change) + dh * dh * steep) * slope + dh * dh * end_slope) * slow <= stretch.sweep_goal &&
                     all_below(root * root * root, stretch.root_goal);
+        CAROM_LOOP_END("sweep");
     }
     stretch.sweeps += k;
     if (!converged) return false;

@@ -246,7 +246,7 @@ inline bool solve_adaptive(const Problem& problem, Solution& solution) {
         Stretch stretch{run.asked, run.left, 0.0, 0.0, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0};
         State next = run.at;
         Impulses sum_next = run.total;
-        const int exact = run.shrink < 1.0 ? kMostSweeps : 1;
+        const bool exact = run.shrink < 1.0;
         bool ok;
         if (!run.last)
             ok = collocate<N, End::kFixed>(run.m, next, sum_next, stretch, run.root_s, exact);
@@ -271,7 +271,7 @@ CAROM_INLINE bool solve_whole(const Problem& problem, double guess, double root_
     Stretch stretch{guess, 0.0, 0.5, 0.0, kRowsGoal * problem.tolerance, goal.sweep, goal.root, 0.0, 0.0, 0};
     State state = problem.start;
     solution.total = {0.0, 0.0, 0.0, 0.0, 0.0};
-    const bool ok = collocate<N, End::kWhole>(problem.model, state, solution.total, stretch, root_s, 0);
+    const bool ok = collocate<N, End::kWhole>(problem.model, state, solution.total, stretch, root_s, false);
     solution.sweeps = stretch.sweeps;
     solution.method = N == 4 ? ToleranceMethod::kCollocation4 : ToleranceMethod::kCollocation8;
     return ok && resolved(problem.model, stretch, problem.tolerance);
