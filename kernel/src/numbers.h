@@ -14,7 +14,7 @@ inline double square_root(double x) {
 }
 
 inline double absolute(double x) {
-    return x < 0.0 ? -x : x;
+    return __builtin_fabs(x);
 }
 
 inline double largest(double a, double b) {
