@@ -155,6 +155,27 @@ CAROM_INLINE Wide wide_slips(const WideModel& m, const WideStart& start, Wide h,
     return change;
 }
 
+// As guess(). kWhole: the end of a whole impact is guessed too.
+template <int N, bool kWhole>
+CAROM_INLINE void wide_guess(const WideModel& m, const WideStart& start, Wide root_s, Wide& h, WideNodes<N>& n) {
+    const Wide e_x = root_s * start.x, e_z = root_s * start.z, xi = m.mu_b * e_x, zeta = m.mu_b * e_z;
+    const Wide half = start.b + 0.5 * h;
+    const Wide by_u = m.mu_s / square_root((start.a * start.a + half * half) + 0.01);
+    const Wide g_a = (by_u * start.a) * zeta, g_b = (by_u * half) * zeta;
+    const Wide x = g_a - 7.0 * xi, z = 2.5 * g_b - 5.0 * zeta;
+    const Wide turn = (e_x * z - e_z * x) * (0.5 * root_s);
+    const Wide x2 = 7.0 * (turn * zeta), z2 = -5.0 * (turn * xi);
+    const Wide a = xi - m.kappa * g_a, b = 1.0 - (m.sigma * zeta + m.kappa * g_b);
+    if constexpr (kWhole) h += (0.5 * h) * g_b;
+    for (int i = 0; i < N; ++i) {
+        const Wide p = h * Gauss<N>::nodes[i];
+        n.x[i] = start.x + p * (x + p * x2);
+        n.z[i] = start.z + p * (z + p * z2);
+        n.a[i] = start.a + p * a;
+        n.b[i] = start.b + p * b;
+    }
+}
+
 // As EndRows.
 template <int N>
 struct WideRows {
@@ -248,15 +269,7 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
     Wide h = 0.5 * (1.0 + m.e_b), t_c = 2.0 / (1.0 + m.e_b) - 1.0;
     WideRows<N> rows;
     wide_set_rows<N>(t_c, rows);
-    const Wide share = m.mu_b / square_root(start.x * start.x + start.z * start.z);
-    const Wide xi0 = share * start.x, zeta0 = share * start.z;
-    for (int i = 0; i < N; ++i) {
-        const Wide p = h * G::nodes[i];
-        n.x[i] = start.x - p * (7.0 * xi0);
-        n.z[i] = start.z - p * (5.0 * zeta0);
-        n.a[i] = start.a + p * xi0;
-        n.b[i] = start.b + p * (1.0 - m.sigma * zeta0);
-    }
+    wide_guess<N, true>(m, start, 1.0 / square_root(start.x * start.x + start.z * start.z), h, n);
     wide_forces<N, Roots::kFresh>(m, n);
     const Wide mu2 = m.mu_s * m.mu_s, reach2 = (7.0 * m.mu_b * h) * (7.0 * m.mu_b * h);
     Wide steep = {};
@@ -265,7 +278,6 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
                end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
     const double sweep_goal = 8.0 * tolerance * tolerance;
     const Wide root_goal = (0.05 * tolerance * tolerance) / (m.mu_b * m.mu_b);
-    Wide dh_before = {};
     WideMask open = wanted, finished = {};
     WideForces<N> kept = {};
     for (int k = 1; k < kMostSweeps && any(open); ++k) {
@@ -278,10 +290,9 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
         t_c = 2.0 * p_c / h_new - 1.0;
         h = h_new;
         const Wide r = wide_forces<N, Roots::kCarried>(m, n);
-        const Wide left = (change + dh * dh * steep) * slope + (dh * dh + dh_before * dh_before) * end_slope;
+        const Wide left = (change + dh * dh * steep) * slope + dh * dh * end_slope;
         const double slow = 1.0 + 0.03125 * (k * k);
         const WideMask now = open & (left * slow <= sweep_goal) & (r * r * r <= root_goal);
-        dh_before = dh;
         wide_keep<N>(now, n, kept);
         finished |= now;
         out.sweeps = select(now, broadcast<kWidth>(k + 1.0), out.sweeps);

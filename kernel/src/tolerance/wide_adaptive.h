@@ -53,20 +53,11 @@ CAROM_INLINE Wide wide_stretch_end(const WideStretch& w, WideMask open_end, cons
 
 template <int N>
 CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
-    using G = Gauss<N>;
     const WideModel& m = w.m;
     const WideMask open_end = w.to_zero | w.to_work;
     WideNodes<N> n;
     Wide h = w.h;
-    const Wide share = m.mu_b * w.root_s;
-    const Wide xi0 = share * w.start.x, zeta0 = share * w.start.z;
-    for (int i = 0; i < N; ++i) {
-        const Wide p = h * G::nodes[i];
-        n.x[i] = w.start.x - p * (7.0 * xi0);
-        n.z[i] = w.start.z - p * (5.0 * zeta0);
-        n.a[i] = w.start.a + p * xi0;
-        n.b[i] = w.start.b + p * (1.0 - m.sigma * zeta0);
-    }
+    wide_guess<N, false>(m, w.start, w.root_s, h, n);
     wide_forces<N, Roots::kFresh>(m, n);
     const Wide mu2 = m.mu_s * m.mu_s, reach2 = (7.0 * m.mu_b * h) * (7.0 * m.mu_b * h);
     Wide steep = {};
@@ -75,7 +66,6 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
                end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
     const double sweep_goal = 8.0 * w.tolerance * w.tolerance;
     const Wide root_goal = (0.05 * w.tolerance * w.tolerance) / (m.mu_b * m.mu_b);
-    Wide dh_before = {};
     WideMask open = w.wanted, finished = {};
     WideForces<N> kept = {};
     out.t.sweeps = broadcast<kWidth>(kMostSweeps);
@@ -84,16 +74,13 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
         const Wide h_new = wide_stretch_end<N>(w, open_end, n.g_b), dh = h_new - h;
         h = h_new;
         Wide r = {};
-        if (k < 3)
-            wide_forces<N, Roots::kFresh>(m, n);
-        else if (any(w.exact & open))
+        if (any(w.exact & open))
             r = wide_forces<N, Roots::kMixed>(m, n, w.exact);
         else
             r = wide_forces<N, Roots::kCarried>(m, n);
-        const Wide left = (change + dh * dh * steep) * slope + (dh * dh + dh_before * dh_before) * end_slope;
+        const Wide left = (change + dh * dh * steep) * slope + dh * dh * end_slope;
         const double slow = 1.0 + 0.03125 * (k * k);
         const WideMask now = open & (left * slow <= sweep_goal) & (r * r * r <= root_goal);
-        dh_before = dh;
         wide_keep<N>(now, n, kept);
         finished |= now;
         out.t.sweeps = select(now, broadcast<kWidth>(k + 1.0), out.t.sweeps);
