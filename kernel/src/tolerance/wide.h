@@ -106,8 +106,8 @@ CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exac
         } else {
             const Wide rs = 1.0 - ss * (n.root_s[i] * n.root_s[i]),
                        ru = 1.0 - uu * (n.root_u[i] * n.root_u[i]);
-            n.root_s[i] += n.root_s[i] * (rs * (0.5 + 0.375 * rs));
-            n.root_u[i] += n.root_u[i] * (ru * (0.5 + 0.375 * ru));
+            n.root_s[i] += n.root_s[i] * (0.5 * rs);
+            n.root_u[i] += n.root_u[i] * (0.5 * ru);
             Wide left = rs * rs + ru * ru;
             if constexpr (kRoots == Roots::kMixed) {
                 n.root_s[i] = select(exact, fresh_s, n.root_s[i]);
@@ -277,7 +277,7 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
     const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))),
                end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
     const double sweep_goal = 8.0 * tolerance * tolerance;
-    const Wide root_goal = (0.05 * tolerance * tolerance) / (m.mu_b * m.mu_b);
+    const Wide root_goal = (0.035 * tolerance * tolerance) / (m.mu_b * m.mu_b);
     WideMask open = wanted, finished = {};
     WideForces<N> kept = {};
     for (int k = 1; k < kMostSweeps && any(open); ++k) {
@@ -292,7 +292,7 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
         const Wide r = wide_forces<N, Roots::kCarried>(m, n);
         const Wide left = (change + dh * dh * steep) * slope + dh * dh * end_slope;
         const double slow = 1.0 + 0.03125 * (k * k);
-        const WideMask now = open & (left * slow <= sweep_goal) & (r * r * r <= root_goal);
+        const WideMask now = open & (left * slow <= sweep_goal) & (r * r <= root_goal);
         wide_keep<N>(now, n, kept);
         finished |= now;
         out.sweeps = select(now, broadcast<kWidth>(k + 1.0), out.sweeps);

@@ -65,7 +65,7 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
     const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))),
                end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
     const double sweep_goal = 8.0 * w.tolerance * w.tolerance;
-    const Wide root_goal = (0.05 * w.tolerance * w.tolerance) / (m.mu_b * m.mu_b);
+    const Wide root_goal = (0.035 * w.tolerance * w.tolerance) / (m.mu_b * m.mu_b);
     WideMask open = w.wanted, finished = {};
     WideForces<N> kept = {};
     out.t.sweeps = broadcast<kWidth>(kMostSweeps);
@@ -80,7 +80,7 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
             r = wide_forces<N, Roots::kCarried>(m, n);
         const Wide left = (change + dh * dh * steep) * slope + dh * dh * end_slope;
         const double slow = 1.0 + 0.03125 * (k * k);
-        const WideMask now = open & (left * slow <= sweep_goal) & (r * r * r <= root_goal);
+        const WideMask now = open & (left * slow <= sweep_goal) & (r * r <= root_goal);
         wide_keep<N>(now, n, kept);
         finished |= now;
         out.t.sweeps = select(now, broadcast<kWidth>(k + 1.0), out.t.sweeps);
