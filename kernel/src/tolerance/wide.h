@@ -144,15 +144,17 @@ CAROM_INLINE Wide wide_slips(const WideModel& m, const WideStart& start, Wide h,
     const Wide mu2 = m.mu_s * m.mu_s;
     for (int i = 0; i < N; ++i) {
         const Wide x = nx[i], z = nz[i], a = na[i], b = nb[i];
-        const Wide ex = x - n.x[i], ez = z - n.z[i], ea = a - n.a[i], eb = b - n.b[i];
-        change += (ex * ex + ez * ez) * (n.root_s[i] * n.root_s[i]) +
-                  mu2 * ((ea * ea + eb * eb) * (n.root_u[i] * n.root_u[i]));
+        if (i % 2 == 1) {
+            const Wide ex = x - n.x[i], ez = z - n.z[i], ea = a - n.a[i], eb = b - n.b[i];
+            change += (ex * ex + ez * ez) * (n.root_s[i] * n.root_s[i]) +
+                      mu2 * ((ea * ea + eb * eb) * (n.root_u[i] * n.root_u[i]));
+        }
         n.x[i] = x;
         n.z[i] = z;
         n.a[i] = a;
         n.b[i] = b;
     }
-    return change;
+    return 2.0 * change;
 }
 
 // As guess(). kWhole: the end of a whole impact is guessed too.
