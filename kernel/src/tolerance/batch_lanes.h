@@ -81,9 +81,9 @@ CAROM_INLINE WideMask wide_enter(const Wide (&in)[kInputs], WideFrame& f) {
     // This sum is 0, or a NaN where an input is not finite.
     for (int i = 0; i < kInputs; ++i) wrong += in[i] - in[i];  // NOLINT(misc-redundant-expression): see above
     const Wide dx = in[kR2] - in[kR1], dy = in[kR2 + 1] - in[kR1 + 1], dz = in[kR2 + 2] - in[kR1 + 2];
-    const Wide d = square_root(dx * dx + dy * dy);
-    f.yx = dx / d;
-    f.yy = dy / d;
+    const Wide d = square_root(dx * dx + dy * dy), by_d = 1.0 / d;
+    f.yx = dx * by_d;
+    f.yy = dy * by_d;
     f.x1 = in[kV1] * f.yy - in[kV1 + 1] * f.yx;
     f.y1 = in[kV1] * f.yx + in[kV1 + 1] * f.yy;
     f.wx1 = in[kW1] * f.yy - in[kW1 + 1] * f.yx;
@@ -190,7 +190,8 @@ CAROM_INLINE void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, d
     const WideStart& start = q.start;
     const bool published = cloth_slip == ClothSlip::kAsPublished;
     const Wide guess = 0.5 * (1.0 + m.e_b);
-    const Wide s = square_root(start.x * start.x + start.z * start.z), cx = start.x / s, cz = start.z / s;
+    const Wide s = square_root(start.x * start.x + start.z * start.z), root_s = 1.0 / s;
+    const Wide cx = start.x * root_s, cz = start.z * root_s;
     const Wide fall = m.mu_b * ((7.0 * cx * cx + 5.0 * cz * cz) + 2.7 * (m.mu_s * cz));
     const Wide rho_s = wide_ellipse(4.0 * s / (fall * guess) - 2.0);
     const Wide a1 = start.a + guess * (m.mu_b * cx), b1 = start.b + guess * (1.0 - m.sigma * (m.mu_b * cz));
@@ -198,15 +199,15 @@ CAROM_INLINE void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, d
     const Wide bend = guess * ((published ? 1.5 : 3.5) * (m.mu_s * m.mu_b));
     const Wide beside = wide_ellipse(2.0 * ((u0 + u1) - bend) / (guess * (1.0 + 2.5 * m.mu_b)));
     const Wide rho_u = select(q.from_rest, broadcast<kWidth>(1e30), beside);
-    const Wide s2 = rho_s * rho_s, u2 = rho_u * rho_u, s4 = s2 * s2, u4 = u2 * u2;
+    const Wide rs2 = rho_s * rho_s, u2 = rho_u * rho_u, s4 = rs2 * rs2, u4 = u2 * u2;
     const Wide size_s = kSizeS * m.mu_b, size_u = kSizeU * (m.mu_b * m.mu_s);
     block.resolvable =
         q.good & (tolerance * (s4 * s4 * s4) >= size_s) & (tolerance * (u4 * u4 * u2) >= 0.5 * size_u);
-    const WideMask four = q.good & (tolerance * (s4 * s2) >= size_s) & (tolerance * (u4 * rho_u) >= size_u);
+    const WideMask four = q.good & (tolerance * (s4 * rs2) >= size_s) & (tolerance * (u4 * rho_u) >= size_u);
     const WideMask wanted = N == 4 ? four : block.resolvable;
 
     WideResult t = {};
-    wide_collocate<N>(m, start, wanted, tolerance, t);
+    wide_collocate<N>(m, start, wanted, root_s, tolerance, t);
     block.good = q.good;
     block.done = t.converged;
     block.sweeps = t.sweeps;

@@ -265,13 +265,13 @@ CAROM_INLINE void wide_integrate(Wide p, const WideForces<N>& f, WideResult& out
 // As collocate() of a whole impact, for the lanes `wanted`; lanes that do not converge are not in `out.converged`.
 template <int N>
 CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, WideMask wanted,
-                                 double tolerance, WideResult& out) {
+                                 Wide root_s, double tolerance, WideResult& out) {
     using G = Gauss<N>;
     WideNodes<N> n;
     Wide h = 0.5 * (1.0 + m.e_b), t_c = 2.0 / (1.0 + m.e_b) - 1.0;
     WideRows<N> rows;
     wide_set_rows<N>(t_c, rows);
-    wide_guess<N, true>(m, start, 1.0 / square_root(start.x * start.x + start.z * start.z), h, n);
+    wide_guess<N, true>(m, start, root_s, h, n);
     wide_forces<N, Roots::kFresh>(m, n);
     const Wide mu2 = m.mu_s * m.mu_s, reach2 = (7.0 * m.mu_b * h) * (7.0 * m.mu_b * h);
     Wide steep = {};
