@@ -77,7 +77,7 @@ inline void sweep_easy(const BatchView& v, long begin, long end, double toleranc
                 if (lanes < kWidth) write_lane(v, block, j, i + j, ToleranceMethod::kCollocation4);
             } else if (lane(block.good, j) == 0) {
                 solve_single(v, i + j, tolerance);
-            } else if (lane(block.resolvable, j) != 0) {
+            } else if (lane(block.resolvable, j) != 0 && tolerance < kLooseStretches) {
                 rest.resolvable[rest.resolvables++] = i + j;
             } else {
                 rest.hard[rest.hards++] = i + j;
