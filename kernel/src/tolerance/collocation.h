@@ -57,7 +57,7 @@ struct Stretch {
     double done;        // all kinds but kWhole: work of the normal impulse over the stretch
     double row_goal;    // largest error of the rows of the end
     double sweep_goal;  // square of the largest error that the iteration may leave
-    double root_goal;   // fourth power of the largest relative error of a carried root before its last correction
+    double root_goal;   // sixth power of the largest relative error of a carried root before its last correction
     double s_top;   // size of the highest Legendre coefficient of (xi, zeta): how well the nodes resolve them
     double g_top;   // the same of (g_a, g_b)
     int sweeps;
@@ -144,7 +144,7 @@ struct Nodes {
 };
 
 // Forces at the nodes. The reciprocal roots are computed afresh (kExact), or those of the sweep before are corrected
-// by one Newton step: T f, f = 3/2 - q/2 with q = |.|^2 T^2. Returns the squares of their relative
+// by one cubic step: T f, f = 15/8 - 5/4 q + 3/8 q^2 > 0 with q = |.|^2 T^2. Returns the squares of their relative
 // errors before the correction. Every sweep waits for this, so the slips are scaled before the factor is known.
 template <int N, bool kExact>
 CAROM_INLINE Pack<N> forces(Nodes<N>& n) {
@@ -160,7 +160,7 @@ CAROM_INLINE Pack<N> forces(Nodes<N>& n) {
     } else {
         const Pack<N> x = n.x * n.root_s, z = n.z * n.root_s, a = n.a * n.root_u, b = n.b * n.root_u;
         const Pack<N> s = x * x + z * z, u = a * a + b * b;
-        const Pack<N> by_s = 1.5 - 0.5 * s, by_u = 1.5 - 0.5 * u;
+        const Pack<N> by_s = (1.875 - 1.25 * s) + 0.375 * (s * s), by_u = (1.875 - 1.25 * u) + 0.375 * (u * u);
         n.root_s = n.root_s * by_s;
         n.root_u = n.root_u * by_u;
         n.xi = x * by_s;
@@ -233,8 +233,8 @@ CAROM_INLINE void add_stretch(const Model& m, const Impulses& t, State& state, I
     total.g_b += t.g_b;
 }
 
-// Solves one stretch. Returns false if the sweeps do not converge; then only `stretch` has changed. The first `exact`
-// sweeps compute fresh roots, later ones correct those of the sweep before; `root_s` is 1/|s| at the start.
+// Solves one stretch. Returns false if the sweeps do not converge; then only `stretch` has changed. `exact`: every sweep
+// computes fresh roots, in place of correcting those of the sweep before. `root_s` is 1/|s| at the start.
 template <int N, End kEnd>
 CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stretch& stretch, double root_s,
                             bool exact) {
@@ -269,7 +269,7 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
         const double slow = 1.0 + 0.03125 * (k * k);
         // The end is the fixed point of an iteration too, with a contraction of at most a few mu_s mu_b.
         converged = ((sum(change) + dh * dh * steep) * slope + dh * dh * end_slope) * slow <= stretch.sweep_goal &&
-                    all_below(root * root, stretch.root_goal);
+                    all_below(root * root * root, stretch.root_goal);
         CAROM_LOOP_END("sweep");
     }
     stretch.sweeps += k;

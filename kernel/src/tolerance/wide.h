@@ -104,6 +104,8 @@ CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exac
             n.root_s[i] = fresh_s;
             n.root_u[i] = fresh_u;
         } else {
+            // Newton's step: fewer operations than the cubic one of forces(), and as many sweeps. Where a root is off by
+            // much it leads to the negative one, so that its callers look at what is returned.
             const Wide rs = 1.0 - ss * (n.root_s[i] * n.root_s[i]),
                        ru = 1.0 - uu * (n.root_u[i] * n.root_u[i]);
             n.root_s[i] += n.root_s[i] * (0.5 * rs);
@@ -279,6 +281,7 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
     const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))),
                end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
     const double sweep_goal = 8.0 * tolerance * tolerance;
+    // A correction leaves 3/8 r^2 of r = 1 - |.|^2 T^2, and an error of a direction acts with 7 mu_b.
     const Wide root_goal = (0.035 * tolerance * tolerance) / (m.mu_b * m.mu_b);
     WideMask open = wanted, finished = {};
     WideForces<N> kept = {};
@@ -298,7 +301,7 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
         wide_keep<N>(now, n, kept);
         finished |= now;
         out.sweeps = select(now, broadcast<kWidth>(k + 1.0), out.sweeps);
-        open &= ~now;
+        open &= ~now & (r < 1.0);  // a root that is off by much may have become negative
     }
     // The rows of a lane do not change after it has converged.
     Wide p_c;

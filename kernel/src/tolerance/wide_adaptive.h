@@ -66,7 +66,7 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
                end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
     const double sweep_goal = 8.0 * w.tolerance * w.tolerance;
     const Wide root_goal = (0.035 * w.tolerance * w.tolerance) / (m.mu_b * m.mu_b);
-    WideMask open = w.wanted, finished = {};
+    WideMask open = w.wanted, finished = {}, exact = w.exact;
     WideForces<N> kept = {};
     out.t.sweeps = broadcast<kWidth>(kMostSweeps);
     for (int k = 1; k < kMostSweeps && any(open); ++k) {
@@ -74,11 +74,13 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
         const Wide h_new = wide_stretch_end<N>(w, open_end, n.g_b), dh = h_new - h;
         h = h_new;
         Wide r = {};
-        if (any(w.exact & open))
-            r = wide_forces<N, Roots::kMixed>(m, n, w.exact);
+        if (any(exact & open))
+            r = wide_forces<N, Roots::kMixed>(m, n, exact);
         else
             r = wide_forces<N, Roots::kCarried>(m, n);
         const Wide left = (change + dh * dh * steep) * slope + dh * dh * end_slope;
+        // A root that is off by much may have become negative.
+        exact |= ~(r < 1.0);
         const double slow = 1.0 + 0.03125 * (k * k);
         const WideMask now = open & (left * slow <= sweep_goal) & (r * r <= root_goal);
         wide_keep<N>(now, n, kept);
