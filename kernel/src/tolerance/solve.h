@@ -121,7 +121,7 @@ struct Goals {
 
 CAROM_INLINE Goals goals(const Model& m, double tolerance) {
     Goals g;
-    g.sweep = 8.0 * tolerance * tolerance;
+    g.sweep = kSweepGoal * tolerance * tolerance;
     // A correction leaves (5/16) r^3 of r = 1 - |.|^2 T^2, and an error of a direction acts with 7 mu_b.
     g.root = 0.05 * (tolerance * tolerance) / (m.mu_b * m.mu_b);
     return g;

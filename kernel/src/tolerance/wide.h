@@ -280,7 +280,7 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
     for (int i = 0; i < N; ++i) steep += n.root_s[i] * n.root_s[i] + mu2 * (n.root_u[i] * n.root_u[i]);
     const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))),
                end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
-    const double sweep_goal = 8.0 * tolerance * tolerance;
+    const double sweep_goal = kSweepGoalOfLanes * tolerance * tolerance;
     // A correction leaves 3/8 r^2 of r = 1 - |.|^2 T^2, and an error of a direction acts with 7 mu_b.
     const Wide root_goal = (0.035 * tolerance * tolerance) / (m.mu_b * m.mu_b);
     WideMask open = wanted, finished = {};

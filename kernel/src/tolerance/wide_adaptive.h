@@ -64,7 +64,7 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
     for (int i = 0; i < N; ++i) steep += n.root_s[i] * n.root_s[i] + mu2 * (n.root_u[i] * n.root_u[i]);
     const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))),
                end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
-    const double sweep_goal = 8.0 * w.tolerance * w.tolerance;
+    const double sweep_goal = kSweepGoalOfLanes * w.tolerance * w.tolerance;
     const Wide root_goal = (0.035 * w.tolerance * w.tolerance) / (m.mu_b * m.mu_b);
     WideMask open = w.wanted, finished = {}, exact = w.exact;
     WideForces<N> kept = {};
