@@ -14,6 +14,11 @@ inline double square_root(double x) {
 }
 
 inline double absolute(double x) {
+    return x < 0.0 ? -x : x;
+}
+
+// As absolute(), in one instruction. The march keeps the other: it is the baseline of all that was measured.
+inline double magnitude(double x) {
     return __builtin_fabs(x);
 }
 

@@ -28,6 +28,10 @@ constexpr int kMostSweeps = 24;
 // the guards are: with 20 one hard impact of the single form misses its bound. Lanes err less.
 constexpr double kSweepGoal = 12.0, kSweepGoalOfLanes = 16.0;
 
+// Largest error that the iteration may leave, as a share of the friction between the balls: where that is slight, an error
+// of the tolerance could exceed all that friction takes, and energy would rise.
+constexpr double kShareOfFriction = 0.03;
+
 // The error of the rows (EndRows) from which on they are computed anew, as a share of the tolerance.
 constexpr double kRowsGoal = 0.1;
 
@@ -61,7 +65,8 @@ struct Stretch {
     double done;        // all kinds but kWhole: work of the normal impulse over the stretch
     double row_goal;    // largest error of the rows of the end
     double sweep_goal;  // square of the largest error that the iteration may leave
-    double root_goal;   // sixth power of the largest relative error of a carried root before its last correction
+    double
+        root_goal;  // sixth power of the largest relative error of a carried root before its last correction
     double s_top;   // size of the highest Legendre coefficient of (xi, zeta): how well the nodes resolve them
     double g_top;   // the same of (g_a, g_b)
     int sweeps;
@@ -98,7 +103,8 @@ CAROM_INLINE Pack<N> row_at(const double* table, double t, double unit) {
     const auto coefficient = [&](int power) { return load<N>(table + N * power); };
     Pack<N> value = (coefficient(0) + coefficient(1) * T) + (coefficient(2) + coefficient(3) * T) * T2;
     if constexpr (N == 8) {
-        value += ((coefficient(4) + coefficient(5) * T) + (coefficient(6) + coefficient(7) * T) * T2) * (T2 * T2);
+        value +=
+            ((coefficient(4) + coefficient(5) * T) + (coefficient(6) + coefficient(7) * T) * T2) * (T2 * T2);
     }
     return value * unit;
 }
@@ -121,7 +127,8 @@ CAROM_INLINE double late_share(Pack<N> f) {
 // The impulse at which the stretch ends, by quadrature of the cloth force mu_b mu_s g_b. Compression ends where v = 0,
 // restitution where the work of the normal impulse is e_b^2 times that of compression.
 template <int N, End kEnd>
-CAROM_INLINE void find_end(const Model& m, const State& start, Pack<N> g_b, const EndRows<N>& rows, Stretch& stretch) {
+CAROM_INLINE void find_end(const Model& m, const State& start, Pack<N> g_b, const EndRows<N>& rows,
+                           Stretch& stretch) {
     using G = Gauss<N>;
     const double unit = m.mu_b * m.mu_s;
     if constexpr (kEnd == End::kWhole) {
@@ -164,7 +171,8 @@ CAROM_INLINE Pack<N> forces(Nodes<N>& n) {
     } else {
         const Pack<N> x = n.x * n.root_s, z = n.z * n.root_s, a = n.a * n.root_u, b = n.b * n.root_u;
         const Pack<N> s = x * x + z * z, u = a * a + b * b;
-        const Pack<N> by_s = (1.875 - 1.25 * s) + 0.375 * (s * s), by_u = (1.875 - 1.25 * u) + 0.375 * (u * u);
+        const Pack<N> by_s = (1.875 - 1.25 * s) + 0.375 * (s * s),
+                      by_u = (1.875 - 1.25 * u) + 0.375 * (u * u);
         n.root_s = n.root_s * by_s;
         n.root_u = n.root_u * by_u;
         n.xi = x * by_s;
@@ -183,8 +191,10 @@ CAROM_INLINE Pack<N> forces(Nodes<N>& n) {
 template <int N>
 CAROM_INLINE Pack<N> slips(const Model& m, const State& start, double h, Nodes<N>& n) {
     const Pack<N> H = broadcast<N>(h);
-    const Pack<N> xi = combine<N>(Gauss<N>::integral[0], n.xi), zeta = combine<N>(Gauss<N>::integral[0], n.zeta);
-    const Pack<N> g_a = combine<N>(Gauss<N>::integral[0], n.g_a), g_b = combine<N>(Gauss<N>::integral[0], n.g_b);
+    const Pack<N> xi = combine<N>(Gauss<N>::integral[0], n.xi),
+                  zeta = combine<N>(Gauss<N>::integral[0], n.zeta);
+    const Pack<N> g_a = combine<N>(Gauss<N>::integral[0], n.g_a),
+                  g_b = combine<N>(Gauss<N>::integral[0], n.g_b);
     const double cloth = m.mu_b * m.mu_s;
     const Pack<N> x = (start.x - (H * (7.0 * m.mu_b)) * xi) + (H * cloth) * g_a;
     const Pack<N> z = (start.z - (H * (5.0 * m.mu_b)) * zeta) + (H * (2.5 * cloth)) * g_b;
@@ -264,7 +274,7 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
         find_end<N, kEnd>(m, start, n.g_b, rows, stretch);
         // The rows follow the end of compression one sweep late, so that no sweep has to wait for them.
         if constexpr (kEnd == End::kWhole) {
-            if (absolute(t_c - rows.t) * cloth > stretch.row_goal) set_rows<N>(t_c, cloth, rows);
+            if (magnitude(t_c - rows.t) * cloth > stretch.row_goal) set_rows<N>(t_c, cloth, rows);
             t_c = 2.0 * stretch.p_c / stretch.h - 1.0;
         }
         const Pack<N> root = exact ? forces<N, true>(n) : forces<N, false>(n);
@@ -272,8 +282,9 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
         // Many sweeps mean a contraction near 1: then the error that is left exceeds the last change.
         const double slow = 1.0 + 0.03125 * (k * k);
         // The end is the fixed point of an iteration too, with a contraction of at most a few mu_s mu_b.
-        converged = ((sum(change) + dh * dh * steep) * slope + dh * dh * end_slope) * slow <= stretch.sweep_goal &&
-                    all_below(root * root * root, stretch.root_goal);
+        converged =
+            ((sum(change) + dh * dh * steep) * slope + dh * dh * end_slope) * slow <= stretch.sweep_goal &&
+            all_below(root * root * root, stretch.root_goal);
         CAROM_LOOP_END("sweep");
     }
     stretch.sweeps += k;

@@ -45,12 +45,12 @@ CAROM_INLINE bool pose(const FrameState& s, const ImpactParams& p, const Shares&
     const double vx = second ? s.v2x : -s.v1x, vy = second ? s.v2y : -s.v1y;
     const double wx = R * (second ? s.w2x : -s.w1x), wy = R * (second ? s.w2y : -s.w1y);
     const double a = published ? vx + wy : vx - wy, b = published ? vy - wx : vy + wx;
-    const double noise = kSlipNoise * ((absolute(vx) + absolute(wy)) + (absolute(vy) + absolute(wx)));
+    const double noise = kSlipNoise * ((magnitude(vx) + magnitude(wy)) + (magnitude(vy) + magnitude(wx)));
     const double slight = largest(noise, (0.01 * tolerance) * n);
     const double f = second ? share.two : share.one, own = 1.0 / f;
     problem.from_rest = a * a + b * b <= slight * slight;
     problem.start.x = x * scale;
-    problem.start.z = absolute(z) * scale;
+    problem.start.z = magnitude(z) * scale;
     problem.start.a = problem.from_rest ? 0.0 : a * scale * own;
     problem.start.b = problem.from_rest ? 0.0 : b * scale * own;
     problem.start.v = -1.0;

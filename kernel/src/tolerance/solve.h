@@ -121,9 +121,10 @@ struct Goals {
 
 CAROM_INLINE Goals goals(const Model& m, double tolerance) {
     Goals g;
-    g.sweep = kSweepGoal * tolerance * tolerance;
+    const double left = smallest(tolerance, kShareOfFriction * m.mu_b);
+    g.sweep = kSweepGoal * (left * left);
     // A correction leaves (5/16) r^3 of r = 1 - |.|^2 T^2, and an error of a direction acts with 7 mu_b.
-    g.root = 0.05 * (tolerance * tolerance) / (m.mu_b * m.mu_b);
+    g.root = 0.05 * (left * left) / (m.mu_b * m.mu_b);
     return g;
 }
 
@@ -288,7 +289,7 @@ CAROM_INLINE void solve_closed(const Problem& problem, Solution& solution) {
     solution.method = ToleranceMethod::kClosedGearing;
     if (x == 0.0) return;
     solution.method = ToleranceMethod::kClosedStick;
-    const double most = m.mu_b * p, stop = absolute(x) / 7.0, xi = most < stop ? most : stop;
+    const double most = m.mu_b * p, stop = magnitude(x) / 7.0, xi = most < stop ? most : stop;
     solution.total.xi = x < 0.0 ? -xi : xi;
 }
 
@@ -311,8 +312,8 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
         const double u0 = square_root(start.a * start.a + start.b * start.b),
                      u1 = square_root(a1 * a1 + b1 * b1);
         // The cloth force bends this path by no more than `bend`.
-        const double bend = guess * (absolute(m.kappa) * (m.mu_s * m.mu_b));
-        rho_u = ellipse(2.0 * ((u0 + u1) - bend) / (guess * (1.0 + absolute(m.sigma) * m.mu_b)));
+        const double bend = guess * (magnitude(m.kappa) * (m.mu_s * m.mu_b));
+        rho_u = ellipse(2.0 * ((u0 + u1) - bend) / (guess * (1.0 + magnitude(m.sigma) * m.mu_b)));
     }
     const double s2 = rho_s * rho_s, u2 = rho_u * rho_u;
     const double size_s = kSizeS * m.mu_b, size_u = kSizeU * (m.mu_b * m.mu_s);

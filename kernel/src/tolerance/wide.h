@@ -161,7 +161,8 @@ CAROM_INLINE Wide wide_slips(const WideModel& m, const WideStart& start, Wide h,
 
 // As guess(). kWhole: the end of a whole impact is guessed too.
 template <int N, bool kWhole>
-CAROM_INLINE void wide_guess(const WideModel& m, const WideStart& start, Wide root_s, Wide& h, WideNodes<N>& n) {
+CAROM_INLINE void wide_guess(const WideModel& m, const WideStart& start, Wide root_s, Wide& h,
+                             WideNodes<N>& n) {
     const Wide e_x = root_s * start.x, e_z = root_s * start.z, xi = m.mu_b * e_x, zeta = m.mu_b * e_z;
     const Wide half = start.b + 0.5 * h;
     const Wide by_u = m.mu_s / square_root((start.a * start.a + half * half) + 0.01);
@@ -264,10 +265,22 @@ CAROM_INLINE void wide_integrate(Wide p, const WideForces<N>& f, WideResult& out
     out.g_b = p * wide_dot<N>(G::weights, 1, f.g_b);
 }
 
+// As Goals, for the corrections of wide_forces().
+struct WideGoals {
+    Wide sweep, root;
+};
+
+CAROM_INLINE WideGoals wide_goals(const WideModel& m, double tolerance) {
+    const Wide share = kShareOfFriction * m.mu_b;
+    const Wide left = select(share < tolerance, share, broadcast<kWidth>(tolerance)), left2 = left * left;
+    // A correction leaves 3/8 r^2 of r = 1 - |.|^2 T^2, and an error of a direction acts with 7 mu_b.
+    return {kSweepGoalOfLanes * left2, (0.035 * left2) / (m.mu_b * m.mu_b)};
+}
+
 // As collocate() of a whole impact, for the lanes `wanted`; lanes that do not converge are not in `out.converged`.
 template <int N>
-CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, WideMask wanted,
-                                 Wide root_s, double tolerance, WideResult& out) {
+CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, WideMask wanted, Wide root_s,
+                                 double tolerance, WideResult& out) {
     using G = Gauss<N>;
     WideNodes<N> n;
     Wide h = 0.5 * (1.0 + m.e_b), t_c = 2.0 / (1.0 + m.e_b) - 1.0;
@@ -280,9 +293,7 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
     for (int i = 0; i < N; ++i) steep += n.root_s[i] * n.root_s[i] + mu2 * (n.root_u[i] * n.root_u[i]);
     const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))),
                end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
-    const double sweep_goal = kSweepGoalOfLanes * tolerance * tolerance;
-    // A correction leaves 3/8 r^2 of r = 1 - |.|^2 T^2, and an error of a direction acts with 7 mu_b.
-    const Wide root_goal = (0.035 * tolerance * tolerance) / (m.mu_b * m.mu_b);
+    const WideGoals goal = wide_goals(m, tolerance);
     WideMask open = wanted, finished = {};
     WideForces<N> kept = {};
     for (int k = 1; k < kMostSweeps && any(open); ++k) {
@@ -297,7 +308,7 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
         const Wide r = wide_forces<N, Roots::kCarried>(m, n);
         const Wide left = (change + dh * dh * steep) * slope + dh * dh * end_slope;
         const double slow = 1.0 + 0.03125 * (k * k);
-        const WideMask now = open & (left * slow <= sweep_goal) & (r * r <= root_goal);
+        const WideMask now = open & (left * slow <= goal.sweep) & (r * r <= goal.root);
         wide_keep<N>(now, n, kept);
         finished |= now;
         out.sweeps = select(now, broadcast<kWidth>(k + 1.0), out.sweeps);

@@ -64,8 +64,7 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
     for (int i = 0; i < N; ++i) steep += n.root_s[i] * n.root_s[i] + mu2 * (n.root_u[i] * n.root_u[i]);
     const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))),
                end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
-    const double sweep_goal = kSweepGoalOfLanes * w.tolerance * w.tolerance;
-    const Wide root_goal = (0.035 * w.tolerance * w.tolerance) / (m.mu_b * m.mu_b);
+    const WideGoals goal = wide_goals(m, w.tolerance);
     WideMask open = w.wanted, finished = {}, exact = w.exact;
     WideForces<N> kept = {};
     out.t.sweeps = broadcast<kWidth>(kMostSweeps);
@@ -82,7 +81,7 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
         // A root that is off by much may have become negative.
         exact |= ~(r < 1.0);
         const double slow = 1.0 + 0.03125 * (k * k);
-        const WideMask now = open & (left * slow <= sweep_goal) & (r * r <= root_goal);
+        const WideMask now = open & (left * slow <= goal.sweep) & (r * r <= goal.root);
         wide_keep<N>(now, n, kept);
         finished |= now;
         out.t.sweeps = select(now, broadcast<kWidth>(k + 1.0), out.t.sweeps);
