@@ -49,10 +49,11 @@ inline double cloth_slip_floor(const FrameState& s, double R, int sign) {
 }
 
 // [m/s] The absolute values of all components of v and R w, added.
-template <double (*kSize)(double) = absolute>
+template <bool kMagnitude = false>
 inline double sum_of_speeds(const FrameState& s, double R) {
-    return kSize(s.v1x) + kSize(s.v1y) + kSize(s.v2x) + kSize(s.v2y) +
-           R * (kSize(s.w1x) + kSize(s.w1y) + kSize(s.w1z) + kSize(s.w2x) + kSize(s.w2y) + kSize(s.w2z));
+    const auto size = [](double x) { return kMagnitude ? magnitude(x) : absolute(x); };
+    return size(s.v1x) + size(s.v1y) + size(s.v2x) + size(s.v2y) +
+           R * (size(s.w1x) + size(s.w1y) + size(s.w1z) + size(s.w2x) + size(s.w2y) + size(s.w2z));
 }
 
 // The result where nothing is computed: the velocities before the impact.
@@ -108,7 +109,7 @@ inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactPara
     s.w2y = b2.w[0] * f.yx + b2.w[1] * f.yy;
     s.w2z = b2.w[2];
     const double approach = s.v1y - s.v2y;
-    const double scale = sum_of_speeds < kAnyMasses ? magnitude : absolute > (s, p.R);
+    const double scale = sum_of_speeds<kAnyMasses>(s, p.R);
     // Speeds whose squares overflow are a bad state, as a NaN is.
     if (!finite(scale) || !finite(scale * scale))
         status = ImpactStatus::kBadState;

@@ -281,7 +281,6 @@ CAROM_INLINE WideGoals wide_goals(const WideModel& m, double tolerance) {
 template <int N>
 CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, WideMask wanted, Wide root_s,
                                  double tolerance, WideResult& out) {
-    using G = Gauss<N>;
     WideNodes<N> n;
     Wide h = 0.5 * (1.0 + m.e_b), t_c = 2.0 / (1.0 + m.e_b) - 1.0;
     WideRows<N> rows;
