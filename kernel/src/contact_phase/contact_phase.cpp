@@ -20,10 +20,9 @@ namespace {
 template <bool kFalls>
 struct Law {
     Four a, b, minus_mu_b, mu_s, epsilon2, cloth_sign;
-    Four stiffest;  // -mu_b / epsilon at the largest mu_b
     Four minus_mu_b_more, fall;
     int p;
-    bool cloth;
+    bool cloth, friction;
 };
 
 // Brings the list of contacts up to date.
@@ -75,8 +74,7 @@ CAROM_INLINE void add_forces(const Work& w, const Law<kFalls>& law, const double
     const Four f_x = k * s_x, f_z = k * s_z;
     const Four twist = 2.5 * f_z;
     Four rows[4] = {f_x * ny - F * nx, twist * ny, -F * ny - f_x * nx, -twist * nx};
-    const Four resolved = kResolve * k, stuck = law.stiffest * F;
-    Four ends[4] = {f_z, -2.5 * f_x, broadcast<4>(0.0), select(resolved < stuck, stuck, resolved)};
+    Four ends[4] = {f_z, -2.5 * f_x, broadcast<4>(0.0), k};
     transpose(rows[0], rows[1], rows[2], rows[3]);
     transpose(ends[0], ends[1], ends[2], ends[3]);
     for (int lane = 0; lane < 4; ++lane) {
@@ -103,7 +101,7 @@ CAROM_INLINE void add_cloth(const Work& w, const Law<kFalls>& law, const double*
         const Four pressed = law.mu_s * select(lift < zero, lift, zero);
         const Four k = pressed / square_root(ux * ux + uy * uy + law.epsilon2);
         double stiffness[4];
-        store(stiffness, 0.5 * k);
+        store(stiffness, k);
         Four rows[4] = {k * ux, 2.5 * k * uy, k * uy, -2.5 * k * ux};
         transpose(rows[0], rows[1], rows[2], rows[3]);
         for (int lane = 0; lane < 4; ++lane) {
@@ -131,15 +129,35 @@ CAROM_INLINE void shift(double* to, const double* from, const double* slope, dou
     }
 }
 
+// The largest difference of a velocity or spin from the midpoint rule.
+CAROM_INLINE double difference(double* const* slope, double h, int count) {
+    const Four turn_only = pack(0.0, 1.0, 0.0, 0.0);
+    Four most = broadcast<4>(0.0);
+    const auto take = [&](const Four& difference) {
+        const Four size = absolute(difference);
+        most = select(most < size, size, most);
+    };
+    const auto at = [&](int n) {
+        return (load<4>(slope[0] + n) + load<4>(slope[3] + n)) - 2.0 * load<4>(slope[2] + n);
+    };
+    for (int n = 0; n < count; n += kRow) {
+        take(at(n));
+        take(turn_only * at(n + 4));
+    }
+    double each[4];
+    store(each, most);
+    return h / 6.0 * largest(largest(each[0], each[1]), largest(each[2], each[3]));
+}
+
 // The end of a step. kClear sets the slopes to zero, because forces() adds to them.
 template <bool kClear>
-CAROM_INLINE void combine(double* y, double* const* slope, double sixth, int count) {
+CAROM_INLINE void combine(double* y, double* const* slope, const double (&share)[kStages], int count) {
     double *k0 = slope[0], *k1 = slope[1], *k2 = slope[2], *k3 = slope[3];
     for (int n = 0; n < count; n += kRow) {
         for (int half = n; half < n + kRow; half += 4) {
-            const Four outer = load<4>(k0 + half) + load<4>(k3 + half),
-                       inner = load<4>(k1 + half) + load<4>(k2 + half);
-            store(y + half, load<4>(y + half) + sixth * (outer + 2.0 * inner));
+            const Four first = share[0] * load<4>(k0 + half) + share[1] * load<4>(k1 + half),
+                       last = share[2] * load<4>(k2 + half) + share[3] * load<4>(k3 + half);
+            store(y + half, load<4>(y + half) + (first + last));
             if (!kClear) continue;
             store(k0 + half, broadcast<4>(0.0));
             store(k1 + half, broadcast<4>(0.0));
@@ -152,26 +170,41 @@ CAROM_INLINE void combine(double* y, double* const* slope, double sixth, int cou
 // The longest stable step, at most `longest`.
 CAROM_INLINE double stable_step(const Work& w, const double* dy, double longest) {
     double least = 0.0;
-    for (int b = 0; b < w.balls; ++b) least = smallest(least, dy[kRow * b + kStiffness]);
+    for (int n = 0; n < w.count; ++n)
+        least = smallest(least, dy[w.active_i[n] + kStiffness] + dy[w.active_j[n] + kStiffness]);
     return kStableShare < longest * -least ? kStableShare / -least : longest;
 }
 
 // One Runge-Kutta step; returns its length. At entry rate[0] belongs to the state; at exit d_stage is the overlap
-// before the step.
+// before the step. `longest` is its limit; the error, which friction makes, sets that of the next step into `next`.
 template <bool kFalls>
-CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double longest) {
+CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double shortest, double longest, double& next) {
+    const RungeKutta& method = law.friction ? kStabilised : kClassical;
+    const int count = kRow * w.rows;
     forces(w, law, w.y, w.d, w.nx, w.ny, w.dy[0]);
-    const double h = stable_step(w, w.dy[0], longest);
-    const double share[kStages] = {0.0, 0.5 * h, 0.5 * h, h};
-    for (int k = 1; k < kStages; ++k) {
-        shift(w.y_stage, w.y, w.dy[k - 1], share[k], kRow * w.rows);
-        shift(w.d_stage, w.d, w.rate[k - 1], share[k], w.lanes);
-        rates(w, w.y_stage, share[k], w.rate[k]);
-        forces(w, law, w.y_stage, w.d_stage, w.nx_stage, w.ny_stage, w.dy[k]);
+    double h = stable_step(w, w.dy[0], smallest(longest, next));
+    for (;;) {
+        for (int k = 1; k < kStages; ++k) {
+            const double time = h * method.node[k];
+            shift(w.y_stage, w.y, w.dy[k - 1], time, count);
+            shift(w.d_stage, w.d, w.rate[k - 1], time, w.lanes);
+            rates(w, w.y_stage, time, w.rate[k]);
+            forces(w, law, w.y_stage, w.d_stage, w.nx_stage, w.ny_stage, w.dy[k]);
+        }
+        if (!law.friction) break;
+        const double error = difference(w.dy, h, count);
+        next = step_after(next, h, error);
+        if (!(error > kStepError && h > shortest)) break;
+        h *= 0.5;
+        for (int k = 1; k < kStages; ++k) {
+            for (int n = 0; n < count; n += 4) store(w.dy[k] + n, broadcast<4>(0.0));
+        }
     }
+    double weight[kStages];
+    for (int k = 0; k < kStages; ++k) weight[k] = h * method.weight[k];
     for (int c = 0; c < w.lanes; c += 4) store(w.d_stage + c, load<4>(w.d + c));
-    combine<true>(w.y, w.dy, h / 6.0, kRow * w.rows);
-    combine<false>(w.d, w.rate, h / 6.0, w.lanes);
+    combine<true>(w.y, w.dy, weight, count);
+    combine<false>(w.d, w.rate, weight, w.lanes);
     return h;
 }
 
@@ -202,18 +235,19 @@ long integrate(const ContactPhase& phase, const HertzLaw& law, double longest_st
                             broadcast<4>(law.mu_s),
                             broadcast<4>(law.epsilon * law.epsilon),
                             broadcast<4>(law.published_slip_sign ? 1.0 : -1.0),
-                            broadcast<4>(-(law.mu_b + law.mu_b_more) / law.epsilon),
                             broadcast<4>(-law.mu_b_more),
                             broadcast<4>(law.mu_b_fall),
                             law.p,
-                            law.mu_s > 0.0};
+                            law.mu_s > 0.0,
+                            has_friction(law)};
     look(w);
     long steps = 0;
+    double next = longest_step;
     double time = 0.0;
     for (;;) {
         if (!(time < time_limit)) return -1;
         const double longest = w.shares ? settle(phase, w, longest_step) : longest_step;
-        const double h = step(w, lanes, longest);
+        const double h = step(w, lanes, kShortest * longest_step, longest, next);
         ++steps;
         time += h;
         turn_normals(w, h, w.rate[1], w.rate[2]);

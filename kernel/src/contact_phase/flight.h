@@ -65,10 +65,6 @@ CAROM_INLINE void turn_by_flight(const Way& way, double s, double& nx, double& n
 
 // Rates and turning of a state whose normals did not come from a step.
 CAROM_INLINE void look(Work& w) {
-    for (int c = 0; c < w.lanes; ++c) {
-        w.nx_stage[c] = w.nx[c];
-        w.ny_stage[c] = w.ny[c];
-    }
     turn_normals(w, 0.0, w.rate[1], w.rate[0]);
 }
 

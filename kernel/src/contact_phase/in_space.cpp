@@ -6,7 +6,6 @@
 namespace carom::kernel {
 namespace {
 
-constexpr int kSlopes = 4;     // of the Runge-Kutta step
 constexpr int kPerState = 9;   // numbers of a ball in a state: where it has moved to [L], v and R w [V]
 constexpr int kPerMotion = 6;  // in ContactPhaseInSpace::motion: without the place
 constexpr double kNever = 1e300;
@@ -74,6 +73,7 @@ class InSpace {
     }
 
     long run(double longest_step, double look_ahead, double time_limit) {
+        next_ = longest_step;
         double time = 0.0;
         for (long steps = 1; time < time_limit; ++steps) {
             time += step(longest_step);
@@ -127,9 +127,8 @@ class InSpace {
         add(slope + kPerState * j + 3, -1.0 * force);
         add(slope + kPerState * i + 6, torque);
         add(slope + kPerState * j + 6, torque);
-        const double stiffness = smallest(kResolve * k, (law_.mu_b + law_.mu_b_more) / law_.epsilon * F);
-        stiffness_[i] += stiffness;
-        stiffness_[j] += stiffness;
+        stiffness_[i] += k;
+        stiffness_[j] += k;
     }
 
     void slopes(const double* y, double* slope) {
@@ -154,17 +153,39 @@ class InSpace {
         }
         slopes(y_, slope_[0]);
         double most = 0.0;
-        for (int b = 0; b < phase_.balls; ++b) most = largest(most, stiffness_[b]);
-        const double h = kStableShare < longest * most ? kStableShare / most : longest;
-        const double share[kSlopes] = {0.0, 0.5 * h, 0.5 * h, h};
-        for (int k = 1; k < kSlopes; ++k) {
-            for (int n = 0; n < size_; ++n) stage_[n] = y_[n] + share[k] * slope_[k - 1][n];
-            slopes(stage_, slope_[k]);
+        for (int c = 0; c < phase_.contacts; ++c) {
+            if (before_[c] > 0.0) most = largest(most, stiffness_[phase_.contact[c].i] + stiffness_[phase_.contact[c].j]);
         }
+        const bool friction = has_friction(law_);
+        const RungeKutta& method = friction ? kStabilised : kClassical;
+        const double limit = smallest(longest, next_);
+        double h = kStableShare < limit * most ? kStableShare / most : limit;
+        for (;;) {
+            for (int k = 1; k < kStages; ++k) {
+                const double time = h * method.node[k];
+                for (int n = 0; n < size_; ++n) stage_[n] = y_[n] + time * slope_[k - 1][n];
+                slopes(stage_, slope_[k]);
+            }
+            if (!friction) break;
+            const double error = difference(h);
+            next_ = step_after(next_, h, error);
+            if (!(error > kStepError && h > kShortest * longest)) break;
+            h *= 0.5;
+        }
+        const double* w = method.weight;
         for (int n = 0; n < size_; ++n)
-            y_[n] += h / 6.0 * ((slope_[0][n] + slope_[3][n]) + 2.0 * (slope_[1][n] + slope_[2][n]));
+            y_[n] += h * ((w[0] * slope_[0][n] + w[1] * slope_[1][n]) + (w[2] * slope_[2][n] + w[3] * slope_[3][n]));
         for (int c = 0; c < phase_.contacts; ++c) remember(c, h);
         return h;
+    }
+
+    // The largest difference of a velocity or spin from the midpoint rule.
+    double difference(double h) const {
+        double most = 0.0;
+        for (int n = 0; n < size_; ++n) {
+            if (n % kPerState >= 3) most = largest(most, absolute((slope_[0][n] + slope_[3][n]) - 2.0 * slope_[2][n]));
+        }
+        return h / 6.0 * most;
     }
 
     // Updates the largest overlap of a contact.
@@ -200,7 +221,8 @@ class InSpace {
     const HertzLaw law_;
     const double diameter_;  // [L]
     const int size_;
-    double *y_, *stage_, *slope_[kSlopes];
+    double *y_, *stage_, *slope_[kStages];
+    double next_;        // limit of the next step by the error of the last one
     double* stiffness_;  // per ball: the sum of friction over slip
     // Per contact: from one centre to the other at the start (3 numbers); the largest overlap since it opened; overlap and its
     // slope before the step.

@@ -10,7 +10,6 @@ namespace carom::kernel {
 namespace {
 
 constexpr int kPerBall = 5;  // numbers of a ball in ContactPhase::motion
-constexpr int kStages = 4;   // of the Runge-Kutta step
 
 // Numbers of a ball here. A row holds velocities in the even places and spins in the odd ones: a contact feels the
 // difference of the velocities of its balls and the sum of their spins, which is one subtract_add().
@@ -121,20 +120,20 @@ CAROM_INLINE void rates(const Work& w, const double* y, double time, double* rat
     }
 }
 
-// After a step of length h: the rates with the normals of its last stage into `rate`, the normals of the new state, their
-// turning, and the rates of the new state into `next`. The normals move by the mean of the speeds at both ends.
+// After a step of length h: the rates with the normals that have turned at the speed of its start into `rate`, the normals of the new
+// state, their turning, and the rates of the new state into `next`. The normals move by the mean of the speeds at both ends.
 CAROM_INLINE void turn_normals(const Work& w, double h, double* rate, double* next) {
     const Four one = broadcast<4>(1.0), curvature = broadcast<4>(w.curvature);
     for (int c = 0; c < w.lanes; c += 4) {
         Four dv[4];
         closing(w, w.y, c, dv);
-        const Four x = load<4>(w.nx_stage + c), y = load<4>(w.ny_stage + c);
+        const Four nx = load<4>(w.nx + c), ny = load<4>(w.ny + c), turn_before = load<4>(w.turn + c);
+        const Four straight = h * turn_before, x = nx - straight * ny, y = ny + straight * nx;
         store(rate + c, dv[0] * x + dv[2] * y);
         // z = x_j - x_i = (2 R - d) n moves by -(v_i - v_j): n' = -(v_i - v_j) . t / (2 R - d) t, t = (-n_y, n_x).
         const Four turn =
             load<4>(w.bend + c) * (dv[0] * y - dv[2] * x) / (one - curvature * load<4>(w.d + c));
-        const Four angle = (0.5 * h) * (load<4>(w.turn + c) + turn);
-        const Four nx = load<4>(w.nx + c), ny = load<4>(w.ny + c);
+        const Four angle = (0.5 * h) * (turn_before + turn);
         const Four shrink = one / square_root(one + angle * angle);
         const Four nx_now = (nx - angle * ny) * shrink, ny_now = (ny + angle * nx) * shrink;
         store(w.turn + c, turn);
