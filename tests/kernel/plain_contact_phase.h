@@ -293,7 +293,8 @@ class Plain {
         // The classical method where nothing is stiff, else Simpson's weights at 0, 1/4, 1/2, 1.
         const bool stiff = law_.mu_b > 0.0 || law_.mu_b_more > 0.0;
         const std::array<double, 4> node = {0.0, stiff ? 0.25 : 0.5, 0.5, 1.0},
-                                    weight = {1.0 / 6.0, stiff ? 0.0 : 1.0 / 3.0, stiff ? 2.0 / 3.0 : 1.0 / 3.0, 1.0 / 6.0};
+                                    weight = {1.0 / 6.0, stiff ? 0.0 : 1.0 / 3.0,
+                                              stiff ? 2.0 / 3.0 : 1.0 / 3.0, 1.0 / 6.0};
         for (;; h *= 0.5) {
             for (std::size_t stage = 1; stage < 4; ++stage) {
                 std::vector<double> at = y, d = now;
@@ -312,8 +313,7 @@ class Plain {
         const auto mean = [&](double k0, double k1, double k2, double k3) {
             return (h * weight[0] * k0 + h * weight[1] * k1) + (h * weight[2] * k2 + h * weight[3] * k3);
         };
-        for (std::size_t n = 0; n < y.size(); ++n)
-            y[n] += mean(k[0].y[n], k[1].y[n], k[2].y[n], k[3].y[n]);
+        for (std::size_t n = 0; n < y.size(); ++n) y[n] += mean(k[0].y[n], k[1].y[n], k[2].y[n], k[3].y[n]);
         for (std::size_t c = 0; c < contacts_.size(); ++c) {
             Contact& contact = contacts_[c];
             contact.d += mean(k[0].d[c], k[1].d[c], k[2].d[c], k[3].d[c]);

@@ -154,7 +154,8 @@ class InSpace {
         slopes(y_, slope_[0]);
         double most = 0.0;
         for (int c = 0; c < phase_.contacts; ++c) {
-            if (before_[c] > 0.0) most = largest(most, stiffness_[phase_.contact[c].i] + stiffness_[phase_.contact[c].j]);
+            if (before_[c] > 0.0)
+                most = largest(most, stiffness_[phase_.contact[c].i] + stiffness_[phase_.contact[c].j]);
         }
         const bool friction = has_friction(law_);
         const RungeKutta& method = friction ? kStabilised : kClassical;
@@ -174,7 +175,8 @@ class InSpace {
         }
         const double* w = method.weight;
         for (int n = 0; n < size_; ++n)
-            y_[n] += h * ((w[0] * slope_[0][n] + w[1] * slope_[1][n]) + (w[2] * slope_[2][n] + w[3] * slope_[3][n]));
+            y_[n] += h * ((w[0] * slope_[0][n] + w[1] * slope_[1][n]) +
+                          (w[2] * slope_[2][n] + w[3] * slope_[3][n]));
         for (int c = 0; c < phase_.contacts; ++c) remember(c, h);
         return h;
     }
@@ -183,7 +185,8 @@ class InSpace {
     double difference(double h) const {
         double most = 0.0;
         for (int n = 0; n < size_; ++n) {
-            if (n % kPerState >= 3) most = largest(most, absolute((slope_[0][n] + slope_[3][n]) - 2.0 * slope_[2][n]));
+            if (n % kPerState >= 3)
+                most = largest(most, absolute((slope_[0][n] + slope_[3][n]) - 2.0 * slope_[2][n]));
         }
         return h / 6.0 * most;
     }
