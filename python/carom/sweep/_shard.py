@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 import time
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,9 @@ _ROW_GROUP = 1 << 16
 _MOST_AT_ONCE = 1 << 14
 #: [s] Shots are played in blocks of about so long: between two of them a run can be stopped.
 _BLOCK_TIME = 0.2
+#: For the first array of pyarrow that becomes one of numpy: pyarrow looks for pandas then, and without the global lock two threads that do so at
+#: once wait for each other forever (pyarrow 26).
+_FIRST_ARRAY = threading.Lock()
 
 
 class Stopped(Exception):
@@ -45,6 +49,10 @@ class ContentHash:
     def __init__(self, schema: pyarrow.Schema) -> None:
         import hashlib
 
+        import pyarrow
+
+        with _FIRST_ARRAY:
+            pyarrow.array([0]).to_numpy()
         self._names = [[field.name, str(field.type)] for field in schema]
         # Of each column the rows without a value; the lengths of texts; the values.
         self._streams = [[hashlib.sha256() for _ in range(3)] for _ in schema]
