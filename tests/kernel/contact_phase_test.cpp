@@ -125,7 +125,6 @@ TEST(ContactPhase, StepsFollowTheFriction) {
             Cluster fine = small_rack(), coarse = small_rack();
             const long many = run(Isa::kScalar, fine, law, epsilon / 4.0),
                        few = run(Isa::kScalar, coarse, law, 1.0 / 16.0);
-
             EXPECT_LT(difference(fine, coarse), 1e-4) << epsilon << " " << V;
             EXPECT_LT(3 * few, many) << epsilon << " " << V;
         }
