@@ -2,6 +2,7 @@
 // records valid, and nothing else valid.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -82,13 +83,16 @@ void each_kind(const Json& value, const std::string& kind, const std::string& at
 Json profiled_break() {
     Scene scene = read_scene(CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml");
     use_cue(*scene.cue, "lossless");
-    scene.cue->speed = 9.0;  // so fast that a ball meets the end of a cushion
     scene.render.eye = Vec3(1.0, 1.0, 1.0);
     scene.render.target = Vec3(0.0, 1.0, 0.0);
     Record record = record_of(scene, true);
     record.tracks.front().own = BallSize{0.03, 0.2};
     record.table.bed = Rectangle(0.0, 0.0, 1.27, 2.54);
     record.events.front().slow = true;
+    // Whether a ball meets the end of a cushion is the break's luck.
+    const auto met = std::find_if(record.events.begin(), record.events.end(),
+                                  [](const Event& e) { return e.type == EventType::kBallCushion; });
+    met->detail = 0;
     return Json::parse(written(record));
 }
 
