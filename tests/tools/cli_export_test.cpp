@@ -115,10 +115,13 @@ Differences differences(const Glb& glb, const Record& record) {
                 std::any_of(record.events.begin(), record.events.end(),
                             [t](const Event& event) { return std::abs(event.time - t) < 2e-6 * (1.0 + t); });
             if (at_an_event) continue;
-            const Vec3 r = record.state_at(ball, t).position;
+            const BallState state = record.state_at(ball, t);
+            const Vec3& r = state.position;
             std::vector<double> p = object.at("translation").get<std::vector<double>>();
             if (!move.is_null()) p = sampled(glb, move, t, 3);
-            largest.place = std::max(largest.place, (Vec3(p[0], -p[2], p[1]) - r).norm());
+            // What floats resolve of a place and of a time: a ball beside the table falls for seconds.
+            const double resolved = 0x1p-24 * (r.norm() + state.velocity.norm() * t);
+            largest.place = std::max(largest.place, (Vec3(p[0], -p[2], p[1]) - r).norm() - resolved);
             std::vector<double> q = {0.0, 0.0, 0.0, 1.0};
             if (!turn.is_null()) q = sampled(glb, turn, t, 4);
             const Eigen::Quaterniond here = Eigen::Quaterniond(q[3], q[0], -q[2], q[1]).normalized();

@@ -76,6 +76,9 @@ Counted counted_root(Counted a) {
 Counted counted_fma(Counted a, Counted b, Counted c) {
     return count(&Counts::fma), Counted(__builtin_fma(a.value, b.value, c.value));
 }
+Counted counted_magnitude(Counted a) {
+    return Counted(__builtin_fabs(a.value));
+}
 __m128 counted_rsqrt(__m128 a) {
     return count(&Counts::rsqrt), _mm_rsqrt_ss(a);
 }
@@ -87,6 +90,7 @@ using namespace counting;
 // NOLINTBEGIN(clang-diagnostic-reserved-macro-identifier): these calls are counted
 #define __builtin_sqrt counted_root
 #define __builtin_fma counted_fma
+#define __builtin_fabs counted_magnitude
 // NOLINTEND(clang-diagnostic-reserved-macro-identifier)
 #define _mm_rsqrt_ss counted_rsqrt
 #include "bench/five_states.h"

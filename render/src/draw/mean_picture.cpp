@@ -1,5 +1,6 @@
 #include "draw/mean_picture.h"
 
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -46,8 +47,8 @@ void MeanPicture::finish() {
             if (beyond_[sum + k] != 0.0F)
                 rgba_[i + k] = screen_of_radiance(linear[rgba_[i + k]] + share * beyond_[sum + k]);
         }
-        rgba_[i + 3] =
-            static_cast<std::uint8_t>(static_cast<float>(rgba_[i + 3]) + share * beyond_[sum + 3] + 0.5F);
+        const float alpha = static_cast<float>(rgba_[i + 3]) + share * beyond_[sum + 3];
+        rgba_[i + 3] = static_cast<std::uint8_t>(std::lround(alpha));
     });
 }
 

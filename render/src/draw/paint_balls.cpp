@@ -65,8 +65,8 @@ class Skin {
   public:
     Skin(const BallInstance& ball, const std::vector<std::uint8_t>& glyphs)
         : base_{all(ball.color_number[0]), all(ball.color_number[1]), all(ball.color_number[2])},
-          pattern_(static_cast<BallPattern>(static_cast<int>(ball.pattern[0] + 0.5F))),
-          number_(static_cast<int>(ball.color_number[3] + 0.5F)),
+          pattern_(static_cast<BallPattern>(std::lround(ball.pattern[0]))),
+          number_(static_cast<int>(std::lround(ball.color_number[3]))),
           glyphs_(glyphs) {
         const float* q = ball.orientation;
         axis_ = {all(-q[0]), all(-q[1]), all(-q[2])};
@@ -174,7 +174,7 @@ void paint_shadow_beside(const Canvas& canvas, const DrawnBall& ball, float stre
 }  // namespace
 
 void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
-    const auto place = static_cast<BallPlace>(static_cast<int>(ball.instance.pattern[1] + 0.5F));
+    const auto place = static_cast<BallPlace>(std::lround(ball.instance.pattern[1]));
     if (place == BallPlace::kPocket) return;
     const View& view = canvas.view();
     const float *center = ball.instance.center_radius, R = center[3];

@@ -118,8 +118,9 @@ std::vector<std::uint8_t> glyph_atlas() {
 }
 
 float glyph_nearness(const std::vector<std::uint8_t>& atlas, int cell, float x, float y) {
-    const float across = (static_cast<float>(cell % kGlyphColumns) + x) * kGlyphWidth - 0.5F,
-                down = (static_cast<float>(cell / kGlyphColumns) + y) * kGlyphHeight - 0.5F;
+    const int column = cell % kGlyphColumns, row = cell / kGlyphColumns;
+    const float across = (static_cast<float>(column) + x) * kGlyphWidth - 0.5F,
+                down = (static_cast<float>(row) + y) * kGlyphHeight - 0.5F;
     const auto texel = [&](int i, int j) {
         i = std::clamp(i, 0, kGlyphColumns * kGlyphWidth - 1);
         j = std::clamp(j, 0, kGlyphRows * kGlyphHeight - 1);

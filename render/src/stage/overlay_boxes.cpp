@@ -13,7 +13,7 @@ namespace carom::render {
 namespace {
 
 constexpr Rgba kPanel{0.0F, 0.0F, 0.0F, 0.60F};  // background of the panels
-constexpr Rgba kInk{0.97F, 0.97F, 0.95F, 1.0F};  // text
+constexpr Rgba kTextInk{0.97F, 0.97F, 0.95F, 1.0F};  // text
 
 // [pixels] Height of a capital letter: readable in small frames, bounded in large ones; both panels fit side by side.
 double text_height(const DrawList& list) {
@@ -54,7 +54,7 @@ void add_clock(DrawList& list, double t) {
     const double left = side_room(list);
     list.boxes.push_back(
         {{left, room}, {left + 2.0 * room + text_width(height, text), 3.0 * room + height}, kPanel, -1});
-    add_text(list, {left + room, 2.0 * room}, height, text, kInk);
+    add_text(list, {left + room, 2.0 * room}, height, text, kTextInk);
 }
 
 void add_margin_bar(DrawList& list, const FrameBudget& cost) {
@@ -62,7 +62,7 @@ void add_margin_bar(DrawList& list, const FrameBudget& cost) {
     const double right = list.camera.size.width - side_room(list), left = right - width - 2.0 * room;
     const std::string text = fmt::format("{:.1f} of {:.1f} ms", cost.cost_ms, cost.budget_ms);
     list.boxes.push_back({{left, room}, {right, 4.0 * room + 1.7 * height}, kPanel, -1});
-    add_text(list, {left + room, 2.0 * room}, height, text, kInk);
+    add_text(list, {left + room, 2.0 * room}, height, text, kTextInk);
     // The full bar is twice the budget; beyond its middle the frame exceeds its budget.
     const double top = 3.0 * room + height, share = std::clamp(0.5 * cost.cost_ms / cost.budget_ms, 0.0, 1.0);
     const Rgba good{0.25F, 0.80F, 0.35F, 1.0F}, bad{0.92F, 0.25F, 0.20F, 1.0F}, mark{1.0F, 1.0F, 1.0F, 0.9F};
