@@ -12,7 +12,7 @@ namespace carom::render {
 
 namespace {
 
-constexpr Rgba kPanel{0.0F, 0.0F, 0.0F, 0.60F};  // background of the panels
+constexpr Rgba kPanel{0.0F, 0.0F, 0.0F, 0.60F};      // background of the panels
 constexpr Rgba kTextInk{0.97F, 0.97F, 0.95F, 1.0F};  // text
 
 // [pixels] Height of a capital letter: readable in small frames, bounded in large ones; both panels fit side by side.
