@@ -44,6 +44,8 @@ struct KernelAccuracy {
     int count = 0;                 ///< impacts on which the two converged methods agree: these are judged
     int disagreeing = 0;           ///< the other impacts, for which no error is given
     double worst_agreement = 0.0;  ///< largest difference of the two, share of the approach speed
+    double worst_rounding = 0.0;   ///< the most that rounding may make of an impact, share of its approach
+                                   ///< speed: no double is nearer than a tolerance and this
     double slope = 0.0;            ///< of log median error over log N, march, N >= 100
     std::vector<KernelAccuracyRow> rows;
     std::vector<KernelReach> reach;

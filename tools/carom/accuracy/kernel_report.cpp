@@ -59,8 +59,8 @@ Table reach_by_method(const KernelAccuracy& result) {
 std::string judged_sentence(const KernelAccuracy& result) {
     std::string text = fmt::format(
         "{} random impacts, {}. Two converged methods (power series in extended precision, "
-        "collocation at 1e-13)\nagree on them within {:.1e} of the approach speed",
-        result.count, result.isa, result.worst_agreement);
+        "collocation at 1e-13)\nagree on them within {:.1e} of the approach speed; rounding may make {:.1e}",
+        result.count, result.isa, result.worst_agreement, result.worst_rounding);
     if (result.disagreeing > 0)
         text += fmt::format("; on {} more they do not, and nothing is said about those", result.disagreeing);
     return text + ".";
@@ -84,6 +84,7 @@ std::string kernel_accuracy_json(const KernelAccuracy& result) {
                                         {"impacts", result.count},
                                         {"disagreeing", result.disagreeing},
                                         {"agreement", result.worst_agreement},
+                                        {"rounding", result.worst_rounding},
                                         {"slope", result.slope},
                                         {"rows", table_json(rows_of(result))},
                                         {"reach", table_json(reach_of(result))}};
