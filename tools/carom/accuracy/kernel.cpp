@@ -162,7 +162,7 @@ struct Converged {
     std::vector<Impact> impacts;  ///< those on which the two agree
     std::vector<reference::ImpactTruth> truth;
     int disagreeing = 0;
-    double worst = 0.0, worst_rounding = 0.0;
+    double worst = 0.0;
 };
 
 /// What rounding may make of an impact, as a share of the approach speed: a fast glancing ball has large
@@ -188,14 +188,13 @@ Converged converge(const std::vector<Impact>& impacts, Isa isa) {
         const double apart = truth.ok && other.status == ImpactStatus::kOk
                                  ? reference::error_of(other, truth, impact.params.R)
                                  : INFINITY;
-        const double rounding = rounding_share(impact, static_cast<double>(truth.approach));
-        const bool agree = apart <= kTightestTolerance + rounding;
+        const bool agree =
+            apart <= kTightestTolerance + rounding_share(impact, static_cast<double>(truth.approach));
         if (!agree) {
             ++all.disagreeing;
             continue;
         }
         all.worst = std::max(all.worst, apart);
-        all.worst_rounding = std::max(all.worst_rounding, rounding);
         all.impacts.push_back(impact);
         all.truth.push_back(truth);
         progress.show_bar(static_cast<long>(all.impacts.size()), static_cast<long>(impacts.size()));
@@ -206,12 +205,17 @@ Converged converge(const std::vector<Impact>& impacts, Isa isa) {
 void judge(Subject& s, const Converged& converged) {
     const std::vector<ImpactResult> results = s.results(converged.impacts);
     std::vector<double> errors;
+    double share = 0.0;
     for (std::size_t i = 0; i < results.size(); ++i) {
         const bool ok = results[i].status == ImpactStatus::kOk;
         errors.push_back(
             ok ? reference::error_of(results[i], converged.truth[i], converged.impacts[i].params.R)
                : INFINITY);
+        const auto approach = static_cast<double>(converged.truth[i].approach);
+        share =
+            std::max(share, errors.back() / (s.row.value + rounding_share(converged.impacts[i], approach)));
     }
+    if (s.row.method == "tolerance") s.row.share_of_bound = share;
     std::sort(errors.begin(), errors.end());
     s.row.error_median = median(errors);
     s.row.error_p99 = errors[(errors.size() * 99 + 99) / 100 - 1];
@@ -271,7 +275,6 @@ KernelAccuracy measure_kernel_accuracy(const AccuracyKernelArgs& args) {
     result.count = static_cast<int>(converged.impacts.size());
     result.disagreeing = converged.disagreeing;
     result.worst_agreement = converged.worst;
-    result.worst_rounding = converged.worst_rounding;
     ProgressLine progress("accuracy kernel, errors:");
     std::vector<double> steps, errors;
     for (std::size_t i = 0; i < list.size(); ++i) {

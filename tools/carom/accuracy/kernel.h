@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,9 @@ struct KernelAccuracyRow {
     bool other_model = false;  ///< a formula for simpler physics: its error is the model's, not numerical
     double ns_min = 0.0, ns_median = 0.0, ns_max = 0.0;
     double error_median = 0.0, error_p99 = 0.0, error_max = 0.0;
+    /// Tolerance alone: the largest error as a share of what is promised for that impact, which is the tolerance and what
+    /// rounding makes of its speeds.
+    std::optional<double> share_of_bound;
 };
 
 /// The time that a method needs to reach an error: that of its fastest setting which reaches it for half of all impacts, and
@@ -44,8 +48,6 @@ struct KernelAccuracy {
     int count = 0;                 ///< impacts on which the two converged methods agree: these are judged
     int disagreeing = 0;           ///< the other impacts, for which no error is given
     double worst_agreement = 0.0;  ///< largest difference of the two, share of the approach speed
-    double worst_rounding = 0.0;   ///< the most that rounding may make of an impact, share of its approach
-                                   ///< speed: no double is nearer than a tolerance and this
     double slope = 0.0;            ///< of log median error over log N, march, N >= 100
     std::vector<KernelAccuracyRow> rows;
     std::vector<KernelReach> reach;

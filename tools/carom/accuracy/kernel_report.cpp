@@ -27,10 +27,11 @@ Table rows_of(const KernelAccuracy& result) {
                 Column("setting", "setting", ">9"), Column("ns", "ns min", ">12.1f"),
                 Column("ns_median", "ns median", ">12.1f"), Column("ns_max", "ns max", ">12.1f"),
                 Column("error_median", "err median", ">11.1e"), Column("error_p99", "err 99 %", ">11.1e"),
-                Column("error_max", "err worst", ">11.1e"), Column("other_model", "", "", false));
+                Column("error_max", "err worst", ">11.1e"), Column("share_of_bound", "", "", false),
+                Column("other_model", "", "", false));
     for (const KernelAccuracyRow& r : result.rows)
         table.add({r.method, r.kind, r.setting, r.ns_min, r.ns_median, r.ns_max, r.error_median, r.error_p99,
-                   r.error_max, r.other_model},
+                   r.error_max, r.share_of_bound ? Cell(*r.share_of_bound) : Cell(), r.other_model},
                   r.other_model ? "  (of the simpler model)" : "");
     return table;
 }
@@ -59,8 +60,8 @@ Table reach_by_method(const KernelAccuracy& result) {
 std::string judged_sentence(const KernelAccuracy& result) {
     std::string text = fmt::format(
         "{} random impacts, {}. Two converged methods (power series in extended precision, "
-        "collocation at 1e-13)\nagree on them within {:.1e} of the approach speed; rounding may make {:.1e}",
-        result.count, result.isa, result.worst_agreement, result.worst_rounding);
+        "collocation at 1e-13)\nagree on them within {:.1e} of the approach speed",
+        result.count, result.isa, result.worst_agreement);
     if (result.disagreeing > 0)
         text += fmt::format("; on {} more they do not, and nothing is said about those", result.disagreeing);
     return text + ".";
@@ -84,7 +85,6 @@ std::string kernel_accuracy_json(const KernelAccuracy& result) {
                                         {"impacts", result.count},
                                         {"disagreeing", result.disagreeing},
                                         {"agreement", result.worst_agreement},
-                                        {"rounding", result.worst_rounding},
                                         {"slope", result.slope},
                                         {"rows", table_json(rows_of(result))},
                                         {"reach", table_json(reach_of(result))}};
