@@ -80,30 +80,31 @@ TEST(BoxSearch, FindsEveryOverlap) {
     }
 }
 
-TEST(EventQueue, TheWinnerIsTheLeast) {
-    for (const int count : {1, 2, 3, 16, 100}) {
+TEST(EventQueue, TheFirstOnesAreTheLeast) {
+    for (const int count : {0, 1, 2, 3, 16, 17, 100, 300, 5000}) {
         EventQueue queue;
         queue.set_up(count);
-        std::vector<double> time(static_cast<std::size_t>(count));
-        const auto earlier = [&time](int i, int j) { return time[i] < time[j]; };
+        std::vector<double> time(static_cast<std::size_t>(count), kInfinity);
         Generator rng(7);
-        const auto change = [&](int i) { time[i] = rng.uniform() < 0.2 ? kInfinity : rng.uniform(); };
+        // Few different times, so that many are equal.
+        const auto change = [&](int i) {
+            time[i] = rng.uniform() < 0.2 ? kInfinity : static_cast<double>(rng.next() % 64);
+            queue.set(i, time[i]);
+        };
         for (int i = 0; i < count; ++i) change(i);
-        for (int i = 0; i < count; ++i) queue.update(i, earlier);
         for (int round = 0; round < 1000; ++round) {
-            // Several players change before any of them plays again, as after an event.
-            std::vector<int> changed;
-            for (int k = 0; k < 3; ++k) {
-                changed.push_back(static_cast<int>(rng.next() % static_cast<std::uint64_t>(count)));
-                change(changed.back());
-            }
-            for (const int i : changed) queue.update(i, earlier);
-            ASSERT_EQ(time[queue.first()], *std::min_element(time.begin(), time.end()));
+            for (int k = 0; k < 3 && count > 0; ++k)
+                change(static_cast<int>(rng.next() % static_cast<std::uint64_t>(count)));
+            const double first = count > 0 ? *std::min_element(time.begin(), time.end()) : kInfinity;
+            ASSERT_EQ(queue.first(), first);
+            if (!(first < kInfinity)) continue;
+            std::vector<int> expected, found;
+            for (int i = 0; i < count; ++i)
+                if (time[i] == first) expected.push_back(i);
+            queue.all_at(first, [&found](int i) { found.push_back(i); });
+            ASSERT_EQ(found, expected);
         }
     }
-    EventQueue empty;
-    empty.set_up(0);
-    EXPECT_LT(empty.first(), 0);
 }
 
 // Random paths, many of them aimed so that they pass at about the reach.

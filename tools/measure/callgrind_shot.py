@@ -24,7 +24,7 @@ import tempfile
 PARTS = [
     ("cluster", r"carom::Cluster(s|Map)::"),
     ("kernel", r"carom::kernel::"),
-    ("queue", r"EventQueue|Detector::(next|before|closing|place|requeue|mark_changed|first_of)"),
+    ("queue", r"EventQueue|Detector::(next|before|closing|place|requeue|first_of)"),
     ("detect", r"Detector::|BoxSearch|b2|time_to_|time_along|stays_|first_descent|bracketed_root|closing_speed|refine|"
                r"along_line|brought_near|first_touch|Descent|unit_roots"),
     ("memory", r"^(_int_malloc|_int_free|malloc|free|operator new|operator delete|malloc_consolidate|unlink_chunk|"

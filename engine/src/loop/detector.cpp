@@ -25,10 +25,7 @@ Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& 
       detect_ns_(costs != nullptr ? &costs->event.detect_ns : nullptr),
       search_ns_(costs != nullptr ? &costs->search_ns : nullptr) {
     const auto count = static_cast<std::size_t>(balls_.count());
-    key_.assign(count, kNever);
     mover_.assign(count, Mover());
-    changed_.clear();
-    changed_.reserve(count);
     tied_.clear();
     tied_.reserve(count);
     queue_.set_up(balls_.count());
@@ -85,11 +82,11 @@ bool Detector::before_at_once(const Candidate& x, const Candidate& y) const {
     return place_x.y() < place_y.y();
 }
 
-void Detector::mark_changed(int ball) {
-    Mover& mover = mover_[ball];
-    if (mover.queued) return;
-    mover.queued = true;
-    changed_.push_back(ball);
+// To be called whenever a candidate of the ball or the end of its box has changed.
+void Detector::requeue(int ball) {
+    const Mover& mover = mover_[ball];
+    queue_.set(ball,
+               std::min(std::min(mover.own, mover.table.time), std::min(mover.pair.time, mover.refresh)));
 }
 
 Candidate Detector::first_of(int ball) const {
@@ -98,22 +95,6 @@ Candidate Detector::first_of(int ball) const {
     take_first(mover.table, first);
     take_first(mover.pair, first);
     return first;
-}
-
-// Updates the queue for the balls whose candidates have changed.
-void Detector::requeue() {
-    for (const int ball : changed_) {
-        Mover& mover = mover_[ball];
-        mover.queued = false;
-        key_[ball] =
-            std::min(std::min(mover.own, mover.table.time), std::min(mover.pair.time, mover.refresh));
-    }
-    const auto earlier = [this](int x, int y) {
-        const double p = key_[x], q = key_[y];
-        return p != q ? p < q : p != kNever && before(first_of(x), first_of(y));
-    };
-    for (const int ball : changed_) queue_.update(ball, earlier);
-    changed_.clear();
 }
 
 bool Detector::must_search_again(int ball) const {
@@ -125,29 +106,23 @@ bool Detector::must_search_again(int ball) const {
 }
 
 // Re-detection: contacts are searched again for balls whose box has expired or whose partner has changed its motion. Of the events
-// at one instant the first is chosen here, from the present motions: the matches of the queue were played with earlier ones, and
-// their order would depend on the places of the balls in the list.
+// at one instant the first is chosen here, from the present motions.
 Candidate Detector::next() {
     const Stopwatch watch(detect_ns_);
     for (;;) {
-        const int ball = queue_.first();
-        if (ball < 0 || key_[ball] == kNever) return {};
-        const double time = key_[ball];
+        const double time = queue_.first();
+        if (time == kNever) return {};
         tied_.clear();
-        queue_.first_ones([&](int other) { return key_[other] == time; },
-                          [&](int other) { tied_.push_back(other); });
+        queue_.all_at(time, [this](int ball) { tied_.push_back(ball); });
         bool again = false;
-        for (const int other : tied_) {
-            if (!must_search_again(other)) continue;
-            search_again(other);
+        for (const int ball : tied_) {
+            if (!must_search_again(ball)) continue;
+            search_again(ball);
             again = true;
         }
-        if (again) {
-            requeue();
-            continue;
-        }
+        if (again) continue;
         Candidate first;
-        for (const int other : tied_) take_first(first_of(other), first);
+        for (const int ball : tied_) take_first(first_of(ball), first);
         return first;
     }
 }
@@ -176,24 +151,21 @@ void Detector::renew(int ball) {
         else
             ball_boxes_.remove(ball);
     }
-    mark_changed(ball);
+    requeue(ball);
 }
 
 void Detector::update(std::vector<int>& touched) {
     const Stopwatch watch(detect_ns_);
-    {
-        const Stopwatch search(search_ns_);
-        if (touched.size() > 1) {  // most events change one ball
-            std::sort(touched.begin(), touched.end());
-            touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-        }
-        ++round_;
-        for (const int ball : touched) renew(ball);
-        if (plan_.pairs)
-            for (const int ball : touched) search_pairs(ball);
-        touched.clear();
+    const Stopwatch search(search_ns_);
+    if (touched.size() > 1) {  // most events change one ball
+        std::sort(touched.begin(), touched.end());
+        touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
     }
-    requeue();
+    ++round_;
+    for (const int ball : touched) renew(ball);
+    if (plan_.pairs)
+        for (const int ball : touched) search_pairs(ball);
+    touched.clear();
 }
 
 }  // namespace carom

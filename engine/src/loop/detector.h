@@ -1,7 +1,7 @@
 // Finds the next contact or state transition. Every ball has three candidates: its state transition, its first contact
 // with the table and its first contact with another ball. Boxes exclude what a ball cannot reach before its own next
-// event (broad phase), closed forms give the times of the other contacts (contact/detect.h), and a tournament orders
-// all balls. Implemented in detector.cpp (the order), pair_search.cpp, table_search.cpp and flight_search.cpp.
+// event (broad phase), closed forms give the times of the other contacts (contact/detect.h), and a queue of
+// the least times orders all balls. Implemented in detector.cpp (the order), pair_search.cpp, table_search.cpp and flight_search.cpp.
 #pragma once
 
 #include <algorithm>
@@ -43,15 +43,13 @@ struct alignas(64) Mover {
     /// Time at which the box expires; kNever if an event of the ball itself is earlier
     double refresh = kNever;
     double travel = 0.0;  ///< [m] distance that the next box covers
-    bool straight = false, queued = false;
+    bool straight = false;
 };
 
 struct DetectorMemory {
     std::vector<Mover> mover_;
-    std::vector<double> key_;   // per ball: time of its first candidate or of the expiry of its box
-    std::vector<int> changed_;  // balls whose position in the queue must be updated
-    std::vector<int> tied_;     // balls whose next event is at the same instant
-    EventQueue queue_;
+    std::vector<int> tied_;  // balls whose next event is at the same instant
+    EventQueue queue_;       // of the balls: the time of the first candidate or of the expiry of the box
     BoxSearch ball_boxes_,
         table_boxes_;             // of balls until their own next event, and of the parts of the table
     std::vector<Contact> parts_;  // cushions, then noses, then pockets; without a ball
@@ -97,8 +95,7 @@ class Detector : private Borrowed<DetectorMemory> {
     Vec2 place(const Candidate& c) const;
     Candidate first_of(int ball) const;
     bool must_search_again(int ball) const;
-    void mark_changed(int ball);
-    void requeue();
+    void requeue(int ball);
     void renew(int ball);
 
     // pair_search.cpp

@@ -1,59 +1,110 @@
-// Finds the ball whose next event is first: a tournament over all balls with the winner at the root. A ball whose
-// event changed replays only its own log2 n matches. All memory is allocated by set_up().
+// Finds the players whose next event is first: the least of their times. Groups of sixteen times are compared without a
+// branch, since none could be predicted; the least of a group is one of the times of the next level, as long as a level has
+// more than one group. All memory is allocated by set_up().
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
 #include <vector>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 namespace carom {
 
 class EventQueue {
   public:
-    /// Starts with `count` players; update() must be called once for each of them before first() is valid.
+    /// Starts with `count` players, none of whom has an event.
     void set_up(int count) {
-        leaves_ = 1;
-        while (leaves_ < count) leaves_ *= 2;
-        winner_.assign(2 * static_cast<std::size_t>(leaves_), -1);
-        for (int i = 0; i < count; ++i)
-            winner_[static_cast<std::size_t>(leaves_) + static_cast<std::size_t>(i)] = i;
+        std::size_t levels = 0;
+        auto size = static_cast<std::size_t>(count);
+        do {
+            const std::size_t groups = std::max<std::size_t>(1, (size + kGroup - 1) / kGroup);
+            if (level_.size() == levels) level_.emplace_back();
+            level_[levels++].assign(groups, Group());
+            size = groups;
+        } while (size > 1);
+        level_.resize(levels);
     }
 
-    /// Replays the matches of player i. earlier(x, y): whether x is before y; a strict weak order.
-    template <class Earlier>
-    void update(int i, Earlier earlier) {
-        for (std::size_t node = static_cast<std::size_t>(leaves_ + i) / 2; node > 0; node /= 2) {
-            const int left = winner_[2 * node], right = winner_[2 * node + 1];
-            const int winner = left < 0 || (right >= 0 && earlier(right, left)) ? right : left;
-            // The result of this match, and hence of all matches above, is unchanged.
-            if (winner == winner_[node] && winner != i) return;
-            winner_[node] = winner;
+    /// Sets the time of the next event of player i; infinite: there is none.
+    void set(int i, double time) {
+        auto place = static_cast<std::size_t>(i);
+        for (std::size_t level = 0;; ++level) {
+            Group& group = level_[level][place / kGroup];
+            group.time[place % kGroup] = time;
+            if (level + 1 == level_.size()) return;
+            place /= kGroup;
+            time = least(group);
+            if (time == level_[level + 1][place / kGroup].time[place % kGroup]) return;
         }
     }
 
-    /// The winner; -1 if there are no players.
-    int first() const { return winner_[1]; }
+    double time(int i) const {
+        const auto place = static_cast<std::size_t>(i);
+        return level_[0][place / kGroup].time[place % kGroup];
+    }
 
-    /// Calls found(player) for the winner and all players for whom as_early(player) holds, if that order agrees with the one
-    /// of the matches: a player who is later than another one has lost to him.
-    template <class AsEarly, class Found>
-    void first_ones(AsEarly as_early, Found found) const {
-        ties_below(1, as_early, found);
+    /// The time of the first event; infinite if there is none.
+    double first() const { return least(level_.back()[0]); }
+
+    /// Calls found(player) for all players whose time is the given one, the first(), in the order of the players.
+    template <class Found>
+    void all_at(double first, Found found) const {
+        descend(level_.size() - 1, 0, first, found);
     }
 
   private:
-    template <class AsEarly, class Found>
-    void ties_below(std::size_t node, AsEarly as_early, Found found) const {
-        const int winner = winner_[node];
-        if (winner < 0 || !as_early(winner)) return;
-        if (node >= static_cast<std::size_t>(leaves_)) {
-            found(winner);
-            return;
+    static constexpr std::size_t kGroup = 16;  // [-] times that are compared at once
+    struct alignas(64) Group {
+        Group() { time.fill(std::numeric_limits<double>::infinity()); }
+        std::array<double, kGroup> time;
+    };
+
+    static double least(const Group& group) {
+        const auto& t = group.time;
+#if defined(__SSE2__)
+        __m128d a = _mm_load_pd(&t[0]), b = _mm_load_pd(&t[2]);
+        for (std::size_t k = 4; k < kGroup; k += 4) {
+            a = _mm_min_pd(a, _mm_load_pd(&t[k]));
+            b = _mm_min_pd(b, _mm_load_pd(&t[k + 2]));
         }
-        ties_below(2 * node, as_early, found);
-        ties_below(2 * node + 1, as_early, found);
+        a = _mm_min_pd(a, b);
+        return _mm_cvtsd_f64(_mm_min_sd(a, _mm_unpackhi_pd(a, a)));
+#else
+        return *std::min_element(t.begin(), t.end());
+#endif
     }
 
-    int leaves_ = 1;
-    std::vector<int> winner_;  // of the match at each node; the leaves follow the inner nodes
+    /// A bit for every time of the group that is this one.
+    static unsigned equal(const Group& group, double time) {
+        unsigned mask = 0;
+#if defined(__SSE2__)
+        const __m128d asked = _mm_set1_pd(time);
+        for (std::size_t k = 0; k < kGroup; k += 2)
+            mask |= static_cast<unsigned>(_mm_movemask_pd(_mm_cmpeq_pd(_mm_load_pd(&group.time[k]), asked)))
+                    << k;
+#else
+        for (std::size_t k = 0; k < kGroup; ++k) mask |= static_cast<unsigned>(group.time[k] == time) << k;
+#endif
+        return mask;
+    }
+
+    template <class Found>
+    void descend(std::size_t level, std::size_t group, double first, Found& found) const {
+        for (unsigned mask = equal(level_[level][group], first); mask != 0; mask &= mask - 1) {
+            const std::size_t place = group * kGroup + static_cast<std::size_t>(__builtin_ctz(mask));
+            if (level == 0)
+                found(static_cast<int>(place));
+            else
+                descend(level - 1, place, first, found);
+        }
+    }
+
+    std::vector<std::vector<Group>> level_;
 };
 
 }  // namespace carom

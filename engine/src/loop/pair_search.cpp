@@ -94,7 +94,7 @@ void Detector::offer(int ball, int partner, Candidate c) {
     if (!before(c, mine)) return;
     mine = c;
     mine.stamp = mover_[partner].stamp;
-    mark_changed(ball);
+    requeue(ball);
 }
 
 // Finds the contacts of one ball with others and offers each to both balls.
@@ -129,7 +129,7 @@ void Detector::search_again(int ball) {
     Mover& mover = mover_[ball];
     ++round_;
     const double refresh = mover.refresh;
-    const bool expired = refresh <= key_[ball];
+    const bool expired = refresh <= queue_.time(ball);
     mover.pair = {};
     if (expired) {
         // The distance doubles each time, so that the number of searches for a ball without contacts is finite.
@@ -137,7 +137,7 @@ void Detector::search_again(int ball) {
         bound(ball, refresh);
     }
     search_pairs(ball);
-    mark_changed(ball);
+    requeue(ball);
 }
 
 }  // namespace carom
