@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 #include "carom/engine/vec.h"
 #include "contact/roots.h"
 
@@ -65,7 +69,7 @@ inline double least(double c, double b, double a, double T) {
 /// the functions above would find nothing there. Needs no root and no division by a length; false means that they must
 /// be called. Two projections give lower bounds of the distance: on the present direction to the other centre, and on
 /// the normal of the relative velocity.
-inline bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reach, double window) {
+inline bool stays_apart_plain(const Vec2& r, const Vec2& v, const Vec2& a, double reach, double window) {
     if (!(window >= 0.0)) return true;
     const double far = reach * (1.0 + kApartShare);
     const double d2 = dot(r, r);
@@ -75,6 +79,44 @@ inline bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reac
     const double across = side < 0.0 ? least(-side, 0.0, -bend, window) : least(side, 0.0, bend, window);
     return across > 0.0 && across * across > far * far * dot(v, v);
 }
+
+#if defined(__SSE2__)
+/// The same with both projections at once and without a branch on them: which one of the cases of least() holds cannot be predicted.
+inline bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reach, double window) {
+    if (!(window >= 0.0)) return true;
+    const double far = reach * (1.0 + kApartShare), d2 = dot(r, r), side = cross(r, v),
+                 bend = 0.5 * cross(a, v);
+    const __m128d zero = _mm_setzero_pd(), sign = _mm_set1_pd(-0.0);
+    // Lanes: towards, across.
+    const __m128d flip = _mm_and_pd(sign, _mm_cmplt_pd(_mm_set_pd(side, 0.0), zero));
+    const __m128d flipped = _mm_unpackhi_pd(flip, flip);
+    const __m128d c = _mm_xor_pd(flip, _mm_set_pd(side, d2)), b = _mm_set_pd(0.0, dot(r, v)),
+                  k = _mm_xor_pd(_mm_move_sd(flipped, zero), _mm_set_pd(bend, 0.5 * dot(r, a)));
+    const __m128d rises = _mm_and_pd(_mm_cmpge_pd(b, zero), _mm_cmpge_pd(k, zero));
+    __m128d low = _mm_set1_pd(-kNever);
+    if (window < kNever) {
+        const __m128d T = _mm_set1_pd(window), linear = _mm_mul_pd(b, T),
+                      square = _mm_mul_pd(_mm_mul_pd(k, T), T);
+        const __m128d end = _mm_min_pd(_mm_add_pd(c, _mm_add_pd(linear, square)), c);
+        const __m128d turns =
+            _mm_and_pd(_mm_cmpgt_pd(k, zero),
+                       _mm_cmplt_pd(_mm_xor_pd(sign, b), _mm_mul_pd(_mm_mul_pd(_mm_set1_pd(2.0), k), T)));
+        const __m128d turn = _mm_sub_pd(c, _mm_div_pd(_mm_mul_pd(b, b), _mm_mul_pd(_mm_set1_pd(4.0), k)));
+        low = _mm_or_pd(_mm_and_pd(turns, turn), _mm_andnot_pd(turns, end));
+        const __m128d terms = _mm_add_pd(_mm_add_pd(_mm_andnot_pd(sign, c), _mm_andnot_pd(sign, linear)),
+                                         _mm_andnot_pd(sign, square));
+        low = _mm_sub_pd(low, _mm_mul_pd(_mm_set1_pd(kTermShare), terms));
+    }
+    low = _mm_or_pd(_mm_and_pd(rises, c), _mm_andnot_pd(rises, low));
+    const __m128d limit = _mm_mul_pd(_mm_set1_pd(far * far), _mm_set_pd(dot(v, v), d2));
+    return _mm_movemask_pd(_mm_and_pd(_mm_cmpgt_pd(low, zero), _mm_cmpgt_pd(_mm_mul_pd(low, low), limit))) !=
+           0;
+}
+#else
+inline bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reach, double window) {
+    return stays_apart_plain(r, v, a, reach, window);
+}
+#endif
 
 /// The same for a straight line, on either side.
 bool stays_off_line(const Path& ball, const Vec2& from, const Vec2& direction, double R, double window);

@@ -49,12 +49,12 @@ b2AABB BoxSearch::aabb_of(const Rounded& box) {
 
 void BoxSearch::set_up(int count, Search kind) {
     const auto boxes = static_cast<std::size_t>(count);
-    const std::size_t whole = kind == Search::kTree ? kBlock : kGroup;
+    const std::size_t whole = kind == Search::kTree ? kBlock : kRow;
     const std::size_t size = (boxes + whole - 1) / whole * whole;
-    Group nowhere{};
-    for (Four* low : {&nowhere.low_x, &nowhere.low_y}) low->fill(kNowhere);
-    for (Four* high : {&nowhere.high_x, &nowhere.high_y}) high->fill(-kNowhere);
-    groups_.assign(size / kGroup, nowhere);
+    Row nowhere{};
+    for (Bounds* low : {&nowhere.low_x, &nowhere.low_y}) low->fill(kNowhere);
+    for (Bounds* high : {&nowhere.high_x, &nowhere.high_y}) high->fill(-kNowhere);
+    rows_.assign(size / kRow, nowhere);
     tree_.reset();
     if (kind != Search::kTree) return;
     tree_ = std::make_unique<b2DynamicTree>();
@@ -67,12 +67,12 @@ void BoxSearch::set_up(int count, Search kind) {
 }
 
 void BoxSearch::set(std::size_t slot, const Rounded& box) {
-    Group& g = groups_[slot / kGroup];
-    const std::size_t k = slot % kGroup;
-    g.low_x[k] = box.low_x;
-    g.low_y[k] = box.low_y;
-    g.high_x[k] = box.high_x;
-    g.high_y[k] = box.high_y;
+    Row& row = rows_[slot / kRow];
+    const std::size_t k = slot % kRow;
+    row.low_x[k] = box.low_x;
+    row.low_y[k] = box.low_y;
+    row.high_x[k] = box.high_x;
+    row.high_y[k] = box.high_y;
 }
 
 void BoxSearch::place(int index, const RoundedBox& rounded) {

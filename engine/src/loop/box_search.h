@@ -1,5 +1,5 @@
 // Finds the boxes that overlap a box. Boxes are in single precision and rounded outward: they only exclude pairs, and
-// the remaining pairs are decided in double precision. The search is either one loop over all boxes, four at a time,
+// the remaining pairs are decided in double precision. The search is either one loop over all boxes, sixteen at a time,
 // or Box2D's dynamic tree, whose leaves are blocks of 64 neighbouring boxes, followed by that loop inside the blocks.
 // Both find the same set.
 #pragma once
@@ -65,12 +65,12 @@ class BoxSearch {
     }
 
   private:
-    static constexpr std::size_t kGroup = 4;   // [-] boxes that are compared at once
+    static constexpr std::size_t kRow = 16;    // [-] boxes that are compared at once
     static constexpr std::size_t kBlock = 64;  // [-] boxes per block
     using Rounded = RoundedBox;
-    using Four = std::array<float, kGroup>;
-    struct alignas(16) Group {
-        Four low_x, low_y, high_x, high_y;
+    using Bounds = std::array<float, kRow>;
+    struct alignas(64) Row {
+        Bounds low_x, low_y, high_x, high_y;
     };
     static b2AABB aabb_of(const Rounded& box);
     std::size_t slot(int index) const {
@@ -78,9 +78,9 @@ class BoxSearch {
         return tree_ ? static_cast<std::size_t>(slot_[i]) : i;
     }
     Rounded at(std::size_t slot) const {
-        const Group& g = groups_[slot / kGroup];
-        const std::size_t k = slot % kGroup;
-        return {g.low_x[k], g.low_y[k], g.high_x[k], g.high_y[k]};
+        const Row& row = rows_[slot / kRow];
+        const std::size_t k = slot % kRow;
+        return {row.low_x[k], row.low_y[k], row.high_x[k], row.high_y[k]};
     }
     void set(std::size_t slot, const Rounded& box);
     void rebuild();
@@ -90,6 +90,7 @@ class BoxSearch {
     void search(const Rounded& box, Found found) const;
     template <class Found>
     void scan(std::size_t begin, std::size_t end, const Rounded& box, Found& found) const;
+    static unsigned overlaps(const Row& row, const Rounded& box);
 
     template <class Found>
     struct BlockVisitor {
@@ -100,7 +101,7 @@ class BoxSearch {
     };
 
     // The boxes by slot, padded with some that overlap nothing.
-    std::vector<Group> groups_;
+    std::vector<Row> rows_;
     // With the tree: the slot of each box, the box in each slot, and the proxy of each block of slots.
     std::unique_ptr<b2DynamicTree> tree_;
     std::vector<int> slot_, index_, proxy_;
@@ -112,14 +113,14 @@ template <class Found>
 bool BoxSearch::BlockVisitor<Found>::QueryCallback(int proxy) {
     const auto block = reinterpret_cast<std::uintptr_t>(boxes.tree_->GetUserData(proxy));
     auto by_slot = [this](int slot) { found(boxes.index_[slot]); };
-    boxes.scan(block * (kBlock / kGroup), (block + 1) * (kBlock / kGroup), box, by_slot);
+    boxes.scan(block * (kBlock / kRow), (block + 1) * (kBlock / kRow), box, by_slot);
     return true;
 }
 
 template <class Found>
 void BoxSearch::search(const Rounded& box, Found found) const {
     if (!tree_) {
-        scan(0, groups_.size(), box, found);
+        scan(0, rows_.size(), box, found);
         return;
     }
     BlockVisitor<Found> visitor{*this, box, found};
@@ -128,28 +129,33 @@ void BoxSearch::search(const Rounded& box, Found found) const {
 
 template <class Found>
 void BoxSearch::scan(std::size_t begin, std::size_t end, const Rounded& box, Found& found) const {
-    const Group* const groups = groups_.data();
+    for (std::size_t row = begin; row < end; ++row)
+        for (unsigned mask = overlaps(rows_[row], box); mask != 0; mask &= mask - 1)
+            found(static_cast<int>(row * kRow) + __builtin_ctz(mask));
+}
+
+// A bit for every box of the row that overlaps this one. All are compared before the first bit is looked at: how many overlap
+// cannot be predicted.
+inline unsigned BoxSearch::overlaps(const Row& row, const Rounded& box) {
 #if defined(__SSE2__)
     const __m128 lx = _mm_set1_ps(box.low_x), ly = _mm_set1_ps(box.low_y);
     const __m128 hx = _mm_set1_ps(box.high_x), hy = _mm_set1_ps(box.high_y);
-    for (std::size_t i = begin; i < end; ++i) {
-        const Group& g = groups[i];
-        const __m128 in_x = _mm_and_ps(_mm_cmple_ps(_mm_load_ps(g.low_x.data()), hx),
-                                       _mm_cmple_ps(lx, _mm_load_ps(g.high_x.data())));
-        const __m128 in_y = _mm_and_ps(_mm_cmple_ps(_mm_load_ps(g.low_y.data()), hy),
-                                       _mm_cmple_ps(ly, _mm_load_ps(g.high_y.data())));
-        for (auto mask = static_cast<unsigned>(_mm_movemask_ps(_mm_and_ps(in_x, in_y))); mask != 0;
-             mask &= mask - 1)
-            found(static_cast<int>(i * kGroup) + __builtin_ctz(mask));
-    }
+    const auto four = [&](std::size_t k) {
+        const __m128 in_x = _mm_and_ps(_mm_cmple_ps(_mm_load_ps(&row.low_x[k]), hx),
+                                       _mm_cmple_ps(lx, _mm_load_ps(&row.high_x[k])));
+        const __m128 in_y = _mm_and_ps(_mm_cmple_ps(_mm_load_ps(&row.low_y[k]), hy),
+                                       _mm_cmple_ps(ly, _mm_load_ps(&row.high_y[k])));
+        return _mm_castps_si128(_mm_and_ps(in_x, in_y));
+    };
+    const __m128i first = _mm_packs_epi32(four(0), four(4)), second = _mm_packs_epi32(four(8), four(12));
+    return static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(first, second)));
 #else
-    for (std::size_t i = begin; i < end; ++i) {
-        const Group& g = groups[i];
-        for (std::size_t k = 0; k < kGroup; ++k)
-            if (g.low_x[k] <= box.high_x && box.low_x <= g.high_x[k] && g.low_y[k] <= box.high_y &&
-                box.low_y <= g.high_y[k])
-                found(static_cast<int>(i * kGroup + k));
-    }
+    unsigned mask = 0;
+    for (std::size_t k = 0; k < kRow; ++k)
+        mask |= static_cast<unsigned>(row.low_x[k] <= box.high_x && box.low_x <= row.high_x[k] &&
+                                      row.low_y[k] <= box.high_y && box.low_y <= row.high_y[k])
+                << k;
+    return mask;
 #endif
 }
 
