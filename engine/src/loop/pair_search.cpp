@@ -73,20 +73,22 @@ void Detector::bound(int ball, double from, const RoundedBox* whole) {
 Candidate Detector::pair(int a, const Path& mine, int b, double latest) const {
     const Segment &s = balls_.segment(a), &q = balls_.segment(b);
     if (!mine.moves && !translates(q.state)) return {};
+    const bool in_air = flights_ && (flies(s.state) || flies(q.state));
+    // A ball in a pocket's mouth is out of the way of those above the cloth.
+    if (in_air && (s.state == MotionState::kFalling || q.state == MotionState::kFalling)) return {};
     const double from = std::max(s.start, q.start);
     const double until = std::min(std::min(mover_[a].until, mover_[b].until), latest);
-    const Path one = from == s.start ? mine : path(a, from), two = path(b, from);
-    if (flights_ && (flies(s.state) || flies(q.state))) {
-        // A ball in a pocket's mouth is out of the way of those above the cloth.
-        if (s.state == MotionState::kFalling || q.state == MotionState::kFalling) return {};
-        const double reach = balls_.radius(a) + balls_.radius(b);
-        if (stays_apart(two.r - one.r, two.v - one.v, two.a - one.a, reach, span(from, until))) return {};
-        return {from + time_to_flight(a, b, from), {std::min(a, b), With::kBall, std::max(a, b)}};
-    }
+    // Most pairs end here. The parabolas are those of the paths but for rounding, far below the margin of the rejection, and the
+    // sum of the radii is at least the distance at which balls touch.
+    const double mine_for = from - s.start, other_for = from - q.start;
+    const Vec2 r = (planar(q.r) + other_for * (planar(q.v) + 0.5 * other_for * q.a)) -
+                   (planar(s.r) + mine_for * (planar(s.v) + 0.5 * mine_for * s.a));
+    const Vec2 v = (planar(q.v) + other_for * q.a) - (planar(s.v) + mine_for * s.a);
+    if (stays_apart(r, v, q.a - s.a, balls_.radius(a) + balls_.radius(b), span(from, until))) return {};
+    const Contact contact{std::min(a, b), With::kBall, std::max(a, b)};
+    if (in_air) return {from + time_to_flight(a, b, from), contact};
     const double reach = contact_distance(balls_.radius(a), balls_.radius(b));
-    if (stays_apart(two.r - one.r, two.v - one.v, two.a - one.a, reach, span(from, until))) return {};
-    const double t = time_to_ball(one, two, reach);
-    return {from + t, {std::min(a, b), With::kBall, std::max(a, b)}};
+    return {from + time_to_ball(from == s.start ? mine : path(a, from), path(b, from), reach), contact};
 }
 
 void Detector::offer(int ball, int partner, Candidate c) {
