@@ -126,7 +126,12 @@ TEST(Rejects, NeverLeaveOutAContact) {
         }
         const double window = rng.uniform() < 0.5 ? ball.horizon : rng.uniform() * ball.horizon;
         const double t = time_to_ball(ball, other, 2.0 * R);
-        const bool apart = stays_apart(other.r - ball.r, other.v - ball.v, other.a - ball.a, 2.0 * R, window);
+        const Vec2 r = other.r - ball.r, v = other.v - ball.v, a = other.a - ball.a;
+        const bool apart = stays_apart(r, v, a, 2.0 * R, window);
+        for (const double long_or_not : {window, 0.0, -1.0, kInfinity})
+            ASSERT_EQ(stays_apart(r, v, a, 2.0 * R, long_or_not),
+                      stays_apart_plain(r, v, a, 2.0 * R, long_or_not))
+                << k;
         rejected += apart;
         contacts += t <= window;
         ASSERT_FALSE(apart && t <= window) << k << " " << t << " of " << window;

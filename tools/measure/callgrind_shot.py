@@ -8,6 +8,7 @@ Needs valgrind; builds the target carom_shot_probe where --build names a build f
     tools/measure/callgrind_shot.py                              the eight-ball break, pair by pair
     tools/measure/callgrind_shot.py two_ball_shot --seed 3 --functions 20
     tools/measure/callgrind_shot.py gas --balls 100 --events 500
+    tools/measure/callgrind_shot.py --branches --functions 10    branches that callgrind's simple predictor misses, in place of instructions
 """
 import argparse
 import collections
@@ -37,11 +38,14 @@ def part_of(function):
     return next(name for name, pattern in PARTS if re.search(pattern, function))
 
 
-def self_costs(path):
-    """Own instructions of every function in one callgrind file."""
-    costs, names, function, called = collections.Counter(), {}, None, False
+def self_costs(path, counted):
+    """Own counts of every function in one callgrind file: the sum of these of its events."""
+    costs, names, function, called, columns = collections.Counter(), {}, None, False, []
     for line in path.read_text().splitlines():
-        if line.startswith("fn="):
+        if line.startswith("events:"):
+            events = line.split()[1:]
+            columns = [1 + events.index(e) for e in counted]
+        elif line.startswith("fn="):
             match = re.match(r"fn=(\(\d+\))?\s*(.*)", line)
             key, name = match.group(1), match.group(2)
             if name:
@@ -58,13 +62,13 @@ def self_costs(path):
                 called = False  # inclusive cost of the call
             else:
                 fields = line.split()
-                costs[function] += int(fields[1]) if len(fields) > 1 else 0
+                costs[function] += sum(int(fields[c]) for c in columns if c < len(fields))
     return costs
 
 
 def measure(probe, args, folder):
     command = ["valgrind", "--tool=callgrind", "--toggle-collect=carom::simulate(*", "--dump-before=*carom::Resolver::resolve(*",
-               "--compress-strings=no", f"--callgrind-out-file={folder}/out", str(probe)]
+               "--compress-strings=no", f"--branch-sim={'yes' if args.branches else 'no'}", f"--callgrind-out-file={folder}/out", str(probe)]
     command += ["gas", str(args.balls), str(args.events)] if args.shot in ("gas", "gas compliant") else [args.shot, str(args.seed)]
     env = dict(os.environ)
     env.setdefault("CAROM_ISA", "v3")
@@ -72,7 +76,7 @@ def measure(probe, args, folder):
     if run.returncode != 0:
         sys.exit(f"callgrind_shot.py: {' '.join(command)} failed:\n{run.stderr[-2000:]}")
     files = sorted(folder.glob("out*"), key=lambda f: int(f.suffix[1:] or 0) if f.suffix else 1 << 30)
-    return run.stdout.split("\n")[:-1], [self_costs(f) for f in files]
+    return run.stdout.split("\n")[:-1], [self_costs(f, ["Bcm", "Bim"] if args.branches else ["Ir"]) for f in files]
 
 
 def main():
@@ -83,6 +87,7 @@ def main():
     parser.add_argument("--balls", type=int, default=16, help="of the gas (default: 16)")
     parser.add_argument("--events", type=int, default=300, help="of the gas (default: 300)")
     parser.add_argument("--functions", type=int, default=0, metavar="N", help="print the N dearest functions too")
+    parser.add_argument("--branches", action="store_true", help="count mispredicted branches (default: instructions)")
     parser.add_argument("--build", default="build/release", help="build folder (default: build/release)")
     parser.add_argument("--json", metavar="FILE", help="write the counts")
     args = parser.parse_args()
@@ -106,13 +111,14 @@ def main():
             rows[kind][1][part_of(function)] += cost
             total[function] += cost
     names = [name for name, _ in PARTS]
-    print(f"{args.shot}: {len(kinds)} events, {sum(total.values())} instructions; mean instructions of an event\n")
+    what = "mispredicted branches" if args.branches else "instructions"
+    print(f"{args.shot}: {len(kinds)} events, {sum(total.values())} {what}; mean {what} of an event\n")
     print(f"{'':<22}{'count':>6}{'all':>9}" + "".join(f"{n:>9}" for n in names))
     for kind, (count, parts) in sorted(rows.items(), key=lambda r: -sum(r[1][1].values())):
         print(f"{kind:<22}{count:>6}{sum(parts.values()) / count:>9.0f}"
               + "".join(f"{parts[n] / count:>9.0f}" for n in names))
     if args.functions:
-        print(f"\n{'instructions':>12}  share  part      function")
+        print(f"\n{'count':>12}  share  part      function")
         for function, cost in total.most_common(args.functions):
             print(f"{cost:>12}{100 * cost / sum(total.values()):>6.1f}%  {part_of(function):<9} {function[:110]}")
     if args.json:
