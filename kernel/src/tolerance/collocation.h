@@ -239,11 +239,14 @@ CAROM_INLINE bool changed_little(const Change<Register>& c, double mu_s, Small s
 
 template <class Half, class Small>
 CAROM_INLINE bool changed_little(const Change<Halves<Half>>& c, double mu_s, Small small) {
-    const Half late = squares<Half>({c.x.hi, c.z.hi, c.a.hi, c.b.hi, c.old_x.hi, c.old_z.hi, c.old_a.hi, c.old_b.hi,
-                                     c.root_s.hi, c.root_u.hi}, mu_s);
-    if (!small(sum(late))) [[likely]] return false;
-    const Half early = squares<Half>({c.x.lo, c.z.lo, c.a.lo, c.b.lo, c.old_x.lo, c.old_z.lo, c.old_a.lo, c.old_b.lo,
-                                      c.root_s.lo, c.root_u.lo}, mu_s);
+    const Half late = squares<Half>({c.x.hi, c.z.hi, c.a.hi, c.b.hi, c.old_x.hi, c.old_z.hi, c.old_a.hi,
+                                     c.old_b.hi, c.root_s.hi, c.root_u.hi},
+                                    mu_s);
+    if (!small(sum(late))) [[likely]]
+        return false;
+    const Half early = squares<Half>({c.x.lo, c.z.lo, c.a.lo, c.b.lo, c.old_x.lo, c.old_z.lo, c.old_a.lo,
+                                      c.old_b.lo, c.root_s.lo, c.root_u.lo},
+                                     mu_s);
     return small(sum(early + late));
 }
 

@@ -108,7 +108,8 @@ CAROM_INLINE double needed_axes(double excess) {
     // The powers rise. All are asked at once: no question waits for another one.
     unsigned too_small = 0;
     for (int i = 0; i < Ellipses<N>::kCount - 1; i += 8)
-        too_small |= static_cast<unsigned>(bits_less(load<8>(kEllipses<N>.power + i), broadcast<8>(excess))) << i;
+        too_small |= static_cast<unsigned>(bits_less(load<8>(kEllipses<N>.power + i), broadcast<8>(excess)))
+                     << i;
     return kEllipses<N>.sum_of_axes[too_small == ~0u ? Ellipses<N>::kCount - 1 : __builtin_ctz(~too_small)];
 }
 
