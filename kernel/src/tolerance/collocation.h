@@ -327,9 +327,9 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
         };
         const Change<Pack<N>> moved = {n.x,   n.z,   n.a,   n.b,        old.x,
                                        old.z, old.a, old.b, old.root_s, old.root_u};
+        CAROM_LOOP_END("sweep");
         const bool settled = changed_little(moved, m.mu_s, small);
         converged = settled && roots_settled<N>(carried, stretch.root_goal);
-        CAROM_LOOP_END("sweep");
     }
     stretch.sweeps += k;
     if (!converged) return false;
