@@ -51,16 +51,15 @@ struct Impulses {
 
 // Where a stretch ends.
 enum class End : unsigned char {
-    kWhole,   // at the end of restitution, from v = -1; the end of compression lies inside
-    kFixed,   // after a given impulse
-    kToZero,  // at the end of compression, v = 0
-    kToWork,  // at the end of restitution, after a given work
+    kWhole,  // at the end of restitution, from v = -1; the end of compression lies inside
+    kFixed,  // after a given impulse
+    kOpen,   // at the end of compression, v = 0, or at that of restitution, after a given work
 };
 
 // What a collocation is asked for, and what it found.
 struct Stretch {
     double h;           // impulse: given for kFixed, otherwise a first guess and then the result
-    double work;        // kToWork: the work to do
+    double work;        // kOpen: the work to do; 0: until v = 0
     double p_c;         // kWhole: impulse at the end of compression, a first guess and then the result
     double done;        // all kinds but kWhole: work of the normal impulse over the stretch
     double row_goal;    // largest error of the rows of the end
@@ -137,12 +136,15 @@ CAROM_INLINE void find_end(const Model& m, const State& start, Pack<N> g_b, cons
         const double work = p_c * (1.0 - p_c * (1.0 - sum(rows.before_late * g_b)));
         stretch.p_c = p_c;
         stretch.h = p_c + m.e_b * square_root(work * gain);
-    } else if constexpr (kEnd == End::kToZero) {
-        stretch.h = -start.v / (2.0 - unit * dot<N>(G::weights, g_b));
-    } else if constexpr (kEnd == End::kToWork) {
-        const double lost = 1.0 - unit * late_share<N>(g_b);
-        stretch.h =
-            2.0 * stretch.work / (start.v + square_root(start.v * start.v + 4.0 * lost * stretch.work));
+    } else if constexpr (kEnd == End::kOpen) {
+        // One loop for both: with the whole impact of 4 and of 8 nodes the code only just fits into 32 kB.
+        if (stretch.work == 0.0) {
+            stretch.h = -start.v / (2.0 - unit * dot<N>(G::weights, g_b));
+        } else {
+            const double lost = 1.0 - unit * late_share<N>(g_b);
+            stretch.h =
+                2.0 * stretch.work / (start.v + square_root(start.v * start.v + 4.0 * lost * stretch.work));
+        }
     }
 }
 

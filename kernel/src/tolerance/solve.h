@@ -266,12 +266,10 @@ inline bool solve_adaptive(const Problem& problem, Solution& solution) {
         Impulses sum_next = run.total;
         const bool exact = run.shrink < 1.0;
         bool ok;
-        if (!run.last)
-            ok = collocate<N, End::kFixed>(run.m, next, sum_next, stretch, run.root_s, exact);
-        else if (run.compressing)
-            ok = collocate<N, End::kToZero>(run.m, next, sum_next, stretch, run.root_s, exact);
+        if (run.last)
+            ok = collocate<N, End::kOpen>(run.m, next, sum_next, stretch, run.root_s, exact);
         else
-            ok = collocate<N, End::kToWork>(run.m, next, sum_next, stretch, run.root_s, exact);
+            ok = collocate<N, End::kFixed>(run.m, next, sum_next, stretch, run.root_s, exact);
         run.sweeps += stretch.sweeps;
         ok = ok && resolved(run.m, stretch, run.tolerance);
         if (!advance(run, ok, next, sum_next, stretch.done)) break;
