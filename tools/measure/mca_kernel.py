@@ -88,7 +88,7 @@ def instructions(lines):
     return [line for line in lines if re.match(r"\s+[a-z]", line) and not re.match(r"\s+\.", line)]
 
 
-def way_back(lines, labels, at, begin, budget=40):
+def way_back(lines, labels, at, begin, budget=80):
     """What runs from line `at` to the mark at `begin`, jumps followed; None where no short way leads there. It has the loop's
     test, and the register moves that carry a step's result into the next: without them simulated steps would not wait for
     each other."""

@@ -68,6 +68,7 @@ inline BatchView view(const ImpactBatch& batch, const ImpactBatchResult& result)
 struct BlockResult {
     Wide out[kOutputs];
     Wide sweeps;
+    Wide hardness;  // the share of the slip that friction can take per impulse: the larger, the more sweeps
     WideMask good, done, resolvable;
 };
 
@@ -208,6 +209,7 @@ CAROM_INLINE void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, d
 
     WideResult t = {};
     wide_collocate<N>(m, start, wanted, root_s, tolerance, t);
+    block.hardness = fall * root_s;
     block.good = q.good;
     block.done = t.converged;
     block.sweeps = t.sweeps;

@@ -19,6 +19,9 @@ struct HardPool {
     double x[kPool], z[kPool], a[kPool], b[kPool], mu_b[kPool], mu_s[kPool], e_b[kPool];
     double p[kPool], xi[kPool], zeta[kPool], g_a[kPool], g_b[kPool], sweeps[kPool];
     bool from_rest[kPool], solved[kPool];
+    // The first stretch of each, as plan() chooses it.
+    double S[kPool], shortest[kPool], end[kPool], asked[kPool], root_s[kPool];
+    bool last[kPool], vanished[kPool];
 };
 
 CAROM_INLINE Problem problem_of(const HardPool& pool, int i, double tolerance, ClothSlip cloth_slip) {
@@ -188,6 +191,7 @@ class StretchLanes {
     }
 
     void solve() {
+        for (int first = 0; first < count; first += kWidth) plan_first(first);
         for (int i = 0; i < kWidth; ++i) begin(i);
         WideStretchResult result;
         while (any(r.busy)) {
@@ -236,18 +240,76 @@ class StretchLanes {
         keep_result(run, impact[i], pool);
     }
 
+    // Plans the first stretch of the impacts from `first` on, a register of them.
+    void plan_first(int first) {
+        WideRuns q = {};
+        q.m = r.m;
+        q.m.mu_b = load<kWidth>(pool.mu_b + first);
+        q.m.mu_s = load<kWidth>(pool.mu_s + first);
+        q.m.e_b = load<kWidth>(pool.e_b + first);
+        q.at = {load<kWidth>(pool.x + first), load<kWidth>(pool.z + first), load<kWidth>(pool.a + first),
+                load<kWidth>(pool.b + first)};
+        q.v = broadcast<kWidth>(-1.0);
+        q.shrink = broadcast<kWidth>(1.0);
+        q.shortest = 1e-3 * tolerance / q.m.mu_b;
+        q.compressing = ~WideMask{};
+        for (int i = 0; i < kWidth; ++i) {
+            set_lane(q.S, i, needed_axes<N>(0.3 * pool.mu_b[first + i] / tolerance));
+            set_lane(q.from_rest, i, pool.from_rest[first + i] ? -1 : 0);
+        }
+        const WideMask vanished = wide_plan(q, tolerance);
+        store(pool.S + first, q.S);
+        store(pool.shortest + first, q.shortest);
+        store(pool.end + first, q.end);
+        store(pool.asked + first, q.asked);
+        store(pool.root_s + first, q.root_s);
+        for (int i = 0; i < kWidth; ++i) {
+            pool.last[first + i] = lane(q.last, i) != 0;
+            pool.vanished[first + i] = lane(vanished, i) != 0;
+        }
+    }
+
     // Begins impacts in lane i until one has a stretch to solve or none is left.
     void begin(int i) {
-        Adaptive run;
-        while (next < count) {
-            begin_adaptive<N>(problem_of(pool, next, tolerance, cloth_slip), run);
-            impact[i] = next++;
-            if (plan(run)) {
-                set_run(r, i, run);
-                set_lane(r.busy, i, -1);
-                return;
+        for (; next < count; ++next) {
+            const int k = next;
+            impact[i] = k;
+            if (pool.vanished[k]) {
+                Adaptive run;
+                begin_adaptive<N>(problem_of(pool, k, tolerance, cloth_slip), run);
+                plan(run);
+                end(i, run);
+                continue;
             }
-            end(i, run);
+            ++next;
+            set_lane(r.m.mu_b, i, pool.mu_b[k]);
+            set_lane(r.m.mu_s, i, pool.mu_s[k]);
+            set_lane(r.m.e_b, i, pool.e_b[k]);
+            set_lane(r.S, i, pool.S[k]);
+            set_lane(r.shortest, i, pool.shortest[k]);
+            set_lane(r.at.x, i, pool.x[k]);
+            set_lane(r.at.z, i, pool.z[k]);
+            set_lane(r.at.a, i, pool.a[k]);
+            set_lane(r.at.b, i, pool.b[k]);
+            set_lane(r.v, i, -1.0);
+            set_lane(r.p, i, 0.0);
+            set_lane(r.xi, i, 0.0);
+            set_lane(r.zeta, i, 0.0);
+            set_lane(r.g_a, i, 0.0);
+            set_lane(r.g_b, i, 0.0);
+            set_lane(r.compressed, i, 0.0);
+            set_lane(r.left, i, 0.0);
+            set_lane(r.sweeps, i, 0.0);
+            set_lane(r.stretches, i, 0.0);
+            set_lane(r.shrink, i, 1.0);
+            set_lane(r.end, i, pool.end[k]);
+            set_lane(r.asked, i, pool.asked[k]);
+            set_lane(r.root_s, i, pool.root_s[k]);
+            set_lane(r.compressing, i, -1);
+            set_lane(r.from_rest, i, pool.from_rest[k] ? -1 : 0);
+            set_lane(r.last, i, pool.last[k] ? -1 : 0);
+            set_lane(r.busy, i, -1);
+            return;
         }
         set_lane(r.busy, i, 0);
     }

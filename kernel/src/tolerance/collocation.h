@@ -51,16 +51,15 @@ struct Impulses {
 
 // Where a stretch ends.
 enum class End : unsigned char {
-    kWhole,   // at the end of restitution, from v = -1; the end of compression lies inside
-    kFixed,   // after a given impulse
-    kToZero,  // at the end of compression, v = 0
-    kToWork,  // at the end of restitution, after a given work
+    kWhole,  // at the end of restitution, from v = -1; the end of compression lies inside
+    kFixed,  // after a given impulse
+    kOpen,   // at the end of compression, v = 0, or at that of restitution, after a given work
 };
 
 // What a collocation is asked for, and what it found.
 struct Stretch {
     double h;           // impulse: given for kFixed, otherwise a first guess and then the result
-    double work;        // kToWork: the work to do
+    double work;        // kOpen: the work to do; 0: until v = 0
     double p_c;         // kWhole: impulse at the end of compression, a first guess and then the result
     double done;        // all kinds but kWhole: work of the normal impulse over the stretch
     double row_goal;    // largest error of the rows of the end
@@ -137,12 +136,15 @@ CAROM_INLINE void find_end(const Model& m, const State& start, Pack<N> g_b, cons
         const double work = p_c * (1.0 - p_c * (1.0 - sum(rows.before_late * g_b)));
         stretch.p_c = p_c;
         stretch.h = p_c + m.e_b * square_root(work * gain);
-    } else if constexpr (kEnd == End::kToZero) {
-        stretch.h = -start.v / (2.0 - unit * dot<N>(G::weights, g_b));
-    } else if constexpr (kEnd == End::kToWork) {
-        const double lost = 1.0 - unit * late_share<N>(g_b);
-        stretch.h =
-            2.0 * stretch.work / (start.v + square_root(start.v * start.v + 4.0 * lost * stretch.work));
+    } else if constexpr (kEnd == End::kOpen) {
+        // One loop for both: with the whole impact of 4 and of 8 nodes the code only just fits into 32 kB.
+        if (stretch.work == 0.0) {
+            stretch.h = -start.v / (2.0 - unit * dot<N>(G::weights, g_b));
+        } else {
+            const double lost = 1.0 - unit * late_share<N>(g_b);
+            stretch.h =
+                2.0 * stretch.work / (start.v + square_root(start.v * start.v + 4.0 * lost * stretch.work));
+        }
     }
 }
 
@@ -154,12 +156,18 @@ struct Nodes {
     Pack<N> xi, zeta, g_a, g_b;  // the forces
 };
 
+// |.|^2 T^2 of the roots T that were carried, before their correction; 1 where they were computed afresh.
+template <int N>
+struct Carried {
+    Pack<N> s, u;
+};
+
 // Forces at the nodes. The reciprocal roots are computed afresh (kExact), or those of the sweep before are corrected
-// by one cubic step: T f, f = 15/8 - 5/4 q + 3/8 q^2 > 0 with q = |.|^2 T^2. Returns the squares of their relative
-// errors before the correction. Every sweep waits for this, so the slips are scaled before the factor is known.
+// by one cubic step: T f, f = 15/8 - 5/4 q + 3/8 q^2 > 0 with q = |.|^2 T^2. Every sweep waits for this, so the slips are
+// scaled before the factor is known.
 template <int N, bool kExact>
-CAROM_INLINE Pack<N> forces(Nodes<N>& n) {
-    Pack<N> worst{};
+CAROM_INLINE Carried<N> forces(Nodes<N>& n) {
+    Carried<N> q;
     Pack<N> e_a, e_b;
     if constexpr (kExact) {
         n.root_s = 1.0 / square_root(n.x * n.x + n.z * n.z);
@@ -168,6 +176,7 @@ CAROM_INLINE Pack<N> forces(Nodes<N>& n) {
         n.zeta = n.root_s * n.z;
         e_a = n.root_u * n.a;
         e_b = n.root_u * n.b;
+        q.s = q.u = broadcast<N>(1.0);
     } else {
         const Pack<N> x = n.x * n.root_s, z = n.z * n.root_s, a = n.a * n.root_u, b = n.b * n.root_u;
         const Pack<N> s = x * x + z * z, u = a * a + b * b;
@@ -179,36 +188,68 @@ CAROM_INLINE Pack<N> forces(Nodes<N>& n) {
         n.zeta = z * by_s;
         e_a = a * by_u;
         e_b = b * by_u;
-        worst = (1.0 - s) * (1.0 - s) + (1.0 - u) * (1.0 - u);
+        q = {s, u};
     }
     n.g_a = n.zeta * e_a;
     n.g_b = n.zeta * e_b;
-    return worst;
+    return q;
 }
 
-// The slips at the nodes from the forces there. Returns the squares of their changes as shares of |s| and of |u|, the
-// latter weighted by the largest effect that it can have.
+// Whether the sixth powers of the relative errors of the carried roots were below the goal.
 template <int N>
-CAROM_INLINE Pack<N> slips(const Model& m, const State& start, double h, Nodes<N>& n) {
+CAROM_INLINE bool roots_settled(const Carried<N>& q, double goal) {
+    const Pack<N> worst = (1.0 - q.s) * (1.0 - q.s) + (1.0 - q.u) * (1.0 - q.u);
+    return all_below(worst * worst * worst, goal);
+}
+
+// The slips at the nodes from the forces there; the roots and the forces are not touched.
+template <int N>
+CAROM_INLINE void slips(const Model& m, const State& start, double h, Nodes<N>& n) {
     const Pack<N> H = broadcast<N>(h);
     const Pack<N> xi = combine<N>(Gauss<N>::integral[0], n.xi),
                   zeta = combine<N>(Gauss<N>::integral[0], n.zeta);
     const Pack<N> g_a = combine<N>(Gauss<N>::integral[0], n.g_a),
                   g_b = combine<N>(Gauss<N>::integral[0], n.g_b);
     const double cloth = m.mu_b * m.mu_s;
-    const Pack<N> x = (start.x - (H * (7.0 * m.mu_b)) * xi) + (H * cloth) * g_a;
-    const Pack<N> z = (start.z - (H * (5.0 * m.mu_b)) * zeta) + (H * (2.5 * cloth)) * g_b;
-    const Pack<N> a = (start.a + (H * m.mu_b) * xi) - (H * (m.kappa * cloth)) * g_a;
-    const Pack<N> b = (start.b + H * load<N>(Gauss<N>::nodes) - (H * (m.sigma * m.mu_b)) * zeta) -
-                      (H * (m.kappa * cloth)) * g_b;
-    const Pack<N> dx = x - n.x, dz = z - n.z, da = a - n.a, db = b - n.b;
-    const Pack<N> change = (dx * dx + dz * dz) * (n.root_s * n.root_s) +
-                           (m.mu_s * m.mu_s) * ((da * da + db * db) * (n.root_u * n.root_u));
-    n.x = x;
-    n.z = z;
-    n.a = a;
-    n.b = b;
-    return change;
+    n.x = (start.x - (H * (7.0 * m.mu_b)) * xi) + (H * cloth) * g_a;
+    n.z = (start.z - (H * (5.0 * m.mu_b)) * zeta) + (H * (2.5 * cloth)) * g_b;
+    n.a = (start.a + (H * m.mu_b) * xi) - (H * (m.kappa * cloth)) * g_a;
+    n.b = (start.b + H * load<N>(Gauss<N>::nodes) - (H * (m.sigma * m.mu_b)) * zeta) -
+          (H * (m.kappa * cloth)) * g_b;
+}
+
+// The slips of one sweep and of the sweep before, and the roots of the latter, for any number of nodes.
+template <class P>
+struct Change {
+    P x, z, a, b, old_x, old_z, old_a, old_b, root_s, root_u;
+};
+
+// The squares of the changes as shares of |s| and of |u|, the latter weighted by the largest effect that it can have.
+template <class P>
+CAROM_INLINE P squares(const Change<P>& c, double mu_s) {
+    const P dx = c.x - c.old_x, dz = c.z - c.old_z, da = c.a - c.old_a, db = c.b - c.old_b;
+    return (dx * dx + dz * dz) * (c.root_s * c.root_s) +
+           (mu_s * mu_s) * ((da * da + db * db) * (c.root_u * c.root_u));
+}
+
+// Whether `small` of the sum of the squares of all nodes holds; it must hold for less where it holds for more. All sweeps but the
+// last are told by the later half of the nodes, which change most.
+template <class Register, class Small>
+CAROM_INLINE bool changed_little(const Change<Register>& c, double mu_s, Small small) {
+    return small(sum(squares(c, mu_s)));
+}
+
+template <class Half, class Small>
+CAROM_INLINE bool changed_little(const Change<Halves<Half>>& c, double mu_s, Small small) {
+    const Half late = squares<Half>({c.x.hi, c.z.hi, c.a.hi, c.b.hi, c.old_x.hi, c.old_z.hi, c.old_a.hi,
+                                     c.old_b.hi, c.root_s.hi, c.root_u.hi},
+                                    mu_s);
+    if (!small(sum(late))) [[likely]]
+        return false;
+    const Half early = squares<Half>({c.x.lo, c.z.lo, c.a.lo, c.b.lo, c.old_x.lo, c.old_z.lo, c.old_a.lo,
+                                      c.old_b.lo, c.root_s.lo, c.root_u.lo},
+                                     mu_s);
+    return small(sum(early + late));
 }
 
 // First guess: the cloth slip goes straight, as if the normal impulse alone moved it, and where it is half way decides
@@ -270,22 +311,27 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
     for (; k < kMostSweeps && !converged; ++k) {
         CAROM_LOOP_BEGIN("sweep");
         const double h = stretch.h;
-        const Pack<N> change = slips<N>(m, start, h, n);
+        const Nodes<N> old = n;
+        slips<N>(m, start, h, n);
         find_end<N, kEnd>(m, start, n.g_b, rows, stretch);
         // The rows follow the end of compression one sweep late, so that no sweep has to wait for them.
         if constexpr (kEnd == End::kWhole) {
             if (magnitude(t_c - rows.t) * cloth > stretch.row_goal) set_rows<N>(t_c, cloth, rows);
             t_c = 2.0 * stretch.p_c / stretch.h - 1.0;
         }
-        const Pack<N> root = exact ? forces<N, true>(n) : forces<N, false>(n);
+        const Carried<N> carried = exact ? forces<N, true>(n) : forces<N, false>(n);
         const double dh = stretch.h - h;
         // Many sweeps mean a contraction near 1: then the error that is left exceeds the last change.
         const double slow = 1.0 + 0.03125 * (k * k);
         // The end is the fixed point of an iteration too, with a contraction of at most a few mu_s mu_b.
-        converged =
-            ((sum(change) + dh * dh * steep) * slope + dh * dh * end_slope) * slow <= stretch.sweep_goal &&
-            all_below(root * root * root, stretch.root_goal);
+        const auto small = [&](double change) {
+            return ((change + dh * dh * steep) * slope + dh * dh * end_slope) * slow <= stretch.sweep_goal;
+        };
+        const Change<Pack<N>> moved = {n.x,   n.z,   n.a,   n.b,        old.x,
+                                       old.z, old.a, old.b, old.root_s, old.root_u};
         CAROM_LOOP_END("sweep");
+        const bool settled = changed_little(moved, m.mu_s, small);
+        converged = settled && roots_settled<N>(carried, stretch.root_goal);
     }
     stretch.sweeps += k;
     if (!converged) return false;

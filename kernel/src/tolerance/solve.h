@@ -83,16 +83,34 @@ inline void finish_stuck(const Model& m, State at, double left, Impulses& total,
     v -= gb * zeta;
 }
 
-// Smallest rho for which N nodes keep an error that is this multiple of the tolerance for rho = 1.
+// Ellipses of stretches, each 1.125 times the one before: rho^6 (4 nodes) or rho^12 (8 nodes), and the sum of the axes.
 template <int N>
-inline double needed_ellipse(double excess) {
-    double rho = 1.6;
-    for (int i = 0; i < 32; ++i) {
-        const double r2 = rho * rho, r6 = r2 * r2 * r2;
-        if ((N == 4 ? r6 : r6 * r6) >= excess) break;
-        rho *= 1.125;
+struct Ellipses {
+    static constexpr int kCount = 33;
+    double power[kCount - 1], sum_of_axes[kCount];
+    constexpr Ellipses() : power{}, sum_of_axes{} {
+        double rho = 1.6;
+        for (int i = 0; i < kCount; ++i) {
+            const double r2 = rho * rho, r6 = r2 * r2 * r2;
+            if (i < kCount - 1) power[i] = N == 4 ? r6 : r6 * r6;
+            sum_of_axes[i] = rho + 1.0 / rho;
+            rho *= 1.125;
+        }
     }
-    return rho;
+};
+template <int N>
+constexpr Ellipses<N> kEllipses;
+
+// The sum of the axes of the smallest of the ellipses for which N nodes keep an error that is this multiple of the
+// tolerance for rho = 1.
+template <int N>
+CAROM_INLINE double needed_axes(double excess) {
+    // The powers rise. All are asked at once: no question waits for another one.
+    unsigned too_small = 0;
+    for (int i = 0; i < Ellipses<N>::kCount - 1; i += 8)
+        too_small |= static_cast<unsigned>(bits_less(load<8>(kEllipses<N>.power + i), broadcast<8>(excess)))
+                     << i;
+    return kEllipses<N>.sum_of_axes[too_small == ~0u ? Ellipses<N>::kCount - 1 : __builtin_ctz(~too_small)];
 }
 
 // The last resort, which always makes progress: one explicit Euler step over a stretch that is too short to matter.
@@ -157,8 +175,7 @@ CAROM_INLINE void begin_adaptive(const Problem& problem, Adaptive& run) {
     run.tolerance = problem.tolerance;
     run.at = problem.start;
     run.total = {0.0, 0.0, 0.0, 0.0, 0.0};
-    const double rho = needed_ellipse<N>(0.3 * run.m.mu_b / run.tolerance);
-    run.S = rho + 1.0 / rho;
+    run.S = needed_axes<N>(0.3 * run.m.mu_b / run.tolerance);
     run.shortest = 1e-3 * run.tolerance / run.m.mu_b;
     run.compressing = true;
     run.from_rest = problem.from_rest;
@@ -249,12 +266,10 @@ inline bool solve_adaptive(const Problem& problem, Solution& solution) {
         Impulses sum_next = run.total;
         const bool exact = run.shrink < 1.0;
         bool ok;
-        if (!run.last)
-            ok = collocate<N, End::kFixed>(run.m, next, sum_next, stretch, run.root_s, exact);
-        else if (run.compressing)
-            ok = collocate<N, End::kToZero>(run.m, next, sum_next, stretch, run.root_s, exact);
+        if (run.last)
+            ok = collocate<N, End::kOpen>(run.m, next, sum_next, stretch, run.root_s, exact);
         else
-            ok = collocate<N, End::kToWork>(run.m, next, sum_next, stretch, run.root_s, exact);
+            ok = collocate<N, End::kFixed>(run.m, next, sum_next, stretch, run.root_s, exact);
         run.sweeps += stretch.sweeps;
         ok = ok && resolved(run.m, stretch, run.tolerance);
         if (!advance(run, ok, next, sum_next, stretch.done)) break;

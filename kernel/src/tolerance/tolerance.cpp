@@ -12,8 +12,8 @@ namespace {
 
 // Impacts between two looks at what has been gathered.
 constexpr long kChunk = 256;
-// Impacts that need stretches are solved when so many have been gathered.
-constexpr int kMostHard = 256;
+// Impacts that need 8 nodes, and those that need stretches, are solved when so many have been gathered.
+constexpr int kMostResolvable = 256, kMostHard = 256;
 
 // Lane i of a batch by the single kernel.
 inline void solve_single(const BatchView& v, long i, double tolerance) {
@@ -43,9 +43,33 @@ inline void solve_single(const BatchView& v, long i, double tolerance) {
 
 // The impacts that are left: those that one collocation of 8 nodes may solve, and those that need stretches.
 struct Remaining {
-    long resolvable[kChunk + kWidth], hard[kMostHard + kChunk + kWidth];
+    long resolvable[kMostResolvable + kChunk], hard[kMostHard + kMostResolvable + kChunk];
+    double hardness[kMostResolvable + kChunk];  // of the resolvable
     int resolvables, hards;
 };
+
+// Sorts the resolvable impacts by how many sweeps they will need, roughly: all lanes of a register wait for the slowest.
+inline void sort_resolvable(Remaining& rest) {
+    constexpr int kBins = 32;
+    const auto bin = [&](int i) {
+        const double b = kBins * rest.hardness[i];
+        return b < kBins - 1 ? static_cast<int>(b) : kBins - 1;
+    };
+    int end[kBins] = {};
+    for (int i = 0; i < rest.resolvables; ++i) ++end[bin(i)];
+    for (int b = 1; b < kBins; ++b) end[b] += end[b - 1];
+    long index[kMostResolvable + kChunk];
+    double hardness[kMostResolvable + kChunk];
+    for (int i = rest.resolvables - 1; i >= 0; --i) {
+        const int to = --end[bin(i)];
+        index[to] = rest.resolvable[i];
+        hardness[to] = rest.hardness[i];
+    }
+    for (int i = 0; i < rest.resolvables; ++i) {
+        rest.resolvable[i] = index[i];
+        rest.hardness[i] = hardness[i];
+    }
+}
 
 // Solves the impacts [begin, end) by 4 nodes.
 inline void sweep_easy(const BatchView& v, long begin, long end, double tolerance, Remaining& rest) {
@@ -78,6 +102,7 @@ inline void sweep_easy(const BatchView& v, long begin, long end, double toleranc
             } else if (lane(block.good, j) == 0) {
                 solve_single(v, i + j, tolerance);
             } else if (lane(block.resolvable, j) != 0 && tolerance < kLooseStretches) {
+                rest.hardness[rest.resolvables] = lane(block.hardness, j);
                 rest.resolvable[rest.resolvables++] = i + j;
             } else {
                 rest.hard[rest.hards++] = i + j;
@@ -86,12 +111,12 @@ inline void sweep_easy(const BatchView& v, long begin, long end, double toleranc
     }
 }
 
-// Solves the gathered impacts by 8 nodes. Those that do not fill a register stay for later, unless `all` are wanted.
-inline void sweep_resolvable(const BatchView& v, double tolerance, bool all, Remaining& rest) {
+// Solves the gathered impacts by 8 nodes.
+inline void sweep_resolvable(const BatchView& v, double tolerance, Remaining& rest) {
     Wide in[kInputs];
     BlockResult block;
-    int first = 0;
-    for (; rest.resolvables - first >= (all ? 1 : kWidth); first += kWidth) {
+    sort_resolvable(rest);
+    for (int first = 0; first < rest.resolvables; first += kWidth) {
         const int lanes = rest.resolvables - first < kWidth ? rest.resolvables - first : kWidth;
         const long* index = rest.resolvable + first;
         gather(v, index, lanes, in);
@@ -103,9 +128,7 @@ inline void sweep_resolvable(const BatchView& v, double tolerance, bool all, Rem
                 rest.hard[rest.hards++] = index[j];
         }
     }
-    const int left = rest.resolvables > first ? rest.resolvables - first : 0;
-    for (int k = 0; k < left; ++k) rest.resolvable[k] = rest.resolvable[first + k];
-    rest.resolvables = left;
+    rest.resolvables = 0;
 }
 
 // Solves the gathered impacts that no single collocation solves.
@@ -178,7 +201,7 @@ void tolerance_batch(const ImpactBatch& batch, double tolerance, const ImpactBat
     for (long begin = 0; begin < batch.count; begin += kChunk) {
         const bool last = batch.count - begin <= kChunk;
         sweep_easy(v, begin, last ? batch.count : begin + kChunk, solved, rest);
-        sweep_resolvable(v, solved, last, rest);
+        if (last || rest.resolvables >= kMostResolvable) sweep_resolvable(v, solved, rest);
         if (last || rest.hards >= kMostHard) sweep_hard(v, solved, rest);
     }
 }

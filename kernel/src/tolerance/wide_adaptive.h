@@ -16,8 +16,8 @@ struct WideStretch {
     WideStart start;
     Wide v, h, work, root_s;  // h: the given impulse, or a first guess
     WideMask to_zero,
-        to_work;      // the stretch ends as End::kToZero or as End::kToWork; otherwise as End::kFixed
-    WideMask exact;   // compute fresh roots in every sweep
+        to_work;     // the stretch ends as End::kOpen, with v = 0 or after the work; otherwise as End::kFixed
+    WideMask exact;  // compute fresh roots in every sweep
     WideMask wanted;  // lanes that hold a stretch
     double tolerance;
 };
