@@ -149,6 +149,26 @@ TEST_F(Mistakes, StandardOutputIsAFileToo) {
             {"simulate", scene_, "--events", "-", "--samples", "-", "--sample-dt", "0.5"});
 }
 
+// A shell's >>: what was there before stays, and what is printed comes after.
+TEST_F(Mistakes, StandardOutputMayBeAFileThatGoesOn) {
+    const std::string log = folder_.file("log.txt");
+    const std::string hash = carom({"simulate", scene_, "--hash"}).out;
+    const std::string events = carom({"simulate", scene_, "--events", "-"}).out;
+    const auto shell = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), {"sh", "-c", "exec \"$@\" >>" + log, "sh", CAROM_PROGRAM});
+        folder_.write("log.txt", "before\n");
+        const ProcessResult result = run_process(words);
+        EXPECT_EQ(result.status, 0) << result.err;
+        return read_file(log);
+    };
+    for (const char* name : {"-", "/dev/stdout", "/dev/fd/1"})
+        EXPECT_EQ(shell({"simulate", scene_, "--events", name, "--hash"}), "before\n" + events + hash)
+            << name;
+    const std::string table = folder_.file("table.csv");
+    ASSERT_EQ(carom(sweep(table)).status, 0);
+    EXPECT_TRUE(shell(sweep("/dev/stdout")).starts_with("before\n" + read_file(table)));
+}
+
 TEST_F(Mistakes, EventsAsATable) {
     const ProcessResult result = carom({"simulate", scene_, "--list"});
     EXPECT_EQ(result.status, 0);

@@ -68,6 +68,14 @@ class Release(unittest.TestCase):
         self.change("CHANGELOG.md", "(?m)^## \\[Unreleased\\]$", "## [Unreleased]\n\n* Lost.")
         self.one_fault("an entry stands above the first heading")
 
+    def test_a_group_begins_a_paragraph(self):
+        self.change("CHANGELOG.md", r"\n\n(Program)\n", r"\n\1\n")
+        self.one_fault("Program: an empty line is missing above")
+
+    def test_the_mark_of_bits_has_one_form(self):
+        self.change("CHANGELOG.md", r"\*\*\(changes bits\)\*\*(: all)", r"(changes bits\1)")
+        self.one_fault("expected **(changes bits)**")
+
     def test_a_declaration_that_goes_is_a_fault_and_one_that_comes_is_none(self):
         self.change("capi/include/carom/carom.h", r"CAROM_API double carom_record_duration", "CAROM_API int carom_new(void);\nCAROM_API double carom_record_duration")
         self.assertEqual(release.faults_of(self.root), [])

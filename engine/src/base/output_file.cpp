@@ -6,9 +6,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 namespace carom {
@@ -18,10 +20,33 @@ namespace {
 constexpr int kMostLinks = 40;    // as in the kernel
 constexpr int kMostNames = 1000;  // temporary files of one process in one folder
 
+/// Number of a descriptor, -1 for what is none.
+int descriptor(std::string_view path) {
+    if (path == "/dev/stdout") return STDOUT_FILENO;
+    if (path == "/dev/stderr") return STDERR_FILENO;
+    constexpr std::string_view kFolder = "/dev/fd/";
+    if (!path.starts_with(kFolder)) return -1;
+    path.remove_prefix(kFolder.size());
+    int number = -1;
+    const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), number);
+    return error == std::errc() && end == path.data() + path.size() ? number : -1;
+}
+
 }  // namespace
+
+std::FILE* own_stream(const std::string& path) {
+    errno = 0;
+    const int number = descriptor(path);
+    if (number < 0) return nullptr;
+    if (number == STDOUT_FILENO) std::fflush(stdout);  // what was printed before stays before
+    const int fd = ::fcntl(number, F_DUPFD_CLOEXEC, 0);
+    return fd < 0 ? nullptr : ::fdopen(fd, "wb");
+}
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(path_) {
     namespace fs = std::filesystem;
+    file_ = own_stream(path_);
+    if (file_ != nullptr) return;
     std::error_code error;
     if (fs::exists(path_, error)) {
         const fs::path real = fs::canonical(path_, error);

@@ -7,10 +7,15 @@
 
 namespace carom {
 
+/// The process's own stream that /dev/stdout, /dev/stderr or /dev/fd/N names, as a stream of its own that goes on where that one stands; null for every
+/// other path, and with errno set where the process has no such stream. Opened by its name, a file that the shell has redirected to would be a second time
+/// open: emptied, replaced, or written over by what is printed.
+std::FILE* own_stream(const std::string& path);
+
 /// Every failure is a std::runtime_error that names the file and the reason.
 ///
 /// If the path is not a regular file (/dev/null, a named pipe), it is written to directly: renaming would replace the
-/// device itself.
+/// device itself. So is the process's own stream (own_stream), whatever the shell has redirected it to.
 class OutputFile {
   public:
     explicit OutputFile(std::string path);

@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "base/output_file.h"
+
 namespace carom::tools {
 
 namespace fs = std::filesystem;
@@ -25,6 +27,11 @@ constexpr std::chrono::seconds kSyncEvery(5);
 
 PartialFile::PartialFile(const std::string& path, std::uint64_t id, const Seen& seen)
     : path_(path), target_(path) {
+    file_ = own_stream(path);
+    if (file_ != nullptr) {
+        name_ = target_;
+        return;
+    }
     std::error_code error;
     if (const fs::path real = fs::canonical(path, error); !error) target_ = real.string();
     if (fs::is_directory(target_, error)) {
