@@ -127,6 +127,28 @@ TEST(ToleranceBits, PlaceAndLengthOfABatchDoNotMatter) {
     }
 }
 
+// Where all impacts of a batch need 8 nodes, or stretches, the lists that gather them fill to the end.
+TEST(ToleranceBits, BatchesOfOneKind) {
+    for (ToleranceMethod kind : {ToleranceMethod::kCollocation8, ToleranceMethod::kAdaptive}) {
+        Generator rng(66);
+        std::vector<Impact> impacts;
+        while (impacts.size() < 1500) {
+            const Impact i = random_impact(rng);
+            if (solve(i, 1e-10).method == kind) impacts.push_back(i);
+        }
+        for (Isa isa : isas()) {
+            Lanes whole(impacts), one(impacts);
+            tolerance_batch_function(isa)(whole.batch(), 1e-10, whole.results());
+            int differing = 0;
+            for (std::size_t n = 0; n < impacts.size(); ++n) {
+                tolerance_batch_function(isa)(one.batch(n, 1), 1e-10, one.results(n));
+                expect_same(one.result(n), whole.result(n), differing);
+            }
+            EXPECT_EQ(differing, 0) << name(isa) << ", " << name(kind);
+        }
+    }
+}
+
 TEST(ToleranceBits, BatchesOfNothingAndWithoutDiagnostics) {
     const std::vector<Impact> impacts = mixed(63, 100, ClothSlip::kConsistent);
     Lanes lanes(impacts), plain(impacts);
