@@ -16,6 +16,8 @@ SOURCE = pathlib.Path(os.environ.get("CAROM_SOURCE_DIR", pathlib.Path(__file__).
 SCENES = sorted((SOURCE / "scenes").glob("*.toml"))
 #: Whether tests that take minutes run, too: CAROM_SLOW_TESTS=1.
 SLOW = os.environ.get("CAROM_SLOW_TESTS") == "1"
+#: What takes so many seconds hangs: far above what a busy machine needs, for no test may fail because others work there.
+HANGS = 600.0
 BAD_SCENES = sorted((SOURCE / "tests/data/bad_scenes").glob("*.toml"))
 
 

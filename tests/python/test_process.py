@@ -16,7 +16,7 @@ import time
 import carom
 import numpy as np
 import pytest
-from conftest import SOURCE
+from conftest import HANGS, SOURCE
 
 # Rolls for ever between cushions that lose nothing: only a limit or a signal ends it.
 PERPETUAL = """
@@ -53,14 +53,14 @@ print(carom.simulate(scene, until=1.0).stopped)
     assert process.stdout.readline() == "ready\n"
     time.sleep(0.3)
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=HANGS)
     assert out == "interrupted\ntime\n", err
     assert process.returncode == 0
 
 
 def test_nothing_heavy_is_imported():
     code = "import sys, numpy; before = set(sys.modules); import carom; print(*sorted(set(sys.modules) - before))"
-    out, err = run(code).communicate(timeout=60)
+    out, err = run(code).communicate(timeout=HANGS)
     new = {name.split(".")[0] for name in out.split()}
     heavy = {"asyncio", "csv", "email", "inspect", "matplotlib", "multiprocessing", "pandas", "pyarrow", "subprocess", "tempfile", "tomllib"}
     assert "carom" in new and not new & heavy, (new, err)

@@ -16,7 +16,7 @@ import time
 import carom
 import pytest
 from carom import sweep
-from conftest import SLOW, SOURCE
+from conftest import HANGS, SLOW, SOURCE
 from test_sweep_shards import break_plan, contents, draw_plan, stamps, unfinished, wait_for
 
 pytest.importorskip("pyarrow", reason="pyarrow is not installed: pip install pyarrow")
@@ -35,7 +35,7 @@ def command(*arguments, **options):
 def sweep_command(*arguments, **options):
     """`python -m carom.sweep` to its end."""
     process = command("carom.sweep", *arguments, **options)
-    out, err = process.communicate(timeout=120)
+    out, err = process.communicate(timeout=HANGS)
     return process.returncode, out, err
 
 
@@ -122,11 +122,11 @@ def test_workers_on_ports_one_of_which_is_killed(tmp_path, cluster, once):
     plan, file, files = once
     victim, _ = cluster.worker("--no-nanny"), cluster.worker("--no-nanny")
     client = command("carom.sweep", file, "-o", tmp_path / "a", "--dask", cluster.address)
-    wait_for(lambda: len(stamps(tmp_path / "a")) >= 3 and of_process(tmp_path / "a", victim), 60)
+    wait_for(lambda: len(stamps(tmp_path / "a")) >= 3 and of_process(tmp_path / "a", victim))
     victim.kill()
     victim.wait()
     before = stamps(tmp_path / "a")
-    out, err = client.communicate(timeout=120)
+    out, err = client.communicate(timeout=HANGS)
     assert client.returncode == 0, err
     assert re.match(r"dashboard: http://127\.0\.0\.1:\d+/status\n", out)
     played = re.search(r"a: 3600 rows \(at_rest 3600\), (\d+) of them played in [\d.]+ s, \d+ a second\n", out)
@@ -161,11 +161,11 @@ def test_a_nanny_puts_another_worker_in_the_place_of_a_dead_one(tmp_path, cluste
     cluster.worker("--nworkers", "2")
     client = command("carom.sweep", file, "-o", tmp_path / "a", "--dask", cluster.address)
     for _ in range(3):
-        name = wait_for(lambda: (tmp_path / "a/.unfinished").exists() and unfinished(tmp_path / "a"), 60)[0]
+        name = wait_for(lambda: (tmp_path / "a/.unfinished").exists() and unfinished(tmp_path / "a"))[0]
         with contextlib.suppress(ProcessLookupError):
             os.kill(int(name.split(".")[-3]), signal.SIGKILL)
         time.sleep(1)
-    out, err = client.communicate(timeout=120)
+    out, err = client.communicate(timeout=HANGS)
     assert client.returncode == 0, err
     assert whole(tmp_path / "a", plan, files)
 
@@ -179,10 +179,10 @@ def test_a_shard_that_dask_gives_up_is_asked_for_again(tmp_path, once):
     with Cluster(tmp_path / "dask", DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as cluster:
         victim, _ = cluster.worker("--no-nanny"), cluster.worker("--no-nanny")
         client = command("carom.sweep", file, "-o", tmp_path / "a", "--dask", cluster.address)
-        wait_for(lambda: of_process(tmp_path / "a", victim), 60)
+        wait_for(lambda: of_process(tmp_path / "a", victim))
         victim.kill()
         victim.wait()
-        out, err = client.communicate(timeout=120)
+        out, err = client.communicate(timeout=HANGS)
         assert client.returncode == 0, err
         assert "KilledWorker" in (tmp_path / "dask/dask-0.log").read_text() or "marked as failed" in (tmp_path / "dask/dask-0.log").read_text()
         assert whole(tmp_path / "a", plan, files)
@@ -193,16 +193,16 @@ def test_a_worker_that_was_given_up_comes_back(tmp_path, cluster, once):
     plan, file, files = once
     late, _ = cluster.worker("--no-nanny"), cluster.worker("--no-nanny")
     client = command("carom.sweep", file, "-o", tmp_path / "a", "--dask", cluster.address)
-    wait_for(lambda: of_process(tmp_path / "a", late), 60)
+    wait_for(lambda: of_process(tmp_path / "a", late))
     late.send_signal(signal.SIGSTOP)
     assert of_process(tmp_path / "a", late)
-    out, err = client.communicate(timeout=120)
+    out, err = client.communicate(timeout=HANGS)
     assert client.returncode == 0, err
     assert whole(tmp_path / "a", plan, files)
     before = stamps(tmp_path / "a")
     assert of_process(tmp_path / "a", late)  # it lives: nobody clears up behind it
     late.send_signal(signal.SIGCONT)
-    wait_for(lambda: not of_process(tmp_path / "a", late), 60)
+    wait_for(lambda: not of_process(tmp_path / "a", late))
     assert stamps(tmp_path / "a") == before and whole(tmp_path / "a", plan, files)
 
 
@@ -211,13 +211,13 @@ def test_without_its_scheduler_the_client_ends_and_goes_on_with_another(tmp_path
     plan, file, files = once
     cluster.worker("--no-nanny")
     client = command("carom.sweep", file, "-o", tmp_path / "a", "--dask", cluster.address)
-    wait_for(lambda: len(stamps(tmp_path / "a")) >= 3, 60)
+    wait_for(lambda: len(stamps(tmp_path / "a")) >= 3)
     cluster.scheduler.kill()
     cluster.scheduler.wait()
-    out, err = client.communicate(timeout=120)
+    out, err = client.communicate(timeout=HANGS)
     assert client.returncode == 1, err
     assert "what is made is whole: run again" in err, err
-    wait_for(lambda: cluster.processes[1].poll() is not None or unfinished(tmp_path / "a") == [], 60)
+    wait_for(lambda: cluster.processes[1].poll() is not None or unfinished(tmp_path / "a") == [])
     before = stamps(tmp_path / "a")
     assert 3 <= len(before) < plan.shards
     cluster.begin_scheduler()
@@ -236,9 +236,9 @@ def test_without_its_client_the_cluster_is_left_for_the_next_one(tmp_path, clust
     plan, file, files = once
     cluster.worker("--no-nanny")
     client = command("carom.sweep", file, "-o", tmp_path / "a", "--dask", cluster.address)
-    wait_for(lambda: len(stamps(tmp_path / "a")) >= 3, 60)
+    wait_for(lambda: len(stamps(tmp_path / "a")) >= 3)
     client.send_signal(number)
-    client.communicate(timeout=60)
+    client.communicate(timeout=HANGS)
     assert client.returncode == {signal.SIGKILL: -9, signal.SIGTERM: 143, signal.SIGINT: 130}[number]
     before = stamps(tmp_path / "a")
     code, out, err = sweep_command(file, "-o", tmp_path / "a", "--dask", cluster.address)
@@ -360,7 +360,7 @@ def test_ctrl_c_and_sigterm_end_the_command(tmp_path):
         seen = len(stamps(tmp_path / "p"))
         wait_for(lambda: len(stamps(tmp_path / "p")) > seen)
         process.send_signal(number)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=HANGS)
         assert process.returncode == status and "Traceback" not in err, err
         assert unfinished(tmp_path / "p") == []
     assert sweep.check(tmp_path / "p").faults == {}

@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import SOURCE, not_printed
+from conftest import HANGS, SOURCE, not_printed
 
 pytest.importorskip("pyarrow", reason="pyarrow is not installed: pip install pyarrow")
 pytest.importorskip("distributed", reason="distributed is not installed: pip install distributed")
@@ -39,7 +39,7 @@ def run(code, folder, bin_folder):
         environment = os.environ | {"PATH": f"{bin_folder}:{os.environ['PATH']}:/usr/bin:/bin"}
         shell = subprocess.Popen(["/bin/bash", "-euo", "pipefail", "-c", code], cwd=folder, env=environment, stdout=stdout, stderr=stderr, start_new_session=True)
     try:
-        status = shell.wait(timeout=120)
+        status = shell.wait(timeout=HANGS)
     finally:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(shell.pid, signal.SIGKILL)

@@ -19,7 +19,7 @@ import carom
 import numpy as np
 import pytest
 from carom import sweep
-from conftest import SLOW, SOURCE, carom_program, rows_of
+from conftest import HANGS, SLOW, SOURCE, carom_program, rows_of
 from test_sweep import RULES, same
 
 pyarrow = pytest.importorskip("pyarrow", reason="pyarrow is not installed: pip install pyarrow")
@@ -66,8 +66,8 @@ def worker(plan, shard, folder, **options):
     return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
 
 
-def wait_for(what, seconds=30.0):
-    end = time.monotonic() + seconds
+def wait_for(what):
+    end = time.monotonic() + HANGS
     while not (found := what()):
         assert time.monotonic() < end, "it did not happen"
         time.sleep(0.005)
@@ -453,7 +453,7 @@ def test_a_late_twin_is_harmless(tmp_path):
         before = stamps(tmp_path)
     finally:
         late.send_signal(signal.SIGCONT)
-    out, err = late.communicate(timeout=60)
+    out, err = late.communicate(timeout=HANGS)
     assert (out, err, late.returncode) == ("True\n", "", 0)
     assert stamps(tmp_path) == before and unfinished(tmp_path) == []
     assert sweep.check(tmp_path).whole
@@ -475,7 +475,7 @@ def test_ctrl_c_ends_a_run_soon_and_the_next_one_goes_on(tmp_path):
     process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
     wait_for(lambda: len(contents(tmp_path)) >= 2)
     process.send_signal(signal.SIGINT)
-    _, err = process.communicate(timeout=60)
+    _, err = process.communicate(timeout=HANGS)
     assert err.endswith("KeyboardInterrupt\n")
     assert unfinished(tmp_path) == []
     done = contents(tmp_path)

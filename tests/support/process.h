@@ -118,7 +118,7 @@ class Process {
         if (input.empty()) close_one(to_);
         while (from_[0] >= 0 || from_[1] >= 0) {
             pollfd ready[3] = {{from_[0], POLLIN, 0}, {from_[1], POLLIN, 0}, {to_, POLLOUT, 0}};
-            if (::poll(ready, 3, 120000) <= 0) break;  // two minutes of silence: ended by the destructor
+            if (::poll(ready, 3, 240000) <= 0) break;  // four minutes of silence: ended by the destructor
             for (int i = 0; i < 2; ++i) {
                 if (ready[i].revents != 0) read_some(from_[i], *texts[i]);
             }
