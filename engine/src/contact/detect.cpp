@@ -37,9 +37,18 @@ double closing_speed(const Relative& m, double t) {
     return d > 0.0 ? -dot(r, rate(m, t)) / d : length(rate(m, t));
 }
 
+// At most one small step back from a time at which balls overlap to the side without penetration.
+double outside(const Relative& m, double reach, double t, double gap, double closing) {
+    if (!(gap < 0.0)) return t;
+    const double back = closing > m.noise ? t + gap / closing : t;
+    const double earlier = std::min(back, t - std::numeric_limits<double>::epsilon() * t);
+    if (!(earlier >= 0.0)) return t;
+    const double earlier_gap = length(at(m, earlier)) - reach;
+    return earlier_gap >= 0.0 && earlier_gap <= -2.0 * gap ? earlier : t;
+}
+
 // Refines a root of the polynomial with the distance itself: Newton steps on |r(t)| - reach, accepted only while
-// the gap decreases (at a graze they would diverge), then at most one small step back to the side without
-// penetration.
+// the gap decreases (at a graze they would diverge).
 double refine(const Relative& m, double reach, double t, double horizon) {
     double gap = length(at(m, t)) - reach;
     for (int i = 0; i < 3 && gap != 0.0; ++i) {
@@ -51,16 +60,7 @@ double refine(const Relative& m, double reach, double t, double horizon) {
         t = next;
         gap = next_gap;
     }
-    if (gap < 0.0) {
-        const double closing = closing_speed(m, t);
-        const double back = closing > m.noise ? t + gap / closing : t;
-        const double earlier = std::min(back, t - std::numeric_limits<double>::epsilon() * t);
-        if (earlier >= 0.0) {
-            const double earlier_gap = length(at(m, earlier)) - reach;
-            if (earlier_gap >= 0.0 && earlier_gap <= -2.0 * gap) t = earlier;
-        }
-    }
-    return t;
+    return gap < 0.0 ? outside(m, reach, t, gap, closing_speed(m, t)) : t;
 }
 
 // A contact that is pressed together counts as an impact once its closing speed is above the rounding and above this
@@ -71,9 +71,9 @@ double press_delay(double closing_acceleration, double noise, double horizon) {
     return 2.0 * noise / closing_acceleration + kPressShare * std::min(horizon, 1.0);
 }
 
-// [-] Steps towards a distant ball, and the share of the contact-free time that each of them uses.
-constexpr int kApproaches = 12;
-constexpr double kApproachShare = 0.99;
+// [-] Steps towards contact before the quartic is asked; and what a step may leave of the gap for it to be the last, as a share of the reach.
+constexpr int kApproaches = 16;
+constexpr double kArrived = 1e-16;
 
 // Straight relative path with the signed acceleration `alpha` along it. It is solved in arc length, exactly at a graze.
 double along_line(const Relative& m, double reach, double speed, double alpha, double horizon) {
@@ -93,22 +93,33 @@ double along_line(const Relative& m, double reach, double speed, double alpha, d
     return t <= horizon ? refine(m, reach, t, horizon) : kNever;
 }
 
-// The same motion from a later origin, before which the gap cannot close. The coefficients of |r|^2 - reach^2 are as
-// large as the squares of the distances travelled until then; at a graze their rounding (1e-11 m over 100 m) would
-// decide instead of the distance.
-Relative brought_near(Relative m, double reach, double horizon, double& elapsed) {
-    for (int i = 0; i < kApproaches; ++i) {
-        const double gap = length(m.r) - reach;
-        if (!(gap > 0.25 * reach)) break;
-        const double speed = length(m.v), pull = length(m.a);
-        const double step =
-            kApproachShare * 2.0 * gap / (speed + std::sqrt(speed * speed + 2.0 * pull * gap));
-        elapsed += step;
-        if (!(elapsed < horizon)) break;
-        m.r = at(m, step);
-        m.v = rate(m, step);
+// Goes on from t, before which the gap cannot close, to contact: true once it is reached or cannot be within the horizon (t is
+// kNever then). A distance curves by -|a| at least, so the time that it would take at this curvature from the present closing speed
+// is free of contact; near the root this is Newton's step. False where it creeps, near a graze: the quartic knows it
+// from there. From farther off it does not: the coefficients of |r|^2 - reach^2 are as large as the squares of the distances travelled,
+// and at a graze their rounding (1e-11 m over 100 m) would decide instead of the distance.
+bool approach(const Relative& m, double reach, double pull, double horizon, double& t) {
+    for (int i = 0;; ++i) {
+        const Vec2 r = at(m, t), v = rate(m, t);
+        const double d = length(r), gap = d - reach, closing = -dot(r, v) / d;
+        if (!(gap > 0.0)) {
+            t = outside(m, reach, t, gap, closing);
+            return closing > m.noise;
+        }
+        if (i == kApproaches) return false;
+        const double root = std::sqrt(closing * closing + 2.0 * pull * gap);
+        const double step = closing > 0.0 ? 2.0 * gap / (closing + root) : (root - closing) / pull;
+        t += step;
+        if (!(t <= horizon)) {
+            t = kNever;
+            return true;
+        }
+        // What curves the distance by at most |v|^2 / d + |a| leaves so much of the gap.
+        if ((dot(v, v) + pull * d) * (step * step) <= kArrived * reach * d) {
+            t = outside(m, reach, t, length(at(m, t)) - reach, closing);
+            return closing > m.noise;
+        }
     }
-    return m;
 }
 
 // First time within the horizon at which |r| decreases to reach, closing or only touching; c0 = |r|^2 - reach^2 now.
@@ -128,17 +139,16 @@ double first_touch(const Relative& m, double reach, double c0, double horizon, b
     } else if (pull == 0.0) {
         return kNever;  // touching, not closing, no acceleration: never again
     }
-    double elapsed = 0.0;
-    const Relative near = c0 > 0.0 ? brought_near(m, reach, horizon, elapsed) : m;
-    if (elapsed >= horizon) return kNever;
-    if (elapsed > 0.0) {
-        const double d = length(near.r);
+    double near = 0.0;
+    if (c0 > 0.0 && approach(m, reach, pull, horizon, near)) return near;
+    const Vec2 r = near > 0.0 ? at(m, near) : m.r, v = rate(m, near);
+    if (near > 0.0) {
+        const double d = length(r);
         c0 = (d - reach) * (d + reach);
     }
-    const double c[5] = {c0, 2.0 * dot(near.r, near.v), dot(near.v, near.v) + dot(near.r, near.a),
-                         dot(near.v, near.a), 0.25 * dot(near.a, near.a)};
-    const double t = first_descent(c, horizon - elapsed);
-    return t == kNever ? kNever : refine(m, reach, std::min(horizon, elapsed + t), horizon);
+    const double c[5] = {c0, 2.0 * dot(r, v), dot(v, v) + dot(r, m.a), dot(v, m.a), 0.25 * dot(m.a, m.a)};
+    const double t = first_descent(c, horizon - near);
+    return t == kNever ? kNever : refine(m, reach, std::min(horizon, near + t), horizon);
 }
 
 // First contact that closes by more than rounding. Grazes below that are skipped. A contact that closes only because it

@@ -72,7 +72,6 @@ void Detector::bound(int ball, double from, const RoundedBox* whole) {
 // after which its contacts are searched again. `mine` is the path of ball a from the start of its segment.
 Candidate Detector::pair(int a, const Path& mine, int b, double latest) const {
     const Segment &s = balls_.segment(a), &q = balls_.segment(b);
-    if (!mine.moves && !translates(q.state)) return {};
     const bool in_air = flights_ && (flies(s.state) || flies(q.state));
     // A ball in a pocket's mouth is out of the way of those above the cloth.
     if (in_air && (s.state == MotionState::kFalling || q.state == MotionState::kFalling)) return {};
