@@ -151,21 +151,41 @@ class EdgeFinder {
     // lies within a longer edge is left out.
     static void drop_doubled(std::vector<TableEdge>& edges) {
         const auto point = [](const std::array<float, 3>& p) { return Vec3(p[0], p[1], p[2]); };
-        const auto length = [&](const TableEdge& edge) { return (point(edge.b) - point(edge.a)).norm(); };
         constexpr double kLong = 0.2, kSame = 1e-5;  // [m]
-        std::vector<TableEdge> longest;
-        std::copy_if(edges.begin(), edges.end(), std::back_inserter(longest),
-                     [&](const TableEdge& edge) { return !edge.smooth && length(edge) > kLong; });
-        const auto within = [&](const Vec3& p, const TableEdge& edge) {
-            const Vec3 from = point(edge.a), along = point(edge.b) - from;
-            const double t = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-            return (p - from - t * along).norm() < kSame;
+        struct Long {
+            Vec3 from, along;
+            double length;
+        };
+        std::vector<Long> longest;
+        // Of each cell of the table the long edges that may come near it, so that an edge looks at few of them.
+        double size = 0.0;
+        for (const TableEdge& edge : edges) size = std::max(size, point(edge.a).cwiseAbs().maxCoeff());
+        const double side = std::max(0.25, size / 32.0);
+        std::map<std::pair<int, int>, std::vector<std::size_t>> near;
+        const auto cell = [&](double x) { return static_cast<int>(std::floor(x / side)); };
+        for (const TableEdge& edge : edges) {
+            const Vec3 from = point(edge.a), to = point(edge.b);
+            if (edge.smooth || !((to - from).norm() > kLong)) continue;
+            const Vec3 low = from.cwiseMin(to), high = from.cwiseMax(to);
+            for (int i = cell(low.x() - kSame); i <= cell(high.x() + kSame); ++i) {
+                for (int j = cell(low.y() - kSame); j <= cell(high.y() + kSame); ++j)
+                    near[{i, j}].push_back(longest.size());
+            }
+            longest.push_back({from, to - from, (to - from).norm()});
+        }
+        const auto within = [&](const Vec3& p, const Long& edge) {
+            const double t = std::clamp((p - edge.from).dot(edge.along) / edge.along.squaredNorm(), 0.0, 1.0);
+            return (p - edge.from - t * edge.along).norm() < kSame;
         };
         std::erase_if(edges, [&](const TableEdge& edge) {
-            return std::any_of(longest.begin(), longest.end(), [&](const TableEdge& other) {
-                return length(other) > length(edge) + kSame && within(point(edge.a), other) &&
-                       within(point(edge.b), other);
-            });
+            const Vec3 a = point(edge.a), b = point(edge.b);
+            const auto here = near.find({cell(a.x()), cell(a.y())});
+            const double length = (b - a).norm();
+            return here != near.end() &&
+                   std::any_of(here->second.begin(), here->second.end(), [&](std::size_t i) {
+                       return longest[i].length > length + kSame && within(a, longest[i]) &&
+                              within(b, longest[i]);
+                   });
         });
     }
 

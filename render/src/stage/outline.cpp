@@ -179,17 +179,27 @@ std::vector<int> triangulate(const std::vector<Vec2>& polygon) {
         }
         return true;
     };
+    // A point that is no ear becomes one only by a cut beside it: as long as its triangle is the same, the innermost of the points in
+    // there is not convex, so it is not cut off. An outline of n points takes n^2 steps, where asking all anew takes n^3.
+    std::vector<char> no_ear(polygon.size(), 0);
     while (left.size() >= 3) {
         const std::size_t n = left.size();
         std::size_t ear = n;
         for (std::size_t i = 0; i < n && ear == n; ++i) {
-            if (is_ear(left[(i + n - 1) % n], left[i], left[(i + 1) % n])) ear = i;
+            if (no_ear[left[i]] != 0) continue;
+            if (is_ear(left[(i + n - 1) % n], left[i], left[(i + 1) % n]))
+                ear = i;
+            else
+                no_ear[left[i]] = 1;
         }
-        // No ear: the remaining points are collinear, or the outline crosses itself. Any cut then ends the loop.
-        if (ear == n) ear = 0;
-        for (std::size_t k : std::array<std::size_t, 3>{(ear + n - 1) % n, ear, (ear + 1) % n}) {
-            triangles.push_back(left[k]);
+        if (ear == n) {
+            // No ear: the remaining points are collinear, or the outline crosses itself. Any cut then ends the loop.
+            ear = 0;
+            std::fill(no_ear.begin(), no_ear.end(), 0);
         }
+        const int before = left[(ear + n - 1) % n], after = left[(ear + 1) % n];
+        for (const int corner : {before, left[ear], after}) triangles.push_back(corner);
+        no_ear[before] = no_ear[after] = 0;
         left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
     }
     return triangles;
