@@ -60,6 +60,8 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     refused("would replace what is read", {"simulate", scene_, "-o", folder_.path().string() + "/./s.toml"});
     refused("would replace what is read", sweep(scene_));
     refused("would replace what is read", {"margin", scene_, "--no-render", "--csv", scene_});
+    refused("-o -: give a name", sweep("-"));
+    refused("--csv -: give a name", {"margin", scene_, "--no-render", "--csv", "-"});
     refused("--events and --samples name the same file",
             {"simulate", scene_, "--events", same, "--samples", same, "--sample-dt", "0.1"});
     refused("-o: a file without a name", sweep(""));
@@ -145,6 +147,8 @@ TEST_F(Mistakes, StandardOutputIsAFileToo) {
     EXPECT_EQ(lines_of(samples.out)[0].substr(0, 10), "time,ball,") << samples.out;
     EXPECT_FALSE(contains(samples.out, "balls at the end"));
     EXPECT_FALSE(fs::exists("-"));
+    refused("-o -: give a name", sweep("-"));
+    refused("--csv -: give a name", {"margin", scene_, "--no-render", "--csv", "-"});
     refused("--events and --samples name the same file",
             {"simulate", scene_, "--events", "-", "--samples", "-", "--sample-dt", "0.5"});
 }

@@ -177,6 +177,9 @@ void check_files(const Options& command, const CLI::App& app) {
         if (path == nullptr || !(written || row.by_place())) continue;
         if (written && (*path)->empty() && asked->get_option(row.names.back())->count() > 0)
             throw UsageError(row.names.front() + ": a file without a name; give it one");
+        if (written && **path == "-" && !row.to_stdout)
+            throw UsageError(row.names.front() +
+                             " -: give a name; /dev/stdout is standard output, summary included");
         if (!(*path)->empty()) files.push_back({row.names.front(), **path, written});
     }
     const auto same = [](const std::string& a, const std::string& b) {

@@ -29,6 +29,7 @@ struct Option {
     std::vector<std::string> choices;                ///< all values that are allowed; empty: any
     std::optional<std::pair<double, double>> range;  ///< of the value, both ends included
     bool required = false;
+    bool to_stdout = false;       ///< a FILE that is - is standard output
     std::string needs, excludes;  ///< the name of another option, whose row stands before this one
 
     Option& in(double least, double most);

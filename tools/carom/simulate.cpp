@@ -220,13 +220,19 @@ void add_simulate(Options& program) {
     auto [command, args] = program.command<SimulateArgs>(
         "simulate", "Run a scene: what happened, events, record, sampled states, hash", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
-    command.option("-o,--output", &args.record, "FILE.json",
-                   "Write the record, for carom render (default: not written)");
-    command.option("--events", &args.events, "FILE.csv",
-                   "Write the events; - is standard output, in place of the summary, as below (default: not "
-                   "written)");
-    command.option("--samples", &args.samples, "FILE.csv",
-                   "Write sampled states; needs --sample-dt (default: not written)");
+    command
+        .option("-o,--output", &args.record, "FILE.json",
+                "Write the record, for carom render (default: not written)")
+        .to_stdout = true;
+    command
+        .option("--events", &args.events, "FILE.csv",
+                "Write the events; - is standard output, in place of the summary, as below (default: not "
+                "written)")
+        .to_stdout = true;
+    command
+        .option("--samples", &args.samples, "FILE.csv",
+                "Write sampled states; needs --sample-dt (default: not written)")
+        .to_stdout = true;
     command.option("--sample-dt", &args.sample_dt, "S", "Time between samples in s (default: none)");
     command.option("--until", &args.until, "S",
                    "Stop at this time in s at the latest (default: the scene's end)");
