@@ -77,6 +77,9 @@ for file in man/man1/carom.1 bash-completion/completions/carom; do
 done
 [ -s "$prefix/share/zsh/site-functions/_carom" ] || [ -s "$prefix/share/zsh/vendor-completions/_carom" ] || fail "the completions of zsh are not installed"
 
+"$prefix/bin/carom" check "$prefix/share/carom/scenes/hello.toml" >"$work/check.txt" || { cat "$work/check.txt"; fail "an installed scene is refused"; }
+[ "$(cd "$prefix/share/carom" && echo *.json)" = "record.schema.json scene.schema.json" ] || fail "the schemas are not installed"
+
 echo "== Common Package Specification"
 python3 - "$library" "$prefix" "$("$prefix/bin/carom" --version)" <<'END'
 import json, os, re, sys
