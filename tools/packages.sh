@@ -32,6 +32,13 @@ carom_help() {
     esac
 }
 
+# carom_no_arguments "$@": ends a script that takes none, before it does anything.
+carom_no_arguments() {
+    [ $# -eq 0 ] && return
+    echo "${0##*/}: takes no argument, but \"$1\" was given; see tools/${0##*/} --help" >&2
+    exit 2
+}
+
 carom_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
 carom_missing() {

@@ -1,5 +1,6 @@
 // Every rule of the scene format: bad scenes and their exact messages, defaults, limits.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -79,6 +80,14 @@ TEST(Scenes, FilesThatCannotBeRead) {
     EXPECT_EQ(message("no/such.toml"), "no/such.toml: cannot be read: there is no such file; check the path");
     const std::string folder = CAROM_TEST_DATA;
     EXPECT_EQ(message(folder), folder + ": cannot be read: it is a directory; name a scene file in it");
+    // What is there but out of reach is not said to be missing. (A folder without permissions keeps nobody out who is root.)
+    const auto loop =
+        std::filesystem::temp_directory_path() / ("carom_loop_" + std::to_string(::getpid()) + ".toml");
+    std::filesystem::create_symlink(loop, loop);
+    EXPECT_EQ(message(loop.string()),
+              loop.string() +
+                  ": cannot be read: Too many levels of symbolic links; check the path and its permissions");
+    std::filesystem::remove(loop);
 }
 
 TEST(Scenes, TooLargeFile) {

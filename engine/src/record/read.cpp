@@ -211,7 +211,8 @@ void read_events(const JsonValue& list, const Format& format, Record& record) {
 
 std::string text_of_file(const std::string& path) {
     std::error_code error;
-    if (!std::filesystem::exists(path, error)) throw SceneError(path, {}, "there is no such file");
+    if (!std::filesystem::exists(path, error))
+        throw SceneError(path, {}, error ? error.message() : "there is no such file");
     // Reading a device or a pipe might never end.
     if (!std::filesystem::is_regular_file(path, error))
         throw SceneError(path, {}, "this is not a regular file");

@@ -30,7 +30,9 @@ void check_size(std::string_view text, const std::string& name) {
 std::string read_scene_text(const std::string& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) cannot_read(path, "there is no such file; check the path");
+    if (status.type() == std::filesystem::file_type::not_found)
+        cannot_read(path, "there is no such file; check the path");
+    if (error) cannot_read(path, error.message() + "; check the path and its permissions");
     if (std::filesystem::is_directory(status))
         cannot_read(path, "it is a directory; name a scene file in it");
     std::ifstream in(path, std::ios::binary);
