@@ -25,45 +25,64 @@ struct Law {
     bool cloth, friction;
 };
 
-// Brings the list of contacts up to date.
-CAROM_INLINE void list_overlaps(Work& w, const double* d) {
-    int change = 0;
-    for (int block = 0; block < w.lanes / 4; ++block) {
-        const int bits = bits_less(broadcast<4>(0.0), load<4>(d + 4 * block));
-        change |= bits ^ w.overlaps[block];
-        w.overlaps[block] = bits;
+// Puts the contacts that overlap in front of the others.
+void reorder(Work& w, const double* d) {
+    int open = w.count, closed = 0, overlapping = 0, others = 0;
+    while (closed < w.count || open < w.contacts) {
+        const bool first = open == w.contacts || (closed < w.count && w.id[closed] < w.id[open]);
+        const int c = first ? closed++ : open++;
+        if (d[c] > 0.0)
+            w.order[overlapping++] = c;
+        else
+            w.spare[others++] = c;
     }
-    if (change == 0) return;
-    int count = 0;
-    for (int c = 0; c < w.contacts; ++c) {
-        if ((w.overlaps[c / 4] >> (c % 4) & 1) != 0) w.active[count++] = c;
-    }
-    for (; count % 4 != 0; ++count) w.active[count] = w.contacts;
-    w.count = count;
-    for (int n = 0; n < count; ++n) {
-        const int c = w.active[n];
-        w.active_i[n] = w.i[c];
-        w.active_j[n] = w.j[c];
-    }
+    w.count = overlapping;
+    for (int n = 0; n < others; ++n) w.order[overlapping + n] = w.spare[n];
+    const auto move = [&w](auto* numbers, auto* moved) {
+        for (int n = 0; n < w.contacts; ++n) moved[n] = numbers[w.order[n]];
+        for (int n = 0; n < w.contacts; ++n) numbers[n] = moved[n];
+    };
+    double* const arrays[] = {w.d,      w.d_stage, w.rate[0], w.rate[1], w.rate[2], w.rate[3],
+                              w.memory, w.nx,      w.ny,      w.turn,    w.bend,    w.share};
+    for (double* array : arrays) move(array, w.moved);
+    int* const places[] = {w.i, w.j, w.id};
+    for (int* array : places) move(array, w.spare);
 }
 
-// Adds the forces of four contacts of the list to the slopes of their balls.
-template <bool kFalls>
+// Whether other contacts overlap than those that come first.
+CAROM_INLINE bool out_of_order(const Work& w, const double* d) {
+    int change = 0;
+    for (int c = 0; c < w.lanes; c += 4) {
+        const int overlapping = w.count - c < 0 ? 0 : w.count - c > 3 ? 15 : (1 << (w.count - c)) - 1;
+        change |= overlapping ^ bits_less(broadcast<4>(0.0), load<4>(d + c));
+    }
+    return change != 0;
+}
+
+// Adds the forces of four contacts to the slopes of their balls. At a stage the normals have turned for `time`, and
+// `rate` gets the rates of the overlaps.
+template <bool kFalls, bool kStage>
 CAROM_INLINE void add_forces(const Work& w, const Law<kFalls>& law, const double* y, const double* d,
-                             const double* n_x, const double* n_y, int first, double* dy) {
-    const int *c = w.active + first, *i = w.active_i + first, *j = w.active_j + first;
-    const Four nx = pack(n_x[c[0]], n_x[c[1]], n_x[c[2]], n_x[c[3]]);
-    const Four ny = pack(n_y[c[0]], n_y[c[1]], n_y[c[2]], n_y[c[3]]);
+                             double time, int first, double* dy, double* rate) {
+    const int *i = w.i + first, *j = w.j + first;
+    Four nx = load<4>(w.nx + first), ny = load<4>(w.ny + first);
     Four motion[4];
     for (int lane = 0; lane < 4; ++lane)
         motion[lane] = subtract_add(load<4>(y + i[lane]), load<4>(y + j[lane]));
     transpose(motion[0], motion[1], motion[2], motion[3]);
+    if (kStage) {
+        const Four angle = time * load<4>(w.turn + first), x = nx - angle * ny;
+        ny = ny + angle * nx;
+        nx = x;
+        store(rate + first, motion[0] * nx + motion[2] * ny);
+    }
     const double* turn = y + kTurn;
     const Four turning = pack(turn[i[0]] + turn[j[0]], turn[i[1]] + turn[j[1]], turn[i[2]] + turn[j[2]],
                               turn[i[3]] + turn[j[3]]);
-    const Four overlap = pack(d[c[0]], d[c[1]], d[c[2]], d[c[3]]);
-    const Four memory = pack(w.memory[c[0]], w.memory[c[1]], w.memory[c[2]], w.memory[c[3]]);
-    const Four F = normal_force(law.a, law.b, law.p, overlap, memory);
+    const Four overlap = load<4>(d + first), none = broadcast<4>(0.0);
+    // The last four may hold some that do not overlap.
+    const Four F =
+        select(none < overlap, normal_force(law.a, law.b, law.p, overlap, load<4>(w.memory + first)), none);
     // t = n x z = (n_y, -n_x); s_x = (v_i - v_j) . t - R (w_iz + w_jz), s_z = R (w_i + w_j) . t.
     const Four s_x = motion[0] * ny - motion[2] * nx - turning;
     const Four s_z = motion[1] * ny - motion[3] * nx;
@@ -74,7 +93,7 @@ CAROM_INLINE void add_forces(const Work& w, const Law<kFalls>& law, const double
     const Four f_x = k * s_x, f_z = k * s_z;
     const Four twist = 2.5 * f_z;
     Four rows[4] = {f_x * ny - F * nx, twist * ny, -F * ny - f_x * nx, -twist * nx};
-    Four ends[4] = {f_z, -2.5 * f_x, broadcast<4>(0.0), k};
+    Four ends[4] = {f_z, -2.5 * f_x, none, k};
     transpose(rows[0], rows[1], rows[2], rows[3]);
     transpose(ends[0], ends[1], ends[2], ends[3]);
     for (int lane = 0; lane < 4; ++lane) {
@@ -112,12 +131,14 @@ CAROM_INLINE void add_cloth(const Work& w, const Law<kFalls>& law, const double*
     }
 }
 
-// Adds the right-hand side to dy, in units of V and L: forces are d^1.5, masses 1.
-template <bool kFalls>
-CAROM_INLINE void forces(Work& w, const Law<kFalls>& law, const double* y, const double* d, const double* nx,
-                         const double* ny, double* dy) {
-    list_overlaps(w, d);
-    for (int n = 0; n < w.count; n += 4) add_forces(w, law, y, d, nx, ny, n, dy);
+// Adds the right-hand side to dy, in units of V and L: forces are d^1.5, masses 1. At a stage `rate` gets the rates of the overlaps.
+template <bool kStage, bool kFalls>
+CAROM_INLINE void forces(Work& w, const Law<kFalls>& law, const double* y, const double* d, double time,
+                         double* dy, double* rate) {
+    if (out_of_order(w, d)) reorder(w, d);
+    int c = 0;
+    for (; c < w.count; c += 4) add_forces<kFalls, kStage>(w, law, y, d, time, c, dy, rate);
+    if (kStage) rates(w, y, time, c, rate);
     if (law.cloth) add_cloth(w, law, y, dy);
 }
 
@@ -170,8 +191,8 @@ CAROM_INLINE void combine(double* y, double* const* slope, const double (&share)
 // The longest stable step, at most `longest`.
 CAROM_INLINE double stable_step(const Work& w, const double* dy, double longest) {
     double least = 0.0;
-    for (int n = 0; n < w.count; ++n)
-        least = smallest(least, dy[w.active_i[n] + kStiffness] + dy[w.active_j[n] + kStiffness]);
+    for (int c = 0; c < w.count; ++c)
+        least = smallest(least, dy[w.i[c] + kStiffness] + dy[w.j[c] + kStiffness]);
     return kStableShare < longest * -least ? kStableShare / -least : longest;
 }
 
@@ -181,15 +202,14 @@ template <bool kFalls>
 CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double shortest, double longest, double& next) {
     const RungeKutta& method = law.friction ? kStabilised : kClassical;
     const int count = kRow * w.rows;
-    forces(w, law, w.y, w.d, w.nx, w.ny, w.dy[0]);
+    forces<false>(w, law, w.y, w.d, 0.0, w.dy[0], nullptr);
     double h = stable_step(w, w.dy[0], smallest(longest, next));
     for (;;) {
         for (int k = 1; k < kStages; ++k) {
             const double time = h * method.node[k];
             shift(w.y_stage, w.y, w.dy[k - 1], time, count);
             shift(w.d_stage, w.d, w.rate[k - 1], time, w.lanes);
-            rates(w, w.y_stage, time, w.rate[k]);
-            forces(w, law, w.y_stage, w.d_stage, w.nx_stage, w.ny_stage, w.dy[k]);
+            forces<true>(w, law, w.y_stage, w.d_stage, time, w.dy[k], w.rate[k]);
         }
         if (!law.friction) break;
         const double error = difference(w.dy, h, count);

@@ -97,7 +97,7 @@ CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double lo
         w.d[c] = smallest(0.0, -path.gap_after(time));
         if (late <= 0.0) w.d[c] = 0.0;
         turn_by_flight(path, time, w.nx[c], w.ny[c]);
-        w.share[c] = phase.contact[c].turn * (1.0 - less * falling(late, 0.0, kSoonAfter));
+        w.share[c] = phase.contact[w.id[c]].turn * (1.0 - less * falling(late, 0.0, kSoonAfter));
         w.bend[c] = w.curvature;
         w.shares |= w.share[c] < 1.0 && w.curvature > 0.0;
     }
@@ -109,8 +109,9 @@ CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double lo
 CAROM_INLINE void close_contact(const ContactPhase& phase, Work& w, int c, double time) {
     double &nx = w.nx[c], &ny = w.ny[c];
     turn_by_flight(way(w, c, nx, ny, largest(0.0, -w.d[c])), time, nx, ny);
-    double x = phase.contact[c].nx, y = phase.contact[c].ny;
-    const Way since = way(w, c, x, y, -phase.contact[c].overlap);
+    const HertzContact& first = phase.contact[w.id[c]];
+    double x = first.nx, y = first.ny;
+    const Way since = way(w, c, x, y, -first.overlap);
     turn_by_flight(since, since.nearest(), x, y);
     const double share = w.share[c];
     nx = share * nx + (1.0 - share) * x;

@@ -30,17 +30,19 @@ struct Work {
     double *y, *y_stage, *dy[kStages];
     // Of each contact: overlap, its stages and their slopes, and the largest overlap since the contact opened.
     double *d, *d_stage, *rate[kStages], *memory;
-    // Normal at the start of the step and at a stage, the speed at which it turns, and the curvature 1/(2 R) that it
-    // turns by: less than that of the balls where it turns less (see settle()).
-    double *nx, *ny, *nx_stage, *ny_stage, *turn, *bend;
+    // Normal at the start of the step, the speed at which it turns, and the curvature 1/(2 R) that it turns by: less than that of the
+    // balls where it turns less (see settle()).
+    double *nx, *ny, *turn, *bend;
     double* share;  // of the turning, while the contact is closed
     double curvature;
     bool shares;  // whether one of them is below 1
-    int *i, *j;   // where the rows of the two balls begin
-    // The list of contacts that overlap, in their order: number, rows.
-    int *active, *active_i, *active_j;
-    int* overlaps;  // of each four contacts a bit each: those that are in the list
-    int count;      // contacts in the list, with those that fill the last register
+    // Where the rows of the two balls begin, and the contact's number in ContactPhase. The contacts that overlap come first, then the
+    // others, either in the order of their numbers: so four of them lie side by side, and the sums of a ball have one order.
+    int *i, *j, *id;
+    int count;  // contacts that overlap
+    // To put contacts into another order.
+    double* moved;
+    int *order, *spare;
 };
 
 // The next `count` numbers of the scratch memory, set to zero.
@@ -68,26 +70,24 @@ CAROM_INLINE Work lay_out(const ContactPhase& phase) {
     w.memory = take(next, w.lanes);
     w.nx = take(next, w.lanes);
     w.ny = take(next, w.lanes);
-    w.nx_stage = take(next, w.lanes);
-    w.ny_stage = take(next, w.lanes);
     w.turn = take(next, w.lanes);
     w.bend = take(next, w.lanes);
     w.share = take(next, w.lanes);
+    w.moved = take(next, w.lanes);
     w.curvature = phase.curvature;
     w.shares = false;
     w.i = phase.places;
     w.j = w.i + w.lanes;
-    w.active = w.j + w.lanes;
-    w.active_i = w.active + w.lanes;
-    w.active_j = w.active_i + w.lanes;
-    w.overlaps = w.active_j + w.lanes;
-    for (int block = 0; block < w.lanes / 4; ++block) w.overlaps[block] = 0;
+    w.id = w.j + w.lanes;
+    w.order = w.id + w.lanes;
+    w.spare = w.order + w.lanes;
     w.count = 0;
     for (int b = 0; b < w.balls; ++b) {
         for (int k = 0; k < kPerBall; ++k) w.y[kRow * b + kPlace[k]] = phase.motion[kPerBall * b + k];
     }
     for (int c = 0; c < w.lanes; ++c) {
         const bool real = c < w.contacts;
+        w.id[c] = c;
         w.i[c] = kRow * (real ? phase.contact[c].i : w.balls);
         w.j[c] = kRow * (real ? phase.contact[c].j : w.balls);
         if (!real) continue;
@@ -107,16 +107,13 @@ CAROM_INLINE void closing(const Work& w, const double* y, int c, Four (&dv)[4]) 
     transpose(dv[0], dv[1], dv[2], dv[3]);
 }
 
-// d' = (v_i - v_j) . n of all contacts, with the normals that have turned for `time`.
-CAROM_INLINE void rates(const Work& w, const double* y, double time, double* rate) {
-    for (int c = 0; c < w.lanes; c += 4) {
+// d' = (v_i - v_j) . n of the contacts from `first` on, with the normals that have turned for `time`.
+CAROM_INLINE void rates(const Work& w, const double* y, double time, int first, double* rate) {
+    for (int c = first; c < w.lanes; c += 4) {
         Four dv[4];
         closing(w, y, c, dv);
         const Four angle = time * load<4>(w.turn + c), nx = load<4>(w.nx + c), ny = load<4>(w.ny + c);
-        const Four x = nx - angle * ny, y_now = ny + angle * nx;
-        store(w.nx_stage + c, x);
-        store(w.ny_stage + c, y_now);
-        store(rate + c, dv[0] * x + dv[2] * y_now);
+        store(rate + c, dv[0] * (nx - angle * ny) + dv[2] * (ny + angle * nx));
     }
 }
 
