@@ -86,9 +86,14 @@ inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactPara
     if (status == ImpactStatus::kOk && !finite(b1, b2)) status = ImpactStatus::kBadState;
     if (status == ImpactStatus::kOk) {
         const double dx = b2.r[0] - b1.r[0], dy = b2.r[1] - b1.r[1], dz = b2.r[2] - b1.r[2];
-        const double d = square_root(dx * dx + dy * dy);
+        const double d2 = dx * dx + dy * dy, d = square_root(d2);
         if (!(d > 0.0) || !finite(d) || absolute(dz) > kHeightTolerance * d) {
             status = ImpactStatus::kBadState;
+        } else if constexpr (kAnyMasses) {
+            // The division does not wait for the root. The march keeps its bits.
+            const double by_d = d * (1.0 / d2);
+            f.yx = dx * by_d;
+            f.yy = dy * by_d;
         } else {
             f.yx = dx / d;
             f.yy = dy / d;

@@ -374,5 +374,17 @@ CAROM_INLINE Pack<8> broadcast_lane(Pack<8> v) {
 }
 #endif
 
+// Lane kLane in all lanes of a pack of N, which has as many lanes as `v` or twice as many.
+template <int N, int kLane, class P>
+CAROM_INLINE Pack<N> spread_lane(P v) {
+    const P all = broadcast_lane<kLane>(v);
+    if constexpr (sizeof(P) == sizeof(Pack<N>))
+        return all;
+    else if constexpr (N <= kRegisterLanes)
+        return __builtin_shufflevector(all, all, 0, 0, 0, 0, 0, 0, 0, 0);
+    else
+        return {all, all};
+}
+
 }  // namespace
 }  // namespace carom::kernel

@@ -109,12 +109,6 @@ CAROM_INLINE WideMask wide_enter(const Wide (&in)[kInputs], WideFrame& f) {
            (scale < 1e100) & (approach > 1e-12 * scale);
 }
 
-// As ellipse().
-CAROM_INLINE Wide wide_ellipse(Wide sum_of_axes) {
-    const Wide S = select(sum_of_axes > 2.0, sum_of_axes, broadcast<kWidth>(2.0));
-    return 0.5 * (S + square_root(S * S - 4.0));
-}
-
 // As Problem: impacts in their canonical form, scaled by the approach speed.
 struct WidePose {
     WideFrame f;
@@ -194,17 +188,17 @@ CAROM_INLINE void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, d
     const Wide s = square_root(start.x * start.x + start.z * start.z), root_s = 1.0 / s;
     const Wide cx = start.x * root_s, cz = start.z * root_s;
     const Wide fall = m.mu_b * ((7.0 * cx * cx + 5.0 * cz * cz) + 2.7 * (m.mu_s * cz));
-    const Wide rho_s = wide_ellipse(4.0 * s / (fall * guess) - 2.0);
+    const Wide two = broadcast<kWidth>(2.0);
+    const Wide axes_s = 4.0 * s / (fall * guess) - 2.0;
     const Wide a1 = start.a + guess * (m.mu_b * cx), b1 = start.b + guess * (1.0 - m.sigma * (m.mu_b * cz));
     const Wide u0 = square_root(start.a * start.a + start.b * start.b), u1 = square_root(a1 * a1 + b1 * b1);
     const Wide bend = guess * ((published ? 1.5 : 3.5) * (m.mu_s * m.mu_b));
-    const Wide beside = wide_ellipse(2.0 * ((u0 + u1) - bend) / (guess * (1.0 + 2.5 * m.mu_b)));
-    const Wide rho_u = select(q.from_rest, broadcast<kWidth>(1e30), beside);
-    const Wide rs2 = rho_s * rho_s, u2 = rho_u * rho_u, s4 = rs2 * rs2, u4 = u2 * u2;
-    const Wide size_s = kSizeS * m.mu_b, size_u = kSizeU * (m.mu_b * m.mu_s);
-    block.resolvable =
-        q.good & (tolerance * (s4 * s4 * s4) >= size_s) & (tolerance * (u4 * u4 * u2) >= 0.5 * size_u);
-    const WideMask four = q.good & (tolerance * (s4 * rs2) >= size_s) & (tolerance * (u4 * rho_u) >= size_u);
+    const Wide beside = 2.0 * ((u0 + u1) - bend) / (guess * (1.0 + 2.5 * m.mu_b));
+    const Wide axes_u = select(q.from_rest, broadcast<kWidth>(kFarAway), beside);
+    const Powers<Wide> rho_s = powers(select(axes_s > two, axes_s, two)),
+                       rho_u = powers(select(axes_u > two, axes_u, two));
+    block.resolvable = q.good & eight_will_do(rho_s, rho_u, m.mu_b, m.mu_s, tolerance);
+    const WideMask four = q.good & four_will_do(rho_s, rho_u, m.mu_b, m.mu_s, tolerance);
     const WideMask wanted = N == 4 ? four : block.resolvable;
 
     WideResult t = {};

@@ -24,9 +24,14 @@ namespace {
 // Most Picard sweeps of one collocation. One that converges more slowly than this is solved in shorter stretches.
 constexpr int kMostSweeps = 24;
 
+// Sweeps of 4 nodes before those of 8: each costs half as much, and takes the error of the first guess down as far. What 4 nodes
+// do not resolve is left to the sweeps of 8; with 3, those are hardly fewer.
+constexpr int kCoarseSweeps = 2;
+
 // The square of the estimated error that the iteration may leave, in tolerances. The estimate is pessimistic, and fitted as
-// the guards are: with 20 one hard impact of the single form misses its bound. Lanes err less.
-constexpr double kSweepGoal = 12.0, kSweepGoalOfLanes = 16.0;
+// the guards are: with 20 the largest error of 360 000 random and hard impacts of the single form is two thirds of the bound, with
+// 48 one misses it. Lanes have narrower margins.
+constexpr double kSweepGoal = 20.0, kSweepGoalOfLanes = 16.0;
 
 // Largest error that the iteration may leave, as a share of the friction between the balls: where that is slight, an error
 // of the tolerance could exceed all that friction takes, and energy would rise.
@@ -49,37 +54,37 @@ struct Impulses {
     double p, xi, zeta, g_a, g_b;
 };
 
-// Where a stretch ends.
+// Where a collocation ends.
 enum class End : unsigned char {
     kWhole,  // at the end of restitution, from v = -1; the end of compression lies inside
-    kFixed,  // after a given impulse
-    kOpen,   // at the end of compression, v = 0, or at that of restitution, after a given work
+    kStretch,  // after a given impulse, or at the end of compression, v = 0, or at that of restitution, after a given work
 };
 
 // What a collocation is asked for, and what it found.
 struct Stretch {
-    double h;           // impulse: given for kFixed, otherwise a first guess and then the result
-    double work;        // kOpen: the work to do; 0: until v = 0
+    double h;           // impulse: given, or a first guess and then the result
+    double work;        // kStretch: the work to do; 0: until v = 0
     double p_c;         // kWhole: impulse at the end of compression, a first guess and then the result
-    double done;        // all kinds but kWhole: work of the normal impulse over the stretch
+    double done;        // kStretch: work of the normal impulse over the stretch
     double row_goal;    // largest error of the rows of the end
     double sweep_goal;  // square of the largest error that the iteration may leave
     double
         root_goal;  // sixth power of the largest relative error of a carried root before its last correction
-    double s_top;   // size of the highest Legendre coefficient of (xi, zeta): how well the nodes resolve them
-    double g_top;   // the same of (g_a, g_b)
+    // The square of the highest Legendre coefficient of (xi, zeta), and of (g_a, g_b): how well the nodes resolve them.
+    double s_top2, g_top2;
     int sweeps;
+    bool given;  // kStretch: the impulse is given
 };
 
-// The sum over j of column j of the table times f_j.
-template <int N>
-CAROM_INLINE Pack<N> combine(const double* table, Pack<N> f) {
+// The sum over j of column j of the table, which has N rows, times f_j.
+template <int N, class P>
+CAROM_INLINE Pack<N> combine(const double* table, P f) {
     const auto column = [&](int j) { return load<N>(table + N * j); };
-    Pack<N> total = (column(0) * broadcast_lane<0>(f) + column(1) * broadcast_lane<1>(f)) +
-                    (column(2) * broadcast_lane<2>(f) + column(3) * broadcast_lane<3>(f));
-    if constexpr (N == 8) {
-        total += (column(4) * broadcast_lane<4>(f) + column(5) * broadcast_lane<5>(f)) +
-                 (column(6) * broadcast_lane<6>(f) + column(7) * broadcast_lane<7>(f));
+    Pack<N> total = (column(0) * spread_lane<N, 0>(f) + column(1) * spread_lane<N, 1>(f)) +
+                    (column(2) * spread_lane<N, 2>(f) + column(3) * spread_lane<N, 3>(f));
+    if constexpr (sizeof f == 8 * sizeof *table) {
+        total += (column(4) * spread_lane<N, 4>(f) + column(5) * spread_lane<N, 5>(f)) +
+                 (column(6) * spread_lane<N, 6>(f) + column(7) * spread_lane<N, 7>(f));
     }
     return total;
 }
@@ -131,20 +136,20 @@ CAROM_INLINE void find_end(const Model& m, const State& start, Pack<N> g_b, cons
     using G = Gauss<N>;
     const double unit = m.mu_b * m.mu_s;
     if constexpr (kEnd == End::kWhole) {
-        const double p_c = 1.0 / (2.0 - sum(rows.before * g_b));
-        const double gain = 1.0 / (1.0 - sum(rows.after_late * g_b));
-        const double work = p_c * (1.0 - p_c * (1.0 - sum(rows.before_late * g_b)));
-        stretch.p_c = p_c;
-        stretch.h = p_c + m.e_b * square_root(work * gain);
-    } else if constexpr (kEnd == End::kOpen) {
-        // One loop for both: with the whole impact of 4 and of 8 nodes the code only just fits into 32 kB.
-        if (stretch.work == 0.0) {
-            stretch.h = -start.v / (2.0 - unit * dot<N>(G::weights, g_b));
-        } else {
-            const double lost = 1.0 - unit * late_share<N>(g_b);
-            stretch.h =
-                2.0 * stretch.work / (start.v + square_root(start.v * start.v + 4.0 * lost * stretch.work));
-        }
+        // With p_c = 1/share the work of compression is (share - 1 + late)/share^2: division and root do not wait for each other.
+        const double share = 2.0 - sum(rows.before * g_b), lost = 1.0 - sum(rows.after_late * g_b);
+        const double late = sum(rows.before_late * g_b), both = 1.0 / (lost * share);
+        stretch.p_c = both * lost;
+        stretch.h = both * (lost + m.e_b * square_root(lost * (share - (1.0 - late))));
+    } else if (stretch.given) [[likely]] {
+        // One function for all ends of a stretch: with a whole impact of 4 and of 8 nodes the code only just fits into 32 kB.
+        return;
+    } else if (stretch.work == 0.0) {
+        stretch.h = -start.v / (2.0 - unit * dot<N>(G::weights, g_b));
+    } else {
+        const double lost = 1.0 - unit * late_share<N>(g_b);
+        stretch.h =
+            2.0 * stretch.work / (start.v + square_root(start.v * start.v + 4.0 * lost * stretch.work));
     }
 }
 
@@ -162,6 +167,12 @@ struct Carried {
     Pack<N> s, u;
 };
 
+// 1/sqrt(v), to 1.5 ulp. The division does not wait for the root.
+template <class P>
+CAROM_INLINE P inverse_root(P v) {
+    return square_root(v) * (1.0 / v);
+}
+
 // Forces at the nodes. The reciprocal roots are computed afresh (kExact), or those of the sweep before are corrected
 // by one cubic step: T f, f = 15/8 - 5/4 q + 3/8 q^2 > 0 with q = |.|^2 T^2. Every sweep waits for this, so the slips are
 // scaled before the factor is known.
@@ -170,8 +181,8 @@ CAROM_INLINE Carried<N> forces(Nodes<N>& n) {
     Carried<N> q;
     Pack<N> e_a, e_b;
     if constexpr (kExact) {
-        n.root_s = 1.0 / square_root(n.x * n.x + n.z * n.z);
-        n.root_u = 1.0 / square_root(n.a * n.a + n.b * n.b);
+        n.root_s = inverse_root(n.x * n.x + n.z * n.z);
+        n.root_u = inverse_root(n.a * n.a + n.b * n.b);
         n.xi = n.root_s * n.x;
         n.zeta = n.root_s * n.z;
         e_a = n.root_u * n.a;
@@ -202,14 +213,13 @@ CAROM_INLINE bool roots_settled(const Carried<N>& q, double goal) {
     return all_below(worst * worst * worst, goal);
 }
 
-// The slips at the nodes from the forces there; the roots and the forces are not touched.
-template <int N>
-CAROM_INLINE void slips(const Model& m, const State& start, double h, Nodes<N>& n) {
+// The slips at N nodes from the forces at as many or fewer, by the table of the forces' integrals. Of `n` nothing else changes.
+template <int N, class Forces>
+CAROM_INLINE void slips(const Model& m, const State& start, double h, const double* table, const Forces& f,
+                        Nodes<N>& n) {
     const Pack<N> H = broadcast<N>(h);
-    const Pack<N> xi = combine<N>(Gauss<N>::integral[0], n.xi),
-                  zeta = combine<N>(Gauss<N>::integral[0], n.zeta);
-    const Pack<N> g_a = combine<N>(Gauss<N>::integral[0], n.g_a),
-                  g_b = combine<N>(Gauss<N>::integral[0], n.g_b);
+    const Pack<N> xi = combine<N>(table, f.xi), zeta = combine<N>(table, f.zeta);
+    const Pack<N> g_a = combine<N>(table, f.g_a), g_b = combine<N>(table, f.g_b);
     const double cloth = m.mu_b * m.mu_s;
     n.x = (start.x - (H * (7.0 * m.mu_b)) * xi) + (H * cloth) * g_a;
     n.z = (start.z - (H * (5.0 * m.mu_b)) * zeta) + (H * (2.5 * cloth)) * g_b;
@@ -260,7 +270,7 @@ CAROM_INLINE void guess(const Model& m, const State& start, double root_s, Stret
     const double e_x = root_s * start.x, e_z = root_s * start.z, xi = m.mu_b * e_x, zeta = m.mu_b * e_z;
     const double half = start.b + 0.5 * stretch.h;
     // The direction of a small cloth slip soon turns: it counts less.
-    const double by_u = m.mu_s / square_root((start.a * start.a + half * half) + 0.01);
+    const double by_u = m.mu_s * inverse_root((start.a * start.a + half * half) + 0.01);
     const double g_a = (by_u * start.a) * zeta, g_b = (by_u * half) * zeta;
     const double x = g_a - 7.0 * xi, z = 2.5 * g_b - 5.0 * zeta;
     const double turn = (e_x * z - e_z * x) * (0.5 * root_s);
@@ -272,6 +282,43 @@ CAROM_INLINE void guess(const Model& m, const State& start, double root_s, Stret
     n.z = start.z + p * (z + p * z2);
     n.a = start.a + p * a;
     n.b = start.b + p * b;
+}
+
+// The slips, roots and forces that the sweeps begin with. Of a whole impact, returns where compression ends (EndRows::t). The roots
+// of 8 nodes are computed afresh: 1/|u| of a ball that rolled is no polynomial, and carried ones cost up to two sweeps.
+template <int N, End kEnd>
+CAROM_INLINE double begin(const Model& m, const State& start, double root_s, Stretch& stretch, Nodes<N>& n) {
+    double t_c = 2.0 / (1.0 + m.e_b) - 1.0;
+    if constexpr (N == 4) {
+        guess<4, kEnd>(m, start, root_s, stretch, n);
+    } else {
+        Nodes<4> coarse;
+        begin<4, kEnd>(m, start, root_s, stretch, coarse);
+        EndRows<4> rows;
+        if constexpr (kEnd == End::kWhole) set_rows<4>(t_c, m.mu_b * m.mu_s, rows);
+        for (int k = 0; k < kCoarseSweeps; ++k) {
+            slips<4>(m, start, stretch.h, Gauss<4>::integral[0], coarse, coarse);
+            find_end<4, kEnd>(m, start, coarse.g_b, rows, stretch);
+            forces<4, false>(coarse);
+        }
+        stretch.sweeps += kCoarseSweeps;
+        slips<N>(m, start, stretch.h, Finer::integral[0], coarse, n);
+        if constexpr (kEnd == End::kWhole) {
+            find_end<4, kEnd>(m, start, coarse.g_b, rows, stretch);
+            t_c = 2.0 * stretch.p_c / stretch.h - 1.0;
+        }
+    }
+    forces<N, true>(n);
+    return t_c;
+}
+
+// Whether the nodes of a stretch of the impulse h resolve its forces, by the squares of their highest Legendre coefficients: 7 h s^2 is
+// at most 3 tolerances times mu_b, and 9 h^2 g^3 at most mu_b mu_s times the square of the tolerance.
+template <class T>
+CAROM_INLINE auto resolved(T mu_b, T mu_s, T h, T s_top2, T g_top2, double tolerance) {
+    const T g_side = 9.0 * (h * h), side = (tolerance * tolerance) * (mu_b * mu_s);
+    return (7.0 * h * s_top2 <= 3.0 * tolerance * mu_b) &
+           ((g_side * g_side) * (g_top2 * g_top2 * g_top2) <= side * side);
 }
 
 // Adds the impulses of a stretch to the state and to the total.
@@ -296,15 +343,14 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
     using G = Gauss<N>;
     const State start = state;
     Nodes<N> n;
-    guess<N, kEnd>(m, start, root_s, stretch, n);
-    forces<N, true>(n);
+    double t_c = begin<N, kEnd>(m, start, root_s, stretch, n);
     const double reach = 7.0 * m.mu_b * stretch.h, cloth = m.mu_b * m.mu_s;
     // A change of the slips leaves an error of contraction * change in the next forces, which act over `reach`.
     const double steep = sum(n.root_s * n.root_s + (m.mu_s * m.mu_s) * (n.root_u * n.root_u)),
                  slope = (reach * reach) * (reach * reach) * (steep * (1.0 / (N * N)));
-    const double end_slope = 40.0 * (cloth * cloth);
+    // The end is the fixed point of an iteration too, with a contraction of at most a few mu_s mu_b.
+    const double end_slope = steep * slope + 40.0 * (cloth * cloth);
     bool converged = false;
-    double t_c = 2.0 / (1.0 + m.e_b) - 1.0;
     EndRows<N> rows;
     if constexpr (kEnd == End::kWhole) set_rows<N>(t_c, cloth, rows);
     int k = 1;
@@ -312,7 +358,7 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
         CAROM_LOOP_BEGIN("sweep");
         const double h = stretch.h;
         const Nodes<N> old = n;
-        slips<N>(m, start, h, n);
+        slips<N>(m, start, h, G::integral[0], n, n);
         find_end<N, kEnd>(m, start, n.g_b, rows, stretch);
         // The rows follow the end of compression one sweep late, so that no sweep has to wait for them.
         if constexpr (kEnd == End::kWhole) {
@@ -323,10 +369,8 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
         const double dh = stretch.h - h;
         // Many sweeps mean a contraction near 1: then the error that is left exceeds the last change.
         const double slow = 1.0 + 0.03125 * (k * k);
-        // The end is the fixed point of an iteration too, with a contraction of at most a few mu_s mu_b.
-        const auto small = [&](double change) {
-            return ((change + dh * dh * steep) * slope + dh * dh * end_slope) * slow <= stretch.sweep_goal;
-        };
+        const double by_slips = slow * slope, by_end = (slow * end_slope) * (dh * dh);
+        const auto small = [&](double change) { return by_slips * change + by_end <= stretch.sweep_goal; };
         const Change<Pack<N>> moved = {n.x,   n.z,   n.a,   n.b,        old.x,
                                        old.z, old.a, old.b, old.root_s, old.root_u};
         CAROM_LOOP_END("sweep");
@@ -341,9 +385,9 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
     const double g_a = hg * dot<N>(G::weights, n.g_a), g_b = hg * dot<N>(G::weights, n.g_b);
     const double tx = dot<N>(G::top, n.xi), tz = dot<N>(G::top, n.zeta), ta = dot<N>(G::top, n.g_a),
                  tb = dot<N>(G::top, n.g_b);
-    stretch.s_top = m.mu_b * square_root(tx * tx + tz * tz);
-    stretch.g_top = cloth * square_root(ta * ta + tb * tb);
-    if constexpr (kEnd != End::kWhole)
+    stretch.s_top2 = (m.mu_b * m.mu_b) * (tx * tx + tz * tz);
+    stretch.g_top2 = (cloth * cloth) * (ta * ta + tb * tb);
+    if constexpr (kEnd == End::kStretch)
         stretch.done = start.v * h + h * h * (1.0 - cloth * late_share<N>(n.g_b));
     add_stretch(m, {h, xi, zeta, g_a, g_b}, state, total);
     return true;

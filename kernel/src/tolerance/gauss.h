@@ -127,5 +127,37 @@ struct Gauss<8> {
         -0.7849065579218132,  0.6317745531190048, -0.3778969370845921, 0.11769245644771356};
 };
 
+// From 4 nodes to 8: integral[j][i] = Int_0^{node i of 8} l_j dtau for the l_j of 4 nodes.
+struct Finer {
+    alignas(64) static constexpr double integral[4][8] = {
+        {0.02866705400457738, 0.11587706839897137, 0.17960235311090972, 0.1845228157715235,
+         0.16923030771118994, 0.16972685585104233, 0.17694858977291938, 0.17578471470661322},
+        {-0.013514338447116315, -0.02185570763721041, 0.07070182260450811, 0.23708773904840372,
+         0.34409756835656213, 0.34334352482254, 0.31540600969565497, 0.319512929099616},
+        {0.006559648331657109, 0.010666567735618112, -0.017270947391266937, -0.018024990925289083,
+         0.08898483838286936, 0.25537075482676497, 0.3479282850684835, 0.3395869158783894},
+        {-0.0018572921378862915, -0.0030211672041924424, 0.004200566717684607, 0.004697114857536993,
+         -0.010595393202796548, -0.005674930542182799, 0.058050354169755555, 0.14526036856414956}};
+};
+
+// Whether the table integrates the powers of tau that 4 nodes know exactly, to every node.
+constexpr bool integrates_cubics(const double (&table)[4][8]) {
+    for (int power = 0; power < 4; ++power) {
+        for (int i = 0; i < 8; ++i) {
+            double sum = 0.0, truth = 1.0 / (power + 1);
+            for (int k = 0; k <= power; ++k) truth *= Gauss<8>::nodes[i];
+            for (int j = 0; j < 4; ++j) {
+                double value = table[j][i];
+                for (int k = 0; k < power; ++k) value *= Gauss<4>::nodes[j];
+                sum += value;
+            }
+            const double error = sum - truth;
+            if (!(error < 1e-15 && error > -1e-15)) return false;
+        }
+    }
+    return true;
+}
+static_assert(integrates_cubics(Finer::integral));
+
 }  // namespace
 }  // namespace carom::kernel

@@ -15,6 +15,9 @@ constexpr int kMostStretches = 2000;
 // 8 nodes kSizeS mu_b rho_s^-12 + kSizeU/2 mu_b mu_s rho_u^-10, with a margin of 4 or more: fitted to random impacts.
 constexpr double kSizeS = 1.0, kSizeU = 1.2;
 
+// The sum of the axes where no singularity is near.
+constexpr double kFarAway = 1e20;
+
 // From this tolerance on, stretches of 4 nodes are hardly shorter than stretches of 8 and cost less.
 constexpr double kLooseStretches = 1e-4;
 
@@ -32,29 +35,35 @@ struct Solution {
     ToleranceMethod method;
 };
 
-// The Bernstein ellipse about [0, 1] on which a singularity lies: rho from rho + 1/rho. The error of N nodes falls as
-// rho^-2N.
-CAROM_INLINE double ellipse(double sum_of_axes) {
-    return sum_of_axes > 2.0 ? 0.5 * (sum_of_axes + square_root(sum_of_axes * sum_of_axes - 4.0)) : 1.0;
-}
-
-// The rates at which the forces of the start change the slips.
-struct Rates {
-    double s, root_s;  // |s| and 1/|s|
-    // The fastest that |s| can shrink; the cloth force adds up to (1 + 2.5^2)^(1/2) mu_s mu_b z/|s|.
-    double fall;
-    double fx, fy;  // the rates of the cloth slip
+// Powers of rho, the Bernstein ellipse about [0, 1] on which a singularity lies: the error of N nodes falls as rho^-2N. They come
+// from the sum of its axes rho + 1/rho, 2 or more, without a root, because rho^n + rho^-n is a polynomial of that sum. What is
+// returned is up to 1 less than the power.
+template <class T>
+struct Powers {
+    T five, six, ten, twelve;
 };
 
-CAROM_INLINE Rates rates(const Model& m, const State& at) {
-    Rates r;
-    r.s = square_root(at.x * at.x + at.z * at.z);
-    r.root_s = 1.0 / r.s;
-    const double cx = at.x * r.root_s, cz = at.z * r.root_s;
-    r.fall = m.mu_b * ((7.0 * cx * cx + 5.0 * cz * cz) + 2.7 * (m.mu_s * cz));
-    r.fx = m.mu_b * cx;
-    r.fy = 1.0 - m.sigma * (m.mu_b * cz);
-    return r;
+template <class T>
+CAROM_INLINE Powers<T> powers(T sum_of_axes) {
+    const T S = sum_of_axes, S2 = S * S;
+    const T five = S * ((S2 - 5.0) * S2 + 5.0), three = S * (S2 - 3.0), six = three * three - 2.0;
+    return {five - 1.0, six - 1.0, five * five - 3.0, six * six - 3.0};
+}
+
+// Whether one collocation of 4 or of 8 nodes keeps the tolerance, for the ellipses of the slips s and u.
+template <class T>
+CAROM_INLINE auto four_will_do(const Powers<T>& s, const Powers<T>& u, T mu_b, T mu_s, double tolerance) {
+    return (tolerance * s.six >= kSizeS * mu_b) & (tolerance * u.five >= kSizeU * (mu_b * mu_s));
+}
+
+template <class T>
+CAROM_INLINE auto eight_will_do(const Powers<T>& s, const Powers<T>& u, T mu_b, T mu_s, double tolerance) {
+    return (tolerance * s.twelve >= kSizeS * mu_b) & (tolerance * u.ten >= 0.5 * kSizeU * (mu_b * mu_s));
+}
+
+// |s|^2/mu_b times the fastest that |s| can shrink; the cloth force adds up to (1 + 2.5^2)^(1/2) mu_s mu_b z/|s|.
+CAROM_INLINE double fall(const Model& m, const State& at, double s) {
+    return (7.0 * (at.x * at.x) + 5.0 * (at.z * at.z)) + (2.7 * m.mu_s) * (at.z * s);
 }
 
 // The rest of an impact whose friction has ended.
@@ -146,12 +155,8 @@ CAROM_INLINE Goals goals(const Model& m, double tolerance) {
     return g;
 }
 
-// Whether the nodes of a stretch resolve its forces.
 CAROM_INLINE bool resolved(const Model& m, const Stretch& stretch, double tolerance) {
-    const double s2 = stretch.s_top * stretch.s_top, g2 = stretch.g_top * stretch.g_top;
-    return 7.0 * stretch.h * s2 <= 3.0 * tolerance * m.mu_b &&
-           81.0 * (stretch.h * stretch.h) * (g2 * stretch.g_top) <=
-               9.0 * (tolerance * tolerance) * (m.mu_b * m.mu_s);
+    return resolved(m.mu_b, m.mu_s, stretch.h, stretch.s_top2, stretch.g_top2, tolerance);
 }
 
 // An impact that is solved in stretches, each so short that |s| and |u| keep a share of their size over it. `plan`
@@ -191,26 +196,30 @@ CAROM_INLINE bool plan(Adaptive& run) {
     const double end =
         run.compressing ? -0.5 * at.v : 2.0 * run.left / (at.v + square_root(at.v * at.v + 4.0 * run.left));
     const double total_left = run.compressing ? end * (1.0 + m.e_b) : end;
-    const Rates r = rates(m, at);
-    const double u = square_root(at.a * at.a + at.b * at.b);
-    const bool surely_sticks = total_left * m.mu_b * 2.0 > r.s;
+    const double ss = at.x * at.x + at.z * at.z, s = square_root(ss), root_s = inverse_root(ss);
+    const double uu = at.a * at.a + at.b * at.b, u = square_root(uu);
+    const bool surely_sticks = total_left * m.mu_b * 2.0 > s;
     const double vanished2 = surely_sticks ? run.tolerance * m.mu_b * smallest(u, 1.0) : 0.0;
-    if (r.s * r.s <= vanished2 || r.s <= 0.25 * run.tolerance) {
+    if (ss <= vanished2 || s <= 0.25 * run.tolerance) {
         finish_stuck(m, at, total_left, run.total, at.v);
         return false;
     }
     const double S = run.S;
-    double h = 4.0 * r.s / (r.fall * (S + 2.0));
+    // Here and below nothing is divided before the end: the next stretch waits for this.
+    double h = 4.0 * (s * ss) / ((m.mu_b * (S + 2.0)) * fall(m, at, s));
     if (!run.from_rest) {
-        // The cloth force itself speeds up or slows down the approach of u to zero.
-        const double drag = u > 0.0 ? m.kappa * (m.mu_s * (m.mu_b * (at.z * r.root_s))) / u : 0.0;
-        const double fx = r.fx - drag * at.a, fy = r.fy - drag * at.b, f2 = fx * fx + fy * fy;
-        const double along = -(at.a * fx + at.b * fy) / f2;
-        h = smallest(h, (S * (u / square_root(f2)) - 2.0 * along) / (0.25 * S * S - 1.0));
+        // (fx, fy) is |s| |u| u'. The cloth force itself speeds up or slows down the approach of u to zero.
+        const double drag = (m.kappa * (m.mu_s * m.mu_b)) * at.z, su = s * u;
+        const double fx = (m.mu_b * at.x) * u - drag * at.a,
+                     fy = su - ((m.sigma * m.mu_b) * at.z) * u - drag * at.b;
+        const double f2 = fx * fx + fy * fy,
+                     beside = su * (S * (u * square_root(f2)) + 2.0 * (at.a * fx + at.b * fy));
+        const double by_cloth = beside / (f2 * (0.25 * S * S - 1.0));
+        h = smallest(h, f2 > 0.0 ? by_cloth : 0.0);
     }
     h = largest(run.shrink * smallest(h, 1.25 * end), run.shortest);
     run.end = end;
-    run.root_s = r.root_s;
+    run.root_s = root_s;
     run.last = h >= 1.1 * end;
     run.asked = run.last ? end : smallest(h, 0.6 * end);
     return true;
@@ -261,15 +270,11 @@ inline bool solve_adaptive(const Problem& problem, Solution& solution) {
     const Goals goal = goals(run.m, run.tolerance);
     for (; run.stretches < kMostStretches; ++run.stretches) {
         if (!plan(run)) break;
-        Stretch stretch{run.asked, run.left, 0.0, 0.0, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0};
+        Stretch stretch{run.asked, run.left, 0.0, 0.0, 0.0, goal.sweep, goal.root, 0.0, 0.0, 0, !run.last};
         State next = run.at;
         Impulses sum_next = run.total;
         const bool exact = run.shrink < 1.0;
-        bool ok;
-        if (run.last)
-            ok = collocate<N, End::kOpen>(run.m, next, sum_next, stretch, run.root_s, exact);
-        else
-            ok = collocate<N, End::kFixed>(run.m, next, sum_next, stretch, run.root_s, exact);
+        bool ok = collocate<N, End::kStretch>(run.m, next, sum_next, stretch, run.root_s, exact);
         run.sweeps += stretch.sweeps;
         ok = ok && resolved(run.m, stretch, run.tolerance);
         if (!advance(run, ok, next, sum_next, stretch.done)) break;
@@ -284,7 +289,8 @@ inline bool solve_adaptive(const Problem& problem, Solution& solution) {
 template <int N>
 CAROM_INLINE bool solve_whole(const Problem& problem, double guess, double root_s, Solution& solution) {
     const Goals goal = goals(problem.model, problem.tolerance);
-    Stretch stretch{guess, 0.0, 0.5, 0.0, kRowsGoal * problem.tolerance, goal.sweep, goal.root, 0.0, 0.0, 0};
+    Stretch stretch{guess, 0.0, 0.5, 0.0,  kRowsGoal * problem.tolerance, goal.sweep, goal.root,
+                    0.0,   0.0, 0,   false};
     State state = problem.start;
     solution.total = {0.0, 0.0, 0.0, 0.0, 0.0};
     const bool ok = collocate<N, End::kWhole>(problem.model, state, solution.total, stretch, root_s, false);
@@ -317,28 +323,29 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
         return;
     }
     const double guess = 0.5 * (1.0 + m.e_b);
-    const Rates r = rates(m, start);
+    const double ss = start.x * start.x + start.z * start.z, s = square_root(ss), root_s = inverse_root(ss);
     // How far away the singularities are: stick lies straight ahead, the zero of the cloth slip beside its nearly
     // straight path.
-    const double rho_s = ellipse(4.0 * r.s / (r.fall * guess) - 2.0);
-    double rho_u = 1e30;
+    const double axes_s = 4.0 * (s * ss) / ((guess * m.mu_b) * fall(m, start, s)) - 2.0;
+    double axes_u = kFarAway;
     if (!problem.from_rest) {
-        const double a1 = start.a + guess * r.fx, b1 = start.b + guess * r.fy;
+        const double by_path = 2.0 / (guess * (1.0 + magnitude(m.sigma) * m.mu_b)),
+                     by_s = (guess * m.mu_b) * root_s;
+        const double a1 = start.a + by_s * start.x, b1 = (start.b + guess) - m.sigma * (by_s * start.z);
         const double u0 = square_root(start.a * start.a + start.b * start.b),
                      u1 = square_root(a1 * a1 + b1 * b1);
         // The cloth force bends this path by no more than `bend`.
         const double bend = guess * (magnitude(m.kappa) * (m.mu_s * m.mu_b));
-        rho_u = ellipse(2.0 * ((u0 + u1) - bend) / (guess * (1.0 + magnitude(m.sigma) * m.mu_b)));
+        axes_u = ((u0 + u1) - bend) * by_path;
     }
-    const double s2 = rho_s * rho_s, u2 = rho_u * rho_u;
-    const double size_s = kSizeS * m.mu_b, size_u = kSizeU * (m.mu_b * m.mu_s);
+    const Powers<double> rho_s = powers(largest(axes_s, 2.0));
+    const Powers<double> rho_u = powers(largest(axes_u, 2.0));
     solution.sweeps = 0;
-    const double s4 = s2 * s2, u4 = u2 * u2;
-    if (problem.tolerance * (s4 * s2) >= size_s && problem.tolerance * (u4 * rho_u) >= size_u) {
-        if (solve_whole<4>(problem, guess, r.root_s, solution)) return;
+    if (four_will_do(rho_s, rho_u, m.mu_b, m.mu_s, problem.tolerance)) {
+        if (solve_whole<4>(problem, guess, root_s, solution)) return;
     }
-    if (problem.tolerance * (s4 * s4 * s4) >= size_s && problem.tolerance * (u4 * u4 * u2) >= 0.5 * size_u) {
-        if (solve_whole<8>(problem, guess, r.root_s, solution)) return;
+    if (eight_will_do(rho_s, rho_u, m.mu_b, m.mu_s, problem.tolerance)) {
+        if (solve_whole<8>(problem, guess, root_s, solution)) return;
     }
     if (problem.tolerance >= kLooseStretches && solve_adaptive<4>(problem, solution)) return;
     solve_adaptive<8>(problem, solution);

@@ -128,16 +128,23 @@ CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exac
     return worst;
 }
 
-// As slips().
+// The rates of the slips.
 template <int N>
-CAROM_INLINE Wide wide_slips(const WideModel& m, const WideStart& start, Wide h, WideNodes<N>& n) {
-    Wide dx[N], dz[N], da[N], db[N], change = {};
+CAROM_INLINE void wide_rates(const WideModel& m, const WideNodes<N>& n, Wide (&dx)[N], Wide (&dz)[N],
+                             Wide (&da)[N], Wide (&db)[N]) {
     for (int i = 0; i < N; ++i) {
         dx[i] = n.g_a[i] - 7.0 * n.xi[i];
         dz[i] = 2.5 * n.g_b[i] - 5.0 * n.zeta[i];
         da[i] = n.xi[i] - m.kappa * n.g_a[i];
         db[i] = 1.0 - (m.sigma * n.zeta[i] + m.kappa * n.g_b[i]);
     }
+}
+
+// As slips().
+template <int N>
+CAROM_INLINE Wide wide_slips(const WideModel& m, const WideStart& start, Wide h, WideNodes<N>& n) {
+    Wide dx[N], dz[N], da[N], db[N], change = {};
+    wide_rates<N>(m, n, dx, dz, da, db);
     Wide nx[N], nz[N], na[N], nb[N];
     wide_integrals<N>(start.x, h, dx, nx);
     wide_integrals<N>(start.z, h, dz, nz);
@@ -181,6 +188,45 @@ CAROM_INLINE void wide_guess(const WideModel& m, const WideStart& start, Wide ro
     }
 }
 
+// As slips() from the forces at 4 nodes to 8.
+CAROM_INLINE void wide_refine(const WideModel& m, const WideStart& start, Wide h, const WideNodes<4>& coarse,
+                              WideNodes<8>& n) {
+    Wide dx[4], dz[4], da[4], db[4];
+    wide_rates<4>(m, coarse, dx, dz, da, db);
+    for (int i = 0; i < 8; ++i) {
+        const double* row = Finer::integral[0] + i;
+        n.x[i] = start.x + h * wide_dot<4>(row, 8, dx);
+        n.z[i] = start.z + h * wide_dot<4>(row, 8, dz);
+        n.a[i] = start.a + h * wide_dot<4>(row, 8, da);
+        n.b[i] = start.b + h * wide_dot<4>(row, 8, db);
+    }
+}
+
+// Sweeps that wide_begin() does.
+template <int N>
+constexpr int kBefore = N == 8 ? kCoarseSweeps : 0;
+
+// As begin(). `end` finds the end from g_b at 4 nodes. A root that goes astray here spoils no more than the guess.
+template <int N, bool kWhole, class End4>
+CAROM_INLINE void wide_begin(const WideModel& m, const WideStart& start, Wide root_s, Wide& h,
+                             WideNodes<N>& n, End4 end) {
+    if constexpr (N == 4) {
+        wide_guess<4, kWhole>(m, start, root_s, h, n);
+    } else {
+        WideNodes<4> coarse;
+        wide_guess<4, kWhole>(m, start, root_s, h, coarse);
+        wide_forces<4, Roots::kFresh>(m, coarse);
+        for (int k = 0; k < kCoarseSweeps; ++k) {
+            wide_slips<4>(m, start, h, coarse);
+            h = end(coarse.g_b);
+            wide_forces<4, Roots::kCarried>(m, coarse);
+        }
+        wide_refine(m, start, h, coarse, n);
+        if constexpr (kWhole) h = end(coarse.g_b);
+    }
+    wide_forces<N, Roots::kFresh>(m, n);
+}
+
 // As EndRows.
 template <int N>
 struct WideRows {
@@ -215,16 +261,14 @@ CAROM_INLINE Wide wide_dot(const Wide (&a)[N], const Wide (&b)[N]) {
     return even + odd;
 }
 
-// As find_end() of a whole impact, with one division for two.
+// As find_end() of a whole impact.
 template <int N>
 CAROM_INLINE Wide wide_find_end(const WideModel& m, const Wide (&g_b)[N], const WideRows<N>& rows,
                                 Wide& p_c) {
-    const Wide lost = 1.0 - wide_dot<N>(rows.after_late, g_b);
-    const Wide share = 2.0 - wide_dot<N>(rows.before, g_b);
-    const Wide both = 1.0 / (lost * share);
+    const Wide share = 2.0 - wide_dot<N>(rows.before, g_b), lost = 1.0 - wide_dot<N>(rows.after_late, g_b);
+    const Wide late = wide_dot<N>(rows.before_late, g_b), both = 1.0 / (lost * share);
     p_c = both * lost;
-    const Wide work = p_c * (1.0 - p_c * (1.0 - wide_dot<N>(rows.before_late, g_b)));
-    return p_c + m.e_b * square_root(work * (both * share));
+    return both * (lost + m.e_b * square_root(lost * (share - (1.0 - late))));
 }
 
 // The forces of the sweep at which a lane converged.
@@ -250,9 +294,7 @@ CAROM_INLINE WideMask wide_resolved(const WideModel& m, Wide p, double tolerance
     using G = Gauss<N>;
     const Wide tx = wide_dot<N>(G::top, 1, f.xi), tz = wide_dot<N>(G::top, 1, f.zeta);
     const Wide ta = wide_dot<N>(G::top, 1, f.g_a), tb = wide_dot<N>(G::top, 1, f.g_b);
-    const Wide s2 = tx * tx + tz * tz, g2 = ta * ta + tb * tb;
-    return (7.0 * p * s2 <= 3.0 * tolerance * m.mu_b) &
-           (81.0 * (p * p) * (g2 * square_root(g2)) <= 9.0 * (tolerance * tolerance) * (m.mu_b * m.mu_s));
+    return resolved(m.mu_b, m.mu_s, p, tx * tx + tz * tz, ta * ta + tb * tb, tolerance);
 }
 
 template <int N>
@@ -283,21 +325,24 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
                                  double tolerance, WideResult& out) {
     WideNodes<N> n;
     Wide h = 0.5 * (1.0 + m.e_b), t_c = 2.0 / (1.0 + m.e_b) - 1.0;
+    WideRows<4> coarse_rows;
+    Wide p_c;
+    if constexpr (N == 8) wide_set_rows<4>(t_c, coarse_rows);
+    wide_begin<N, true>(m, start, root_s, h, n,
+                        [&](const Wide(&g_b)[4]) { return wide_find_end<4>(m, g_b, coarse_rows, p_c); });
+    if constexpr (N == 8) t_c = 2.0 * p_c / h - 1.0;
     WideRows<N> rows;
     wide_set_rows<N>(t_c, rows);
-    wide_guess<N, true>(m, start, root_s, h, n);
-    wide_forces<N, Roots::kFresh>(m, n);
     const Wide mu2 = m.mu_s * m.mu_s, reach2 = (7.0 * m.mu_b * h) * (7.0 * m.mu_b * h);
     Wide steep = {};
     for (int i = 0; i < N; ++i) steep += n.root_s[i] * n.root_s[i] + mu2 * (n.root_u[i] * n.root_u[i]);
     const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))),
-               end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
+               end_slope = steep * slope + 40.0 * ((m.mu_b * m.mu_b) * mu2);
     const WideGoals goal = wide_goals(m, tolerance);
     WideMask open = wanted, finished = {};
     WideForces<N> kept = {};
     for (int k = 1; k < kMostSweeps && any(open); ++k) {
         const Wide change = wide_slips<N>(m, start, h, n);
-        Wide p_c;
         const Wide h_new = wide_find_end<N>(m, n.g_b, rows, p_c), dh = h_new - h;
         // The rows change only in the lanes where that matters: the others do not depend on what these do.
         const WideMask moved = open & (absolute(t_c - rows.t) * m.mu_b * m.mu_s > kRowsGoal * tolerance);
@@ -305,16 +350,15 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
         t_c = 2.0 * p_c / h_new - 1.0;
         h = h_new;
         const Wide r = wide_forces<N, Roots::kCarried>(m, n);
-        const Wide left = (change + dh * dh * steep) * slope + dh * dh * end_slope;
+        const Wide left = slope * change + end_slope * (dh * dh);
         const double slow = 1.0 + 0.03125 * (k * k);
         const WideMask now = open & (left * slow <= goal.sweep) & (r * r <= goal.root);
         wide_keep<N>(now, n, kept);
         finished |= now;
-        out.sweeps = select(now, broadcast<kWidth>(k + 1.0), out.sweeps);
+        out.sweeps = select(now, broadcast<kWidth>(k + 1.0 + kBefore<N>), out.sweeps);
         open &= ~now & (r < 1.0);  // a root that is off by much may have become negative
     }
     // The rows of a lane do not change after it has converged.
-    Wide p_c;
     const Wide p = wide_find_end<N>(m, kept.g_b, rows, p_c);
     out.converged = finished & wide_resolved<N>(m, p, tolerance, kept);
     wide_integrate<N>(p, kept, out);

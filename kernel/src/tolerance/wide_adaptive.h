@@ -16,8 +16,8 @@ struct WideStretch {
     WideStart start;
     Wide v, h, work, root_s;  // h: the given impulse, or a first guess
     WideMask to_zero,
-        to_work;     // the stretch ends as End::kOpen, with v = 0 or after the work; otherwise as End::kFixed
-    WideMask exact;  // compute fresh roots in every sweep
+        to_work;      // the stretch ends with v = 0 or after the work; otherwise after the impulse h
+    WideMask exact;   // compute fresh roots in every sweep
     WideMask wanted;  // lanes that hold a stretch
     double tolerance;
 };
@@ -57,13 +57,13 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
     const WideMask open_end = w.to_zero | w.to_work;
     WideNodes<N> n;
     Wide h = w.h;
-    wide_guess<N, false>(m, w.start, w.root_s, h, n);
-    wide_forces<N, Roots::kFresh>(m, n);
+    wide_begin<N, false>(m, w.start, w.root_s, h, n,
+                         [&](const Wide(&g_b)[4]) { return wide_stretch_end<4>(w, open_end, g_b); });
     const Wide mu2 = m.mu_s * m.mu_s, reach2 = (7.0 * m.mu_b * h) * (7.0 * m.mu_b * h);
     Wide steep = {};
     for (int i = 0; i < N; ++i) steep += n.root_s[i] * n.root_s[i] + mu2 * (n.root_u[i] * n.root_u[i]);
     const Wide slope = (reach2 * reach2) * (steep * (1.0 / (N * N))),
-               end_slope = 40.0 * ((m.mu_b * m.mu_b) * mu2);
+               end_slope = steep * slope + 40.0 * ((m.mu_b * m.mu_b) * mu2);
     const WideGoals goal = wide_goals(m, w.tolerance);
     WideMask open = w.wanted, finished = {}, exact = w.exact;
     WideForces<N> kept = {};
@@ -77,14 +77,14 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
             r = wide_forces<N, Roots::kMixed>(m, n, exact);
         else
             r = wide_forces<N, Roots::kCarried>(m, n);
-        const Wide left = (change + dh * dh * steep) * slope + dh * dh * end_slope;
+        const Wide left = slope * change + end_slope * (dh * dh);
         // A root that is off by much may have become negative.
         exact |= ~(r < 1.0);
         const double slow = 1.0 + 0.03125 * (k * k);
         const WideMask now = open & (left * slow <= goal.sweep) & (r * r <= goal.root);
         wide_keep<N>(now, n, kept);
         finished |= now;
-        out.t.sweeps = select(now, broadcast<kWidth>(k + 1.0), out.t.sweeps);
+        out.t.sweeps = select(now, broadcast<kWidth>(k + 1.0 + kBefore<N>), out.t.sweeps);
         // A NaN never converges, and a stretch that converges slowly costs less as two stretches.
         open &= ~now & (left == left);  // NOLINT(misc-redundant-expression): asks for a NaN
         if (k >= kPatience) open &= w.exact;
