@@ -1,7 +1,7 @@
 // The contact phase, four contacts at a time. Built once per instruction set.
 //
 // An evaluation of the right-hand side gathers the motions of the balls of four contacts, computes their forces in
-// lanes, and adds the forces to the balls, one contact after the other in the order of the list. A lane computes what
+// lanes, and adds the forces to the balls, one contact after the other in the order of their numbers. A lane computes what
 // a scalar program would compute, and every sum has one written order. Only contacts that overlap at that stage take
 // part. Memory is laid out for whole registers: the velocity and the horizontal spin of a ball are one row of four
 // numbers.
