@@ -14,6 +14,7 @@
 
 #include <vector>
 
+#include "contact/complementarity.h"
 #include "contact/resting.h"
 
 namespace carom::resting {
@@ -27,6 +28,8 @@ inline constexpr double kInstant = 1e-12;
 /// errors of a long push would add up to nearly 1e-12 m.
 inline constexpr double kOverlapDepth = 2e-14;
 inline constexpr double kRecoveryTime = 1e-3;
+/// [m] Overlap that may arise within an interval.
+inline constexpr double kOverlapGrowth = 1e-13;
 
 enum class Mode : unsigned char { kSliding, kRolling, kResting };
 
@@ -85,6 +88,7 @@ struct Group {
     std::vector<Link> links;   ///< as group.contacts
     double solved = 0.0;       ///< [s] interval for which the bodies and links hold a solution; 0: for none
     double noise = 0.0;        ///< [m/s] rounding of the group's speeds in a few sums of eight terms
+    Complementarity problem;   ///< memory of step()
 };
 
 /// What a step includes.

@@ -221,14 +221,15 @@ bool update(Group& g, double h, const StepOptions& options, int times) {
 /// for the friction between balls, monotone.
 class Newton {
   public:
-    Newton(Group& g, double h, const StepOptions& options) : g_(g), h_(h), options_(options), problem_(0) {
+    Newton(Group& g, double h, const StepOptions& options)
+        : g_(g), h_(h), options_(options), problem_(g.problem) {
         for (std::size_t c = 0; c < g.links.size(); ++c) {
             if (g.links[c].open)
                 g.links[c].J = 0.0;
             else
                 active_.push_back(c);
         }
-        problem_ = Complementarity(active_.size());
+        problem_.resize(active_.size());
         before_.resize(active_.size());
     }
 
@@ -242,8 +243,10 @@ class Newton {
             if (changed) respond(g_, h_, stops);
             double worst = 0.0;
             if (is_solved(worst) && !changed) return true;
-            if (newton == kNewtonSteps)
-                return !changed && worst * std::max(h_, kShortestInterval) <= kOverlapDepth;
+            // Where balls go over from rest to rolling and back, a share of kRestCompliance is left: no gap notices it.
+            if (newton >= kStopsFrom && !changed && worst * std::max(h_, kShortestInterval) <= kOverlapGrowth)
+                return true;
+            if (newton == kNewtonSteps) return false;
             linearise();
             if (!problem_.solve()) return false;
             search();
@@ -271,7 +274,7 @@ class Newton {
         std::fill(problem_.A.begin(), problem_.A.end(), 0.0);
         for (std::size_t k = 0; k < active_.size(); ++k) {
             const Link& column = g_.links[active_[k]];
-            before_[k] = column.J;
+            before_[k] = problem_.z[k] = column.J;
             const auto add = [&](int body, const Vec2& dv) {
                 for (std::size_t r = 0; r < active_.size(); ++r) {
                     const Link& row = g_.links[active_[r]];
@@ -324,7 +327,7 @@ class Newton {
     const double h_;
     const StepOptions options_;
     std::vector<std::size_t> active_;  // links
-    Complementarity problem_;
+    Complementarity& problem_;
     std::vector<double> before_;  // impulses before the step, as active_
 };
 

@@ -172,6 +172,7 @@ RestingGroup RestingContacts::group_of(int ball, Transitions transitions) {
         const Segment& s = balls_.segment(b);
         if (transitions == Transitions::kDue && has_come_to_transition(s))
             end_transition(member, s.state, balls_.radius(b));
+        if (s.held) group.last = std::min(group.last, s.duration);
         group.balls.push_back(member);
     }
     std::sort(group.balls.begin(), group.balls.end(), [](const RestingBall& p, const RestingBall& q) {
