@@ -28,6 +28,8 @@ inline constexpr double kInstant = 1e-12;
 /// errors of a long push would add up to nearly 1e-12 m.
 inline constexpr double kOverlapDepth = 2e-14;
 inline constexpr double kRecoveryTime = 1e-3;
+/// [m] Largest gap of a contact that goes on.
+inline constexpr double kGapLeft = 1e-8;
 /// [m] Overlap that may arise within an interval.
 inline constexpr double kOverlapGrowth = 1e-13;
 
@@ -88,7 +90,10 @@ struct Group {
     std::vector<Link> links;   ///< as group.contacts
     double solved = 0.0;       ///< [s] interval for which the bodies and links hold a solution; 0: for none
     double noise = 0.0;        ///< [m/s] rounding of the group's speeds in a few sums of eight terms
-    Complementarity problem;   ///< memory of step()
+    // Memory of solve_interval() and step().
+    std::vector<Body> bodies_before;
+    std::vector<Link> links_before;
+    Complementarity problem;
 };
 
 /// What a step includes.
@@ -120,7 +125,7 @@ double rate_rounding(const Group& g);
 double friction_at_start(const Group& g, const Link& link);
 
 // resting_interval.cpp
-/// Chooses the interval, solves it and writes the segments. @return the interval [s]
-double solve_interval(Group& g);
+/// Chooses the interval, solves it and writes the segments.
+void solve_interval(Group& g);
 
 }  // namespace carom::resting

@@ -23,9 +23,8 @@ constexpr double kStopsWithin = 0.01;
 constexpr double kSoon = 1e-2;
 // [rad] Up to this, a direction that turns is that of the middle of the interval.
 constexpr double kTurnOfMiddle = 0.5;
-// [rad] and [m] Largest rotation of a normal within an interval, and the largest gap that it may leave.
+// [rad] Largest rotation of a normal within an interval.
 constexpr double kNormalTurn = 0.03;
-constexpr double kGapLeft = 1e-8;
 // [of the sliding acceleration] Smaller opening accelerations are the rounding of the forces.
 constexpr double kOpening = 1e-10;
 // [-] Directions that differ by less (sine of the angle) count as constant: the closed form of a straight line applies.
@@ -145,7 +144,7 @@ double link_interval(const Group& g, const Link& link, double h) {
         if (opening > kOpening * g.motion.slide)
             interval = std::min(interval, std::max(std::sqrt(2.0 * kGapLeft / opening),
                                                    (4.0 * g.noise + std::max(0.0, -rate)) / opening));
-        if (link.begins && rate > g.noise) interval = std::min(interval, kGapLeft / rate);
+        if (rate > g.noise) interval = std::min(interval, kGapLeft / rate);
         return interval;
     }
     // Neither the rounding of the rates nor a closing speed that could not be removed may add up to an overlap.
@@ -197,6 +196,15 @@ bool guide(Group& g) {
     return any;
 }
 
+// The same interval again, guided; without a solution it stays as it was.
+void guide_friction(Group& g, double h) {
+    g.bodies_before = g.bodies;
+    g.links_before = g.links;
+    if (!guide(g) || step(g, h)) return;
+    g.bodies.swap(g.bodies_before);
+    g.links.swap(g.links_before);
+}
+
 void write_segments(Group& g, double h) {
     double interval = kNever;
     for (const Body& b : g.bodies)
@@ -241,7 +249,7 @@ bool accelerates(const Group& g) {
 
 }  // namespace
 
-double solve_interval(Group& g) {
+void solve_interval(Group& g) {
     for (Body& b : g.bodies) b.guided = false;
     const double shortest =
         std::max(kShortestInterval, kClockTicks * std::numeric_limits<double>::epsilon() * g.now);
@@ -270,12 +278,8 @@ double solve_interval(Group& g) {
             break;
         }
     }
-    if (guide(g) && !step(g, h)) {
-        for (Body& b : g.bodies) b.guided = false;
-        step(g, h);
-    }
+    guide_friction(g, h);
     write_segments(g, h);
-    return h;
 }
 
 }  // namespace carom::resting
