@@ -288,7 +288,7 @@ TEST(RandomSceneRegressions, RingDrivenToItsCentre) {
     EXPECT_EQ(what_breaks(*family_scene("rings/extreme", 13)), "");
 }
 
-/// Scenes in which contacts do not end well yet (docs/lab/2026-11-resting_steps.md): whoever mends one strikes it out.
+/// Scenes in which contacts do not end well yet (docs/lab/2026-11-resting_chatter.md): whoever mends one strikes it out.
 struct Open {
     const char* family;
     std::uint64_t seed;
