@@ -143,20 +143,29 @@ void Complementarity::find_wrong(const std::vector<double>& w) {
 }
 
 bool Complementarity::solve() {
-    std::vector<double>& w = w_;
-    residual(w);
+    residual(w_);
     basic_.resize(size);
-    for (std::size_t i = 0; i < size; ++i) basic_[i] = z[i] > 0.0 || w[i] < 0.0;
+    for (std::size_t i = 0; i < size; ++i) basic_[i] = z[i] > 0.0 || w_[i] < 0.0;
+    if (exchange(20 + 2 * size, false)) return true;
+    // Rows that the compliance decides may be exchanged without end: now each answer is refined before it is judged.
+    for (std::size_t i = 0; i < size; ++i) basic_[i] = q[i] < 0.0;
+    if (exchange(200 + 20 * size, true)) return true;
+    std::fill(z.begin(), z.end(), 0.0);
+    return false;
+}
+
+bool Complementarity::exchange(std::size_t most, bool refined) {
+    std::vector<double>& w = w_;
     std::size_t fewest = size + 1;
     int tries = kBlockTries;
-    for (std::size_t pivots = 0; pivots < 200 + 20 * size; ++pivots) {
-        if (!factor()) break;
+    for (std::size_t pivots = 0; pivots < most; ++pivots) {
+        if (!factor()) return false;
         std::fill(z.begin(), z.end(), 0.0);
         w = q;
         refine(w);
+        if (refined) polish(w);
         find_wrong(w);
-        // Rows that the compliance decides would be exchanged without end.
-        if (wrong_.empty() || tries <= 0) {
+        if (wrong_.empty() && !refined) {
             polish(w);
             find_wrong(w);
         }
@@ -176,7 +185,6 @@ bool Complementarity::solve() {
             basic_[wrong_.back()] = !basic_[wrong_.back()];
         }
     }
-    std::fill(z.begin(), z.end(), 0.0);
     return false;
 }
 

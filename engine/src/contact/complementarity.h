@@ -43,6 +43,8 @@ struct Complementarity {
     void back_substitute(std::vector<double>& x) const;
     void residual(std::vector<double>& w) const;
     double worst_residual(const std::vector<double>& w) const;
+    /// @param refined  whether each answer is refined, or only one that is right
+    bool exchange(std::size_t most, bool refined);
     void find_wrong(const std::vector<double>& w);
     void polish(std::vector<double>& w);
     void refine(std::vector<double>& w);

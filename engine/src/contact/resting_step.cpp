@@ -64,6 +64,8 @@ void slide(Body& b, const Vec2& friction) {
 // The motion of a ball under the impulses on it, and its derivatives.
 void respond(const Group& g, Body& b, double h, bool stops) {
     const double grip = g.motion.slide * b.load * h, drag = std::min(g.motion.roll * h, grip);
+    // What acts at an instant moves a ball at rest like one that rolls.
+    const double at_rest = h > kInstant ? kRestCompliance : 5.0 / 7.0;
     const bool slips = moves(b.u);
     if (b.guided && slips) {
         slide(b, -grip * b.guide);
@@ -97,12 +99,12 @@ void respond(const Group& g, Body& b, double h, bool stops) {
         b.mode = Mode::kRolling;
         b.v_end = rolls - drag * d;
         b.by_push = b.by_couple = stops && speed <= (1.0 + kHardlyMoves) * drag
-                                      ? identity(kRestCompliance)
+                                      ? identity(at_rest)
                                       : minus(identity(5.0 / 7.0), across_of((5.0 / 7.0) * drag / speed, d));
     } else {
         b.mode = Mode::kResting;
         b.v_end = Vec2::Zero();
-        b.by_push = b.by_couple = identity(kRestCompliance);
+        b.by_push = b.by_couple = identity(at_rest);
     }
     if (!moves(b.v_end)) b.mode = Mode::kResting;
     b.s_end = b.v_end;
@@ -244,11 +246,11 @@ class Newton {
             double worst = 0.0;
             if (is_solved(worst) && !changed) return true;
             // Where balls go over from rest to rolling and back, a share of kRestCompliance is left: no gap notices it.
-            if (newton >= kStopsFrom && !changed && worst * std::max(h_, kShortestInterval) <= kOverlapGrowth)
-                return true;
+            const bool harmless = !changed && worst * std::max(h_, kShortestInterval) <= kOverlapGrowth;
+            if (newton >= kStopsFrom && harmless) return true;
             if (newton == kNewtonSteps) return false;
             linearise();
-            if (!problem_.solve()) return false;
+            if (!problem_.solve()) return harmless;
             search();
         }
     }
