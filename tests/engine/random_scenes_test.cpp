@@ -268,17 +268,41 @@ TEST(RandomSceneRegressions, TwoBallsInALaneOfTwoDiameters) {
     EXPECT_EQ(what_breaks(scene), "");
 }
 
-/// Scenes in which contacts do not end well yet (docs/lab/2026-11-resting_steps.md): whoever mends one strikes it out.
+// Balls that fill a tray or a zigzag: bounces within a group became ten times slower again and again, down to 1e-14 m/s, contacts that had
+// opened were met again within 1e-11 s, and each slip that went had an interval of its own. They took 93 000 segments and more (9, 61 and 80
+// of the trays did not end in 2.5 s), and seed 61 of the trays ended in an error for some time.
+TEST(RandomSceneRegressions, TraysAndZigzagsComeToRest) {
+    for (const std::uint64_t seed : {9u, 19u, 56u, 61u, 80u})
+        settles_within(*family_scene("tray", seed), 40000);
+    settles_within(*family_scene("zigzag", 61), 30000);
+}
+
+// Two balls between two walls keep any impulse of the step that friction has left without a solution: it loaded the cloth 2000 times, and
+// each interval of 1e-5 s began with it again.
+TEST(RandomSceneRegressions, NoImpulseIsLeftBetweenTwoWalls) {
+    settles_within(*family_scene("row_between_walls", 82), 2000);
+}
+
+// The impulses that remove closing speeds took balls at rest for immovable; without a solution the balls went on into each other by 1e-9 m.
+TEST(RandomSceneRegressions, BallsAtRestAreStruck) {
+    EXPECT_EQ(what_breaks(*family_scene("rack_in_box", 240)), "");
+    EXPECT_EQ(what_breaks(*family_scene("rack_in_box/wide", 238)), "");
+    EXPECT_EQ(what_breaks(*family_scene("tray", 113)), "");
+}
+
+// Balls of a ring that topspin drives to its centre: the energy rose by 0.6 %.
+TEST(RandomSceneRegressions, RingDrivenToItsCentre) {
+    EXPECT_EQ(what_breaks(*family_scene("rings/extreme", 13)), "");
+}
+
+/// Scenes in which contacts do not end well yet (docs/lab/2026-11-resting_chatter.md): whoever mends one strikes it out.
 struct Open {
     const char* family;
     std::uint64_t seed;
     const char* why;
 };
 constexpr Open kOpen[] = {
-    {"zigzag/extreme", 4, "takes 1 s"},
-    {"tray", 8, "takes 0.9 s"},
-    {"tray", 9, "does not end in 2.5 s"},
-    {"tray/wide", 4, "takes 0.8 s"},
+    {"zigzag/extreme", 4, "takes 0.2 s in clusters"},
 };
 
 bool is_open(const std::string& family, std::uint64_t seed) {

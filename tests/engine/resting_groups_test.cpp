@@ -184,7 +184,8 @@ TEST(Complementarity, RandomProblemsWithRedundantContacts) {
         std::vector<double> G(contacts * ways), drive(ways);
         for (double& x : G) x = rng.uniform(-1.0, 1.0);
         for (double& x : drive) x = rng.uniform(-1.0, 1.0);
-        Complementarity problem(contacts);
+        Complementarity problem;
+        problem.resize(contacts);
         for (std::size_t r = 0; r < contacts; ++r) {
             for (std::size_t k = 0; k < ways; ++k) problem.q[r] += G[r * ways + k] * drive[k];
             for (std::size_t c = 0; c < contacts; ++c)
@@ -208,7 +209,8 @@ TEST(Complementarity, RandomProblemsWithRedundantContacts) {
 TEST(Complementarity, NarrowWedgeIsSolvedToRounding) {
     for (const double tilt : {1e-3, 1e-4, 1e-5, 5e-6}) {
         const double cosine = std::sqrt(1.0 - tilt * tilt);
-        Complementarity problem(2);
+        Complementarity problem;
+        problem.resize(2);
         problem.at(0, 0) = problem.at(1, 1) = 1.0;
         problem.at(0, 1) = problem.at(1, 0) = -cosine;
         problem.q = {0.0, -tilt};  // pressed along the wedge
@@ -222,7 +224,8 @@ TEST(Complementarity, NarrowWedgeIsSolvedToRounding) {
 
 // More contacts than needed share their load evenly.
 TEST(Complementarity, EqualContactsShareEvenly) {
-    Complementarity problem(3);
+    Complementarity problem;
+    problem.resize(3);
     for (std::size_t r = 0; r < 3; ++r) {
         problem.q[r] = -3.0;
         for (std::size_t c = 0; c < 3; ++c) problem.at(r, c) = 1.0;

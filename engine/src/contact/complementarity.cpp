@@ -23,28 +23,27 @@ bool Complementarity::factor() {
     for (std::size_t i = 0; i < size; ++i)
         if (basic_[i]) index_.push_back(i);
     const std::size_t m = index_.size();
-    lu_.assign(m * m, 0.0);
+    lu_.resize(m * m);
     pivot_.resize(m);
-    for (std::size_t r = 0; r < m; ++r) {
-        for (std::size_t c = 0; c < m; ++c) lu_[r * m + c] = at(index_[r], index_[c]);
-        lu_[r * m + r] += kContactSoftness * std::abs(lu_[r * m + r]);
+    for (std::size_t c = 0; c < m; ++c) {
+        for (std::size_t r = 0; r < m; ++r) lu_[c * m + r] = at(index_[r], index_[c]);
+        lu_[c * m + c] += kContactSoftness * std::abs(lu_[c * m + c]);
     }
     for (std::size_t k = 0; k < m; ++k) {
+        double* const column = &lu_[k * m];
         std::size_t best = k;
         for (std::size_t r = k + 1; r < m; ++r)
-            if (std::abs(lu_[r * m + k]) > std::abs(lu_[best * m + k])) best = r;
+            if (std::abs(column[r]) > std::abs(column[best])) best = r;
         pivot_[k] = best;
         if (best != k)
-            std::swap_ranges(lu_.begin() + static_cast<std::ptrdiff_t>(k * m),
-                             lu_.begin() + static_cast<std::ptrdiff_t>((k + 1) * m),
-                             lu_.begin() + static_cast<std::ptrdiff_t>(best * m));
-        const double head = lu_[k * m + k];
-        if (!(std::abs(head) > 0.0)) return false;
-        for (std::size_t r = k + 1; r < m; ++r) {
-            if (lu_[r * m + k] == 0.0) continue;
-            const double factor = lu_[r * m + k] / head;
-            lu_[r * m + k] = factor;
-            for (std::size_t c = k + 1; c < m; ++c) lu_[r * m + c] -= factor * lu_[k * m + c];
+            for (std::size_t c = 0; c < m; ++c) std::swap(lu_[c * m + k], lu_[c * m + best]);
+        if (!(std::abs(column[k]) > 0.0)) return false;
+        for (std::size_t r = k + 1; r < m; ++r) column[r] /= column[k];
+        for (std::size_t c = k + 1; c < m; ++c) {
+            double* const other = &lu_[c * m];
+            const double head = other[k];
+            if (head == 0.0) continue;
+            for (std::size_t r = k + 1; r < m; ++r) other[r] -= head * column[r];
         }
     }
     return true;
@@ -54,18 +53,19 @@ void Complementarity::back_substitute(std::vector<double>& x) const {
     const std::size_t m = index_.size();
     for (std::size_t k = 0; k < m; ++k)
         if (pivot_[k] != k) std::swap(x[k], x[pivot_[k]]);
-    for (std::size_t r = 1; r < m; ++r)
-        for (std::size_t c = 0; c < r; ++c) x[r] -= lu_[r * m + c] * x[c];
-    for (std::size_t r = m; r-- > 0;) {
-        for (std::size_t c = r + 1; c < m; ++c) x[r] -= lu_[r * m + c] * x[c];
-        x[r] /= lu_[r * m + r];
+    for (std::size_t c = 0; c < m; ++c)
+        for (std::size_t r = c + 1; r < m; ++r) x[r] -= lu_[c * m + r] * x[c];
+    for (std::size_t c = m; c-- > 0;) {
+        x[c] /= lu_[c * m + c];
+        for (std::size_t r = 0; r < c; ++r) x[r] -= lu_[c * m + r] * x[c];
     }
 }
 
 void Complementarity::residual(std::vector<double>& w) const {
-    for (std::size_t i = 0; i < size; ++i) {
-        w[i] = q[i];
-        for (std::size_t j = 0; j < size; ++j) w[i] += at(i, j) * z[j];
+    w = q;
+    for (std::size_t j = 0; j < size; ++j) {
+        if (z[j] == 0.0) continue;
+        for (std::size_t i = 0; i < size; ++i) w[i] += at(i, j) * z[j];
     }
 }
 
@@ -80,13 +80,10 @@ double Complementarity::worst_residual(const std::vector<double>& w) const {
     return worst;
 }
 
-// Solves for z of the basic rows with the present factors. The refinements remove the effect of the compliance down
+// The refinements remove the effect of the compliance down
 // to rounding, as long as each at least halves the residual; where contacts contradict each other it does not. In a
 // wedge whose smallest eigenvalue is 1e-11, two refinements left 1e-9 m/s^2: 1e-12 m after some tenths of a second.
-void Complementarity::solve_basic(std::vector<double>& w) {
-    std::fill(z.begin(), z.end(), 0.0);
-    w = q;
-    refine(w);
+void Complementarity::polish(std::vector<double>& w) {
     refine(w);
     refine(w);
     double left = worst_residual(w);
@@ -128,43 +125,66 @@ void Complementarity::refine(std::vector<double>& w) {
     residual(w);
 }
 
-bool Complementarity::solve() {
+// Rows that a solution cannot have: a pull, or a negative w.
+void Complementarity::find_wrong(const std::vector<double>& w) {
     constexpr double kRounding = 1e-12;  // [-] relative; larger violations count as infeasible
-    basic_.assign(size, 0);
+    double largest = 0.0;
+    for (const double x : z) largest = std::max(largest, std::abs(x));
+    wrong_.clear();
+    for (std::size_t i = 0; i < size; ++i) {
+        if (basic_[i]) {
+            if (z[i] < -kRounding * largest) wrong_.push_back(i);
+        } else if (w[i] < 0.0) {
+            double scale = std::abs(q[i]);
+            for (std::size_t j = 0; j < size; ++j) scale += std::abs(at(i, j) * z[j]);
+            if (w[i] < -kRounding * scale) wrong_.push_back(i);
+        }
+    }
+}
+
+bool Complementarity::solve() {
+    residual(w_);
+    basic_.resize(size);
+    for (std::size_t i = 0; i < size; ++i) basic_[i] = z[i] > 0.0 || w_[i] < 0.0;
+    if (exchange(20 + 2 * size, false)) return true;
+    // Rows that the compliance decides may be exchanged without end: now each answer is refined before it is judged.
     for (std::size_t i = 0; i < size; ++i) basic_[i] = q[i] < 0.0;
-    std::vector<double> w(size);
-    std::vector<std::size_t> wrong;
+    if (exchange(200 + 20 * size, true)) return true;
+    std::fill(z.begin(), z.end(), 0.0);
+    return false;
+}
+
+bool Complementarity::exchange(std::size_t most, bool refined) {
+    std::vector<double>& w = w_;
     std::size_t fewest = size + 1;
     int tries = kBlockTries;
-    for (std::size_t pivots = 0; pivots < 200 + 20 * size; ++pivots) {
-        if (!factor()) break;
-        solve_basic(w);
-        double largest = 0.0;
-        for (const double x : z) largest = std::max(largest, std::abs(x));
-        wrong.clear();
-        for (std::size_t i = 0; i < size; ++i) {
-            double scale = std::abs(q[i]);
-            if (!basic_[i])
-                for (std::size_t j = 0; j < size; ++j) scale += std::abs(at(i, j) * z[j]);
-            if (basic_[i] ? z[i] < -kRounding * largest : w[i] < -kRounding * scale) wrong.push_back(i);
+    for (std::size_t pivots = 0; pivots < most; ++pivots) {
+        if (!factor()) return false;
+        std::fill(z.begin(), z.end(), 0.0);
+        w = q;
+        refine(w);
+        if (refined) polish(w);
+        find_wrong(w);
+        if (wrong_.empty() && !refined) {
+            polish(w);
+            find_wrong(w);
         }
-        if (wrong.empty()) {
+        if (wrong_.empty()) {
             for (std::size_t i = 0; i < size; ++i) z[i] = std::max(0.0, z[i]);
             return std::all_of(z.begin(), z.end(), [](double x) { return std::isfinite(x); });
         }
-        if (wrong.size() < fewest) {
-            fewest = wrong.size();
+        if (wrong_.size() < fewest) {
+            fewest = wrong_.size();
             tries = kBlockTries;
         } else {
             --tries;
         }
         if (tries > 0) {
-            for (const std::size_t i : wrong) basic_[i] = !basic_[i];
+            for (const std::size_t i : wrong_) basic_[i] = !basic_[i];
         } else {
-            basic_[wrong.back()] = !basic_[wrong.back()];
+            basic_[wrong_.back()] = !basic_[wrong_.back()];
         }
     }
-    std::fill(z.begin(), z.end(), 0.0);
     return false;
 }
 

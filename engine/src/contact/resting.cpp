@@ -94,8 +94,14 @@ void accept(Group& g) {
     }
 }
 
+// A contact that opens so slowly that friction alone could close it again within the duration of a contact goes on until its gap
+// can be noticed.
 void mark_open(Group& g) {
-    for (Link& link : g.links) link.open = !link.begins && gap_rate(g, link) > g.noise;
+    for (Link& link : g.links) {
+        const double rate = gap_rate(g, link), e = link.j >= 0 ? g.around.balls.e_b : g.around.balls.e_c;
+        const bool stays = link.begins || (link.gap < kGapLeft && holds(rate, 2.0 * g.motion.slide, e));
+        link.open = rate > g.noise && !stays;
+    }
 }
 
 void remove_closing_speeds(Group& g) {
@@ -111,21 +117,6 @@ void remove_closing_speeds(Group& g) {
     mark_open(g);
 }
 
-// A contact that opens, but is pressed together so that the bounce would be shorter than a contact, does not end: the interval
-// takes its rate away. @return whether there was one
-bool keep_short_bounces(Group& g, double h) {
-    bool any = false;
-    for (Link& link : g.links) {
-        if (!link.open) continue;
-        const double rate = gap_rate(g, link), pressing = (rate - end_rate(g, link)) / h - link.turning;
-        const double restitution = link.j >= 0 ? g.around.balls.e_b : g.around.balls.e_c;
-        if (!holds(rate, pressing, restitution)) continue;
-        link.open = false;
-        any = true;
-    }
-    return any;
-}
-
 // A contact ends once its gap opens by more than rounding, and never at the instant at which it began, so that no
 // contact can begin and end forever. A contact without force that does not open (balls at rest, equal rolling) stays.
 void mark_released(Group& g) {
@@ -136,8 +127,7 @@ void solve(Group& g) {
     make_bodies(g);
     for (const RestingContact& c : g.group.contacts) g.links.push_back(link_of(g, c));
     remove_closing_speeds(g);
-    while (keep_short_bounces(g, solve_interval(g))) {
-    }
+    solve_interval(g);
     mark_released(g);
 }
 
@@ -201,7 +191,7 @@ double resting_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
 
 void solve_resting(RestingGroup& group, const RestingSurroundings& around, const MotionParams& motion,
                    double now) {
-    resting::Group g{group, around, motion, now, {}, {}};
+    resting::Group g{group, around, motion, now, {}, {}, 0.0, 0.0, {}, {}, {}};
     resting::solve(g);
 }
 

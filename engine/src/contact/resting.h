@@ -11,6 +11,7 @@
 #include "carom/engine/motion.h"
 #include "carom/engine/scene.h"
 #include "contact/contact.h"
+#include "contact/detect.h"
 
 namespace carom {
 
@@ -40,6 +41,7 @@ struct RestingBall {
 struct RestingGroup {
     std::vector<RestingBall> balls;
     std::vector<RestingContact> contacts;
+    double last = kNever;  ///< [s] shortest interval that its balls were in until now
 };
 
 /// The table that a group touches, and the parameters of its balls.

@@ -14,6 +14,7 @@
 
 #include <vector>
 
+#include "contact/complementarity.h"
 #include "contact/resting.h"
 
 namespace carom::resting {
@@ -27,6 +28,10 @@ inline constexpr double kInstant = 1e-12;
 /// errors of a long push would add up to nearly 1e-12 m.
 inline constexpr double kOverlapDepth = 2e-14;
 inline constexpr double kRecoveryTime = 1e-3;
+/// [m] Largest gap of a contact that goes on.
+inline constexpr double kGapLeft = 1e-8;
+/// [m] Overlap that may arise within an interval.
+inline constexpr double kOverlapGrowth = 1e-13;
 
 enum class Mode : unsigned char { kSliding, kRolling, kResting };
 
@@ -85,6 +90,10 @@ struct Group {
     std::vector<Link> links;   ///< as group.contacts
     double solved = 0.0;       ///< [s] interval for which the bodies and links hold a solution; 0: for none
     double noise = 0.0;        ///< [m/s] rounding of the group's speeds in a few sums of eight terms
+    // Memory of solve_interval() and step().
+    std::vector<Body> bodies_before;
+    std::vector<Link> links_before;
+    Complementarity problem;
 };
 
 /// What a step includes.
@@ -116,7 +125,7 @@ double rate_rounding(const Group& g);
 double friction_at_start(const Group& g, const Link& link);
 
 // resting_interval.cpp
-/// Chooses the interval, solves it and writes the segments. @return the interval [s]
-double solve_interval(Group& g);
+/// Chooses the interval, solves it and writes the segments.
+void solve_interval(Group& g);
 
 }  // namespace carom::resting

@@ -19,13 +19,12 @@ constexpr double kLongestInterval = 1e6;
 constexpr double kPlaceError = 2e-8;
 // [s] What friction stops at once rests after this time at the latest: with the error of places alone it could creep for days.
 constexpr double kStopsWithin = 0.01;
+// [-] Where an interval may go on for this share of itself after a stop, it is not made to end there exactly.
+constexpr double kSoon = 1e-2;
 // [rad] Up to this, a direction that turns is that of the middle of the interval.
 constexpr double kTurnOfMiddle = 0.5;
-// [rad] and [m] Largest rotation of a normal within an interval, and the largest gap that it may leave.
+// [rad] Largest rotation of a normal within an interval.
 constexpr double kNormalTurn = 0.03;
-constexpr double kGapLeft = 1e-8;
-// [m] Overlap that may arise within an interval.
-constexpr double kOverlapGrowth = 1e-13;
 // [of the sliding acceleration] Smaller opening accelerations are the rounding of the forces.
 constexpr double kOpening = 1e-10;
 // [-] Directions that differ by less (sine of the angle) count as constant: the closed form of a straight line applies.
@@ -37,6 +36,8 @@ constexpr double kClockTicks = 8.0;
 // [-] Most attempts at an interval, and at a longer one, which ends when something has gone; it is tried if that is nearly so.
 constexpr int kAttempts = 60, kLonger = 6;
 constexpr double kNearly = 1e-2;
+// [-] First attempt, as a multiple of the group's last interval: what limited that one mostly limits this one.
+constexpr double kGrowth = 4.0;
 // [-] Shortest next attempt, as a share of the last.
 constexpr double kShorter = 0.2;
 
@@ -87,11 +88,26 @@ double gone_within(const Group& g, const Body& b, double h) {
     return time_gone(b.v, (5.0 / 7.0) * (b.push + b.couple) / h, g.motion.roll);
 }
 
-// Time at which it will have gone if it goes on as in the interval h.
+// [s] How long an interval goes on after a stop: what stops within it is stopped evenly until its end, and so goes too far.
+double after_stop(double speed) {
+    return std::min(kStopsWithin, 2.0 * kPlaceError / speed);
+}
+
+// The same, if the interval has to end there.
+double gone_fast(const Group& g, const Body& b, double h) {
+    const double gone = gone_within(g, b, h);
+    if (gone == kNever) return kNever;
+    const double slack = after_stop(length(moving(g, b).start));
+    return slack <= kSoon * gone && h > gone + slack ? gone : kNever;
+}
+
+// Time at which something fast will have gone if it goes on as in the interval h.
 double gone_later(const Group& g, const Body& b, double h) {
     const Moving m = moving(g, b);
     const double start = length(m.start), along = start > 0.0 ? dot(m.end, m.start) / start : 0.0;
-    return b.mode != Mode::kResting && along > 0.0 && along < start ? h * start / (start - along) : kNever;
+    const bool goes =
+        b.mode != Mode::kResting && along > 0.0 && along < start && after_stop(start) < kSoon * h;
+    return goes ? h * start / (start - along) : kNever;
 }
 
 // Interval for which the friction of a ball has the right direction: S w h^2 / 12 is the error of a friction of strength S
@@ -100,11 +116,10 @@ double friction_interval(const Group& g, const Body& b, double h) {
     const Moving m = moving(g, b);
     if (!moves(m.start)) return kNever;
     const double gone = gone_within(g, b, h);
-    // Stopped evenly instead of at once, it goes half as far in the whole interval.
-    if (gone < kNever)
-        return gone < kShortestInterval
-                   ? std::min(kStopsWithin, allowed_interval(h, 0.5 * length(m.start) * h, kPlaceError, 1))
-                   : kNever;
+    if (gone < kNever) {
+        const double slack = after_stop(length(m.start));
+        return h <= gone + slack || slack <= kSoon * gone ? kNever : gone + slack;
+    }
     const double turn = turn_of(m.start, m.end);
     if (turn <= kStraight) return kNever;
     if (turn > kTurnOfMiddle) return allowed_interval(h, 0.5 * m.strength * h * h, kPlaceError, 2);
@@ -129,7 +144,7 @@ double link_interval(const Group& g, const Link& link, double h) {
         if (opening > kOpening * g.motion.slide)
             interval = std::min(interval, std::max(std::sqrt(2.0 * kGapLeft / opening),
                                                    (4.0 * g.noise + std::max(0.0, -rate)) / opening));
-        if (link.begins && rate > g.noise) interval = std::min(interval, kGapLeft / rate);
+        if (rate > g.noise) interval = std::min(interval, kGapLeft / rate);
         return interval;
     }
     // Neither the rounding of the rates nor a closing speed that could not be removed may add up to an overlap.
@@ -152,14 +167,14 @@ double link_interval(const Group& g, const Link& link, double h) {
                      allowed_interval(h, 0.5 * h * h * h * a * (v + h * a) / t.distance, kGapLeft, 3)});
 }
 
-// The first attempt: until friction alone would have stopped the first ball; what it stops at once does not count.
+// The first attempt: until friction alone would have stopped the first ball.
 double first_attempt(const Group& g) {
     double h = kLongestInterval;
     for (const Body& b : g.bodies) {
         const bool slips = moves(b.u);
-        const double strength = slips ? g.motion.slide : g.motion.roll;
-        const double time = slips ? length(b.u) : 2.0 * length(b.v);
-        if (time > kShortestInterval * strength && strength > 0.0) h = std::min(h, time / strength);
+        const double strength = slips ? g.motion.slide : g.motion.roll, speed = length(slips ? b.u : b.v);
+        if (speed > 0.0 && strength > 0.0)
+            h = std::min(h, (slips ? 1.0 : 2.0) * speed / strength + after_stop(speed));
     }
     return h;
 }
@@ -179,6 +194,15 @@ bool guide(Group& g) {
         b.guided = any = true;
     }
     return any;
+}
+
+// The same interval again, guided; without a solution it stays as it was.
+void guide_friction(Group& g, double h) {
+    g.bodies_before = g.bodies;
+    g.links_before = g.links;
+    if (!guide(g) || step(g, h)) return;
+    g.bodies.swap(g.bodies_before);
+    g.links.swap(g.links_before);
 }
 
 void write_segments(Group& g, double h) {
@@ -225,19 +249,18 @@ bool accelerates(const Group& g) {
 
 }  // namespace
 
-double solve_interval(Group& g) {
+void solve_interval(Group& g) {
     for (Body& b : g.bodies) b.guided = false;
     const double shortest =
         std::max(kShortestInterval, kClockTicks * std::numeric_limits<double>::epsilon() * g.now);
-    double h = std::max(shortest, first_attempt(g));
+    double h = std::max(shortest, std::min(first_attempt(g), kGrowth * g.group.last));
     int longer = 0;
     double gone_before = 0.0;  // something has gone before this time, but not before the last interval
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
         const bool solved = step(g, h);
         double accurate = solved ? kNever : 0.25 * h, gone = kNever, later = kNever;
         for (const Body& b : g.bodies) {
-            const double time = gone_within(g, b, h);
-            if (time >= kShortestInterval) gone = std::min(gone, time);
+            gone = std::min(gone, gone_fast(g, b, h));
             accurate = std::min(accurate, friction_interval(g, b, h));
             later = std::min(later, gone_later(g, b, h));
         }
@@ -251,16 +274,12 @@ double solve_interval(Group& g) {
             ++longer;
         } else {
             // What moves straight and evenly goes on until something ends it.
-            if (solved && !accelerates(g)) h = std::min(accurate, gone);
+            if (solved && !accelerates(g)) h = std::max(shortest, std::min(accurate, gone));
             break;
         }
     }
-    if (guide(g) && !step(g, h)) {
-        for (Body& b : g.bodies) b.guided = false;
-        step(g, h);
-    }
+    guide_friction(g, h);
     write_segments(g, h);
-    return h;
 }
 
 }  // namespace carom::resting

@@ -203,9 +203,12 @@ void Resolver::cushion(const Contact& contact) {
     }
     TableTouches touches = table_touches(plan_, balls_, detector_, resting_, contact);
     const double e_c = plan_.balls.e_c;
-    for (const TableTouch& touch : touches)
-        if (resting_.try_hold(touch.approach, e_c)) return;
-
+    bool held = false;
+    for (const TableTouch& touch : touches) held |= resting_.try_begin(touch.approach, e_c);
+    if (held) {
+        resting_.start(ball);
+        return;
+    }
     const Vec3 r = balls_.position(ball);
     Vec3 v = balls_.velocity(ball), w = balls_.spin(ball);
     const char* const model = touches[0].model->name;
@@ -221,7 +224,11 @@ void Resolver::cushion(const Contact& contact) {
     // cushion and ends the bounce: the acceleration after the impact decides.
     for (TableTouch& touch : touches) {
         touch.approach.a_c = touch.pressing(after.a);
-        if (holds(touch.approach.v_n, motion.slide, e_c) && resting_.try_hold(touch.approach, e_c)) return;
+        held |= holds(touch.approach.v_n, motion.slide, e_c) && resting_.try_begin(touch.approach, e_c);
+    }
+    if (held) {
+        resting_.start(ball);
+        return;
     }
     if (cost_ != nullptr) cost_->method = model;
     resting_.release(ball);

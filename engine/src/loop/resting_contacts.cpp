@@ -65,16 +65,18 @@ bool RestingContacts::find(const Contact& contact) const {
 }
 
 // A contact becomes a resting contact if
-//  - a ball is already in a resting contact and the closing speed is within the rounding of the group's velocities, or
-//  - the rebound would be shorter than the Hertz contact time (holds()), or
+//  - the rebound would be shorter than the Hertz contact time (holds()): as it is pressed together or, where a ball is in a resting
+//    contact already, as friction alone could press it. The bounces within a group lose a share of their speed each and come ten times for
+//    every power of ten down to rounding; their limit is the resting contact, which the group's solution then keeps or opens. Or if
 //  - it has bounced kMostBounces times within kEventCapSpan (Zeno behaviour, as in a wedge with a plastic side): the
 //    limit of such a sequence is the resting contact.
-bool RestingContacts::try_hold(const Approach& a, double restitution) {
+bool RestingContacts::try_begin(const Approach& a, double restitution) {
     const Contact& c = a.contact;
     const int partner = c.partner();
+    if (is_gone(balls_.segment(c.ball).state)) return false;
     const bool rests = balls_.segment(c.ball).held || (partner >= 0 && balls_.segment(partner).held);
-    const bool rounding = rests && a.v_n <= rounding_with(c);
-    if (!rounding && !holds(a.v_n, a.a_c, restitution) && !chatters(c)) return false;
+    const double pressing = rests ? std::max(a.a_c, 2.0 * balls_.motion(c.ball).slide) : a.a_c;
+    if (!holds(a.v_n, pressing, restitution) && !chatters(c)) return false;
     // A ball that is pushed while it falls does not come back.
     bool falls = false;
     for (const int ball : {c.ball, partner}) {
@@ -90,8 +92,14 @@ bool RestingContacts::try_hold(const Approach& a, double restitution) {
                         log_.id(c.ball), log_.id(partner)));
     contacts_.push_back({.contact = c, .n = a.n, .began = balls_.now()});
     log_.event(with_phase(EventPhase::kHold, c, plan_.geometry), c);
-    solve(c.ball, Transitions::kNotYet);
     return true;
+}
+
+void RestingContacts::start(int ball) {
+    // A contact of a ball that fell has not begun.
+    if (std::any_of(contacts_.begin(), contacts_.end(),
+                    [ball](const RestingContact& c) { return touches(c, ball); }))
+        solve(ball, Transitions::kNotYet);
 }
 
 // Determined from the log, so that a resumed run decides in the same way.
@@ -109,20 +117,6 @@ bool RestingContacts::chatters(const Contact& contact) const {
         if (bounces >= kMostBounces) return true;
     }
     return false;
-}
-
-// [m/s] Rounding error of closing speeds, given the present resting contacts.
-double RestingContacts::rounding_with(const Contact& contact) const {
-    double noise = 0.0;
-    const auto add = [&](const Contact& c) {
-        for (const int ball : {c.ball, c.partner()})
-            if (ball >= 0)
-                noise = std::max(
-                    noise, resting_noise(balls_.velocity(ball), balls_.spin(ball), balls_.motion(ball)));
-    };
-    add(contact);
-    for (const RestingContact& c : contacts_) add(c.contact);
-    return noise;
 }
 
 void RestingContacts::end(const RestingContact& c) {
@@ -178,6 +172,7 @@ RestingGroup RestingContacts::group_of(int ball, Transitions transitions) {
         const Segment& s = balls_.segment(b);
         if (transitions == Transitions::kDue && has_come_to_transition(s))
             end_transition(member, s.state, balls_.radius(b));
+        if (s.held) group.last = std::min(group.last, s.duration);
         group.balls.push_back(member);
     }
     std::sort(group.balls.begin(), group.balls.end(), [](const RestingBall& p, const RestingBall& q) {

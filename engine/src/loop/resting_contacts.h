@@ -31,7 +31,14 @@ class RestingContacts : private Borrowed<RestingMemory> {
     /// @param restitution  of the bounce
     /// @return whether it is a resting contact now
     /// @throws SimulationError if two balls of different size would form a resting contact
-    bool try_hold(const Approach& approach, double restitution);
+    bool try_hold(const Approach& approach, double restitution) {
+        if (!try_begin(approach, restitution)) return false;
+        start(approach.contact.ball);
+        return true;
+    }
+    /// try_hold() in two parts, for contacts of one ball that begin together: the ball waits for start().
+    bool try_begin(const Approach& approach, double restitution);
+    void start(int ball);
     /// Ends all resting contacts of a ball before another event changes its motion; its partners continue without it.
     void release(int ball);
     /// Ends an interval of the ball's group: applies the state transitions, then starts the next interval.
@@ -43,7 +50,6 @@ class RestingContacts : private Borrowed<RestingMemory> {
 
     bool find(const Contact& contact) const;
     bool chatters(const Contact& contact) const;
-    double rounding_with(const Contact& contact) const;
     void end(const RestingContact& contact);
     void solve(int ball, Transitions transitions);
     RestingGroup group_of(int ball, Transitions transitions);
