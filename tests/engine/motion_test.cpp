@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "physics/motion.h"
 #include "support/engine_cases.h"
 
 namespace carom {
@@ -92,6 +93,22 @@ TEST(Motion, SlowBallComesToRestInOneEvent) {  // H21
     const Record record = run_verified(scene);
     EXPECT_EQ(record.events.size(), 1u);
     EXPECT_NEAR(record.duration, 1e-8 / 0.0981, 1e-20);
+}
+
+// Seed 145147 of the other family of random scenes: a thousand impacts at one instant, each with half the speed of the last one.
+TEST(Motion, SpeedsThatFrictionCannotBeDividedByAreRest) {
+    const MotionParams params{.R = 0.028575, .slide = 1.962, .roll = 0.0981, .spin = 10.9};
+    for (const double speed : {1e-310, 5e-309, 1e-200}) {
+        for (const Vec3& spin : {Vec3(0, 0, 0), Vec3(speed / params.R, 0, 0), Vec3(0, 0, speed)}) {
+            const Segment s = start_segment(1.0, Vec3(0.5, 0.5, params.R), Vec3(0, -speed, 0), spin, params);
+            EXPECT_EQ(s.state, MotionState::kStationary) << speed;
+            EXPECT_EQ(s.v, Vec3::Zero()) << speed;
+            EXPECT_EQ(s.a, Vec2::Zero()) << speed;
+        }
+    }
+    const Segment moves =
+        start_segment(1.0, Vec3(0.5, 0.5, params.R), Vec3(0, -1e-99, 0), Vec3::Zero(), params);
+    EXPECT_EQ(moves.state, MotionState::kSliding);
 }
 
 TEST(Motion, ReferenceVectors) {
