@@ -14,6 +14,8 @@
 
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
+#include "carom/engine/plan.h"
+#include "carom/engine/simulate.h"
 
 #include "support/crowded_scenes.h"
 #include "support/natural_shots.h"
@@ -288,6 +290,28 @@ TEST(RandomSceneRegressions, BallsAtRestAreStruck) {
     EXPECT_EQ(what_breaks(*family_scene("rack_in_box", 240)), "");
     EXPECT_EQ(what_breaks(*family_scene("rack_in_box/wide", 238)), "");
     EXPECT_EQ(what_breaks(*family_scene("tray", 113)), "");
+}
+
+// The first attempt at an interval follows the last one: of a run that stopped as of one that did not.
+TEST(CrowdedScenes, GoOnWithTheSameBits) {
+    int held = 0;
+    for (const char* family : {"tray", "frozen_rail_row", "rack_in_box", "touching_pack"}) {
+        for (std::uint64_t seed = 0; seed < 4; ++seed) {
+            const Scene scene = *family_scene(family, seed);
+            const Plan plan = plan_of(scene);
+            const Record whole = simulate(plan);
+            for (const double part : {0.1, 0.4, 0.7, 0.95}) {
+                Scene stops = scene;
+                stops.stop.events =
+                    1 + static_cast<std::int64_t>(part * static_cast<double>(whole.events.size()));
+                const Record stopped = simulate(plan_of(stops));
+                for (const BallTrack& track : stopped.tracks) held += track.segments.back().held ? 1 : 0;
+                EXPECT_EQ(resume(plan, stopped).hash(), whole.hash())
+                    << family << " " << seed << ", part " << part;
+            }
+        }
+    }
+    EXPECT_GT(held, 50);
 }
 
 // Balls of a ring that topspin drives to its centre: the energy rose by 0.6 %.
