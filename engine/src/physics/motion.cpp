@@ -64,7 +64,7 @@ namespace {
 
 // [m/s] A ball whose centre and surface are slower is at rest. A thousand impacts at one instant, each of which halves a speed, led to numbers by which
 // friction cannot be divided.
-constexpr double kStill = 1e-100;
+constexpr double kStill = 1e-250;
 
 }  // namespace
 
