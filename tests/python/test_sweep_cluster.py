@@ -17,7 +17,7 @@ import carom
 import pytest
 from carom import sweep
 from conftest import HANGS, SLOW, SOURCE
-from test_sweep_shards import break_plan, contents, draw_plan, stamps, unfinished, wait_for
+from sweep_support import break_plan, contents, draw_plan, stamps, unfinished, wait_for
 
 pytest.importorskip("pyarrow", reason="pyarrow is not installed: pip install pyarrow")
 

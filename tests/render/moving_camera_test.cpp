@@ -140,6 +140,32 @@ TEST(TableEdges, AreNotInsideAPlaneAndBoundEveryFace) {
     }
 }
 
+// Where two edges lie on one line, a pixel would be smoothed twice. Every pair is looked at here; find_edges looks at those in one place.
+TEST(TableEdges, NoneLiesWithinALongOne) {
+    for (const char* table : {"nine_foot", "snooker"}) {
+        const TableEdges found =
+            find_edges(make_table_mesh(make_table(table), render_test::kR, {}, Edges::kSharp));
+        const auto point = [](const std::array<float, 3>& p) { return Vec3(p[0], p[1], p[2]); };
+        int pairs = 0;
+        for (const TableEdge& longer : found.edges) {
+            const Vec3 from = point(longer.a), along = point(longer.b) - from;
+            if (longer.smooth || along.norm() <= 0.2) continue;
+            const auto away = [&](const Vec3& p) {
+                const double t = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+                return (p - from - t * along).norm();
+            };
+            for (const TableEdge& edge : found.edges) {
+                const Vec3 a = point(edge.a), b = point(edge.b);
+                if ((b - a).norm() + 1e-4 >= along.norm()) continue;
+                ++pairs;
+                EXPECT_GE(std::max(away(a), away(b)), 1e-5)
+                    << table << ", from " << edge.a[0] << ", " << edge.a[1];
+            }
+        }
+        EXPECT_GT(pairs, 10000) << table;
+    }
+}
+
 // Cutting along the squares around the holes changes no area, and only what is left in a square is tested.
 TEST(TableParts, HaveTheAreaOfTheMesh) {
     const TableMesh mesh = make_table_mesh(make_table("nine_foot"), render_test::kR, {Vec2(0.5, 0.5)});

@@ -80,9 +80,9 @@ double Complementarity::worst_residual(const std::vector<double>& w) const {
     return worst;
 }
 
-// The refinements remove the effect of the compliance down
-// to rounding, as long as each at least halves the residual; where contacts contradict each other it does not. In a
-// wedge whose smallest eigenvalue is 1e-11, two refinements left 1e-9 m/s^2: 1e-12 m after some tenths of a second.
+// The refinements remove the effect of the compliance down to rounding, as long as each at least halves the residual; where contacts
+// contradict each other it does not. In a wedge whose smallest eigenvalue is 1e-11, two refinements left 1e-9 m/s^2: 1e-12 m after some
+// tenths of a second.
 void Complementarity::polish(std::vector<double>& w) {
     refine(w);
     refine(w);
