@@ -46,7 +46,11 @@ double falling(double x, double from, double to) {
 class Plain {
   public:
     Plain(const Cluster& c, const HertzLaw& law)
-        : start_(c.contacts), law_(law), curvature_(c.curvature), y(c.motion) {
+        : start_(c.contacts),
+          law_(law),
+          curvature_(c.curvature),
+          ahead_(static_cast<std::size_t>(c.balls()), 0.0),
+          y(c.motion) {
         for (const HertzContact& one : start_)
             contacts_.push_back({one.overlap, 0.0, {one.nx, one.ny}, 0.0, one.turn, false});
         look();
@@ -78,7 +82,8 @@ class Plain {
     std::vector<Contact> contacts_;
     const HertzLaw law_;
     const double curvature_;
-    double next_ = 0.0;  // the longest step that the error of the last one allows
+    double next_ = 0.0;          // the longest step that the error of the last one allows
+    std::vector<double> ahead_;  // of each ball the vertical impulse that the cloth has answered already
 
   public:
     std::vector<double> y;
@@ -256,18 +261,6 @@ class Plain {
             s.d.push_back(rate(at, c, n));
             if (d[c] > 0.0) push(at, d[c], c, n.x, n.y, s);
         }
-        const double sign = law_.published_slip_sign ? 1.0 : -1.0;
-        for (std::size_t b = 0; b < balls; ++b) {
-            if (!(s.lift[b] < 0.0)) continue;
-            const double ux = at[5 * b] + sign * at[5 * b + 3], uy = at[5 * b + 1] - sign * at[5 * b + 2];
-            const double k =
-                law_.mu_s * s.lift[b] / std::sqrt(ux * ux + uy * uy + law_.epsilon * law_.epsilon);
-            s.y[5 * b] += k * ux;
-            s.y[5 * b + 1] += k * uy;
-            s.y[5 * b + 2] += 2.5 * k * uy;
-            s.y[5 * b + 3] -= 2.5 * k * ux;
-            s.limit[b] += k;
-        }
         return s;
     }
 
@@ -275,6 +268,31 @@ class Plain {
         const Direction n = contacts_[c].n;
         const double angle = time * contacts_[c].turn;
         return {n.x - angle * n.y, n.y + angle * n.x};
+    }
+
+    // The friction of the cloth after a step, with half of its vertical impulse `past` and what half a step of the last vertical force
+    // would add, less what was counted ahead.
+    void drag(std::size_t b, double past, double next) {
+        past = std::min(past, 0.0);
+        next = std::min(next, 0.0);
+        const double wanted = (past - ahead_[b]) + next, pressed = law_.mu_s * std::min(wanted, 0.0);
+        ahead_[b] = wanted < 0.0 ? next : ahead_[b] - past;
+        const double sign = law_.published_slip_sign ? 1.0 : -1.0;
+        double* ball = &y[5 * b];
+        const double ux = ball[0] + sign * ball[3], uy = ball[1] - sign * ball[2];
+        const double slip2 = ux * ux + uy * uy, epsilon2 = law_.epsilon * law_.epsilon,
+                     slip = std::sqrt(slip2 + epsilon2), half = slip / (slip - 1.75 * pressed);
+        const double k = pressed / (std::sqrt(half * half * slip2 + epsilon2) - 1.75 * pressed);
+        ball[0] += k * ux;
+        ball[1] += k * uy;
+        ball[2] += 2.5 * k * uy;
+        ball[3] -= 2.5 * k * ux;
+    }
+
+    static double step_after(double before, double h, double error) {
+        if (error <= 0.5e-4 / 16.0) return std::max(before, 2.0 * h);
+        const double ratio = std::sqrt(std::sqrt(0.5e-4 / error));
+        return ratio > 1.0 ? std::max(before, ratio * h) : std::max(0.5, ratio) * h;
     }
 
     double step(double longest, double shortest) {
@@ -307,13 +325,15 @@ class Plain {
             for (std::size_t n = 0; n < y.size(); ++n)
                 error = std::max(error, std::abs((k[0].y[n] + k[3].y[n]) - 2.0 * k[2].y[n]));
             error *= h / 6.0;
-            next_ = 2.0 * error < 1e-4 ? std::max(next_, (8.0 * error < 1e-4 ? 2.0 : 1.15) * h) : 0.85 * h;
+            next_ = step_after(next_, h, error);
             if (error <= 1e-4 || h <= shortest) break;
         }
         const auto mean = [&](double k0, double k1, double k2, double k3) {
             return (h * weight[0] * k0 + h * weight[1] * k1) + (h * weight[2] * k2 + h * weight[3] * k3);
         };
         for (std::size_t n = 0; n < y.size(); ++n) y[n] += mean(k[0].y[n], k[1].y[n], k[2].y[n], k[3].y[n]);
+        for (std::size_t b = 0; b < ahead_.size(); ++b)
+            drag(b, mean(k[0].lift[b], k[1].lift[b], k[2].lift[b], k[3].lift[b]), 0.5 * h * k[3].lift[b]);
         for (std::size_t c = 0; c < contacts_.size(); ++c) {
             Contact& contact = contacts_[c];
             contact.d += mean(k[0].d[c], k[1].d[c], k[2].d[c], k[3].d[c]);

@@ -63,11 +63,6 @@ CAROM_INLINE void turn_by_flight(const Way& way, double s, double& nx, double& n
     ny = y / length;
 }
 
-// Rates and turning of a state whose normals did not come from a step.
-CAROM_INLINE void look(Work& w) {
-    turn_normals(w, 0.0, w.rate[1], w.rate[0]);
-}
-
 // When the next contact closes, if nothing overlaps.
 CAROM_INLINE double next_touch(const Work& w) {
     double first = kNever;

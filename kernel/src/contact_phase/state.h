@@ -14,8 +14,8 @@ constexpr int kPerBall = 5;  // numbers of a ball in ContactPhase::motion
 // Numbers of a ball here. A row holds velocities in the even places and spins in the odd ones: a contact feels the
 // difference of the velocities of its balls and the sum of their spins, which is one subtract_add().
 constexpr int kRow = 8;
-constexpr int kPlace[kPerBall] = {0, 2, 1, 3, 5};    // of v_x, v_y, R w_x, R w_y, R w_z in a row
-constexpr int kLift = 4, kTurn = 5, kStiffness = 7;  // of other numbers in a row: see Work
+constexpr int kPlace[kPerBall] = {0, 2, 1, 3, 5};                // of v_x, v_y, R w_x, R w_y, R w_z in a row
+constexpr int kLift = 4, kTurn = 5, kAhead = 7, kStiffness = 7;  // of other numbers in a row: see Work
 
 CAROM_INLINE int padded(int n) {
     return (n + 3) / 4 * 4;
@@ -24,9 +24,9 @@ CAROM_INLINE int padded(int n) {
 struct Work {
     int balls, contacts;
     int rows, lanes;  // sizes of the arrays per ball and per contact
-    // The state, its stages and their slopes; of each ball a row (v_x, R w_x, v_y, R w_y | -, R w_z, -, -). In a
-    // slope the fifth number (kLift) is the sum of the vertical forces, the eighth (kStiffness) minus the sum of
-    // friction over slip.
+    // The state, its stages and their slopes; of each ball a row (v_x, R w_x, v_y, R w_y | lift, R w_z, next, ahead). In a slope `lift`
+    // and `next` are the sum of the vertical forces, and the last number (kStiffness) is minus the sum of friction over slip. After a step
+    // `lift` is the vertical impulse of the step, `next` the one of half a step with the force at its end; `ahead` belongs to drag().
     double *y, *y_stage, *dy[kStages];
     // Of each contact: overlap, its stages and their slopes, and the largest overlap since the contact opened.
     double *d, *d_stage, *rate[kStages], *memory;
@@ -117,26 +117,64 @@ CAROM_INLINE void rates(const Work& w, const double* y, double time, int first, 
     }
 }
 
-// After a step of length h: the rates with the normals that have turned at the speed of its start into `rate`, the normals of the new
-// state, their turning, and the rates of the new state into `next`. The normals move by the mean of the speeds at both ends.
-CAROM_INLINE void turn_normals(const Work& w, double h, double* rate, double* next) {
-    const Four one = broadcast<4>(1.0), curvature = broadcast<4>(w.curvature);
+// The speed at which the normal n of a contact turns. z = x_j - x_i = (2 R - d) n moves by -(v_i - v_j): n' = -(v_i - v_j) . t / (2 R - d) t,
+// t = (-n_y, n_x).
+CAROM_INLINE Four turning(const Work& w, int c, const Four (&dv)[4], const Four& nx, const Four& ny,
+                          const Four& d) {
+    return load<4>(w.bend + c) * (dv[0] * ny - dv[2] * nx) / (broadcast<4>(1.0) - w.curvature * d);
+}
+
+// Rates and turning of a state that did not come from a step.
+CAROM_INLINE void look(Work& w) {
     for (int c = 0; c < w.lanes; c += 4) {
+        Four dv[4];
+        closing(w, w.y, c, dv);
+        const Four nx = load<4>(w.nx + c), ny = load<4>(w.ny + c);
+        store(w.turn + c, turning(w, c, dv, nx, ny, load<4>(w.d + c)));
+        store(w.rate[0] + c, dv[0] * nx + dv[2] * ny);
+    }
+}
+
+// The contacts after a step of length h, whose state is there already: overlaps and the largest of each, normals, their turning, and the
+// rates into rate[0]. The normals move by the mean of the speeds at both ends.
+CAROM_INLINE void advance(Work& w, const RungeKutta& method, double h) {
+    const Four zero = broadcast<4>(0.0), one = broadcast<4>(1.0);
+    const double w0 = h * method.weight[0], w1 = h * method.weight[1], w2 = h * method.weight[2],
+                 w3 = h * method.weight[3];
+    for (int c = 0; c < w.lanes; c += 4) {
+        const Four rate = load<4>(w.rate[0] + c), before = load<4>(w.d + c);
+        const Four first = w0 * rate + w1 * load<4>(w.rate[1] + c),
+                   last = w2 * load<4>(w.rate[2] + c) + w3 * load<4>(w.rate[3] + c);
+        const Four d = before + (first + last);
         Four dv[4];
         closing(w, w.y, c, dv);
         const Four nx = load<4>(w.nx + c), ny = load<4>(w.ny + c), turn_before = load<4>(w.turn + c);
         const Four straight = h * turn_before, x = nx - straight * ny, y = ny + straight * nx;
-        store(rate + c, dv[0] * x + dv[2] * y);
-        // z = x_j - x_i = (2 R - d) n moves by -(v_i - v_j): n' = -(v_i - v_j) . t / (2 R - d) t, t = (-n_y, n_x).
-        const Four turn =
-            load<4>(w.bend + c) * (dv[0] * y - dv[2] * x) / (one - curvature * load<4>(w.d + c));
+        const Four turn = turning(w, c, dv, x, y, d);
         const Four angle = (0.5 * h) * (turn_before + turn);
         const Four shrink = one / square_root(one + angle * angle);
         const Four nx_now = (nx - angle * ny) * shrink, ny_now = (ny + angle * nx) * shrink;
+        const Four memory = load<4>(w.memory + c);
+        store(w.d + c, d);
         store(w.turn + c, turn);
         store(w.nx + c, nx_now);
         store(w.ny + c, ny_now);
-        store(next + c, dv[0] * nx_now + dv[2] * ny_now);
+        store(w.rate[0] + c, dv[0] * nx_now + dv[2] * ny_now);
+        store(w.memory + c, select(zero < d, larger(d, memory), zero));
+        // The overlap may have been larger within the step. Its rate at the end is that of the normal that the stages had.
+        const Four now = dv[0] * x + dv[2] * y;
+        const int turned = bits_less(zero, rate) & bits_less(now, zero) & bits_less(zero, d);
+        if (turned == 0) continue;
+        double ends[4][4];
+        store(ends[0], before);
+        store(ends[1], d);
+        store(ends[2], h * rate);
+        store(ends[3], h * now);
+        for (int k = 0; k < 4; ++k) {
+            if ((turned >> k & 1) != 0)
+                w.memory[c + k] =
+                    largest(w.memory[c + k], peak(ends[0][k], ends[1][k], ends[2][k], ends[3][k]));
+        }
     }
 }
 
