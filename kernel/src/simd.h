@@ -186,15 +186,24 @@ CAROM_INLINE Halves<Half> select(Halves<M> mask, Halves<Half> yes, Halves<Half> 
     return {select(mask.lo, yes.lo, no.lo), select(mask.hi, yes.hi, no.hi)};
 }
 
-// In each lane a where it is above b, else b.
+// In each lane a where it is above b, else b; a where it is below b, else b.
 template <class Register>
 CAROM_INLINE Register larger(Register a, Register b) {
     return select(a > b, a, b);
 }
 
+template <class Register>
+CAROM_INLINE Register smaller(Register a, Register b) {
+    return select(a < b, a, b);
+}
+
 #if defined(__AVX__)
 CAROM_INLINE Pack<4> larger(Pack<4> a, Pack<4> b) {
     return (Pack<4>)_mm256_max_pd((__m256d)a, (__m256d)b);
+}
+
+CAROM_INLINE Pack<4> smaller(Pack<4> a, Pack<4> b) {
+    return (Pack<4>)_mm256_min_pd((__m256d)a, (__m256d)b);
 }
 #endif
 

@@ -208,18 +208,18 @@ class Plain {
         const auto i = static_cast<std::size_t>(start_[c].i), j = static_cast<std::size_t>(start_[c].j);
         const double *yi = &at[5 * i], *yj = &at[5 * j];
         double F = d * std::sqrt(d);
-        if (d < contacts_[c].memory) {
-            double share = d / contacts_[c].memory;
+        double share = d * (1.0 / contacts_[c].memory);
+        if (share < 1.0) {
             for (int p = law_.p; p > 1; p /= 2) share *= share;
             F *= law_.a + law_.b * share;
         }
         const double sx = (yi[0] - yj[0]) * ny - (yi[1] - yj[1]) * nx - (yi[4] + yj[4]);
         const double sz = (yi[2] + yj[2]) * ny - (yi[3] + yj[3]) * nx;
-        const double slip = std::sqrt(sx * sx + sz * sz + law_.epsilon * law_.epsilon);
+        const double slip2 = sx * sx + sz * sz + law_.epsilon * law_.epsilon, slip = std::sqrt(slip2);
         const double mu = law_.mu_b_more > 0.0
                               ? law_.mu_b + law_.mu_b_more * falling_exponential(law_.mu_b_fall * slip)
                               : law_.mu_b;
-        const double k = -mu * F / slip;
+        const double k = -mu * F / slip2 * slip;
         const double fx = k * sx, fz = k * sz;
         const double pushed[2] = {fx * ny - F * nx, -F * ny - fx * nx};
         const double torque[3] = {2.5 * fz * ny, -2.5 * fz * nx, -2.5 * fx};
@@ -340,7 +340,7 @@ class Plain {
             const Direction n = predicted(c, h);
             remember(contact, now[c], h * k[0].d[c], h * rate(y, c, n));
             const double turn = turning(c, n), angle = 0.5 * h * (contact.turn + turn),
-                         shrink = 1.0 / std::sqrt(1.0 + angle * angle);
+                         half = 0.5 * (angle * angle), shrink = 1.0 - half * (1.0 - 1.5 * half);
             contact.n = {(contact.n.x - angle * contact.n.y) * shrink,
                          (contact.n.y + angle * contact.n.x) * shrink};
             contact.turn = turn;

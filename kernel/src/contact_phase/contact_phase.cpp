@@ -1,7 +1,7 @@
 // The contact phase, four contacts at a time. Built once per instruction set.
 //
-// An evaluation of the right-hand side gathers the motions of the balls of four contacts, computes their forces in
-// lanes, and adds the forces to the balls, one contact after the other in the order of their numbers. A lane computes what
+// An evaluation of the right-hand side gathers the motions of the balls of four contacts and computes their forces in
+// lanes; then it adds all forces to the balls, one contact after the other in the order of their numbers. A lane computes what
 // a scalar program would compute, and every sum has one written order. Only contacts that overlap at that stage take
 // part. Memory is laid out for whole registers: the velocity and the horizontal spin of a ball are one row of four
 // numbers.
@@ -45,8 +45,8 @@ void reorder(Work& w, const double* d) {
         for (int n = begin; n < end; ++n) moved[n] = numbers[w.order[n]];
         for (int n = begin; n < end; ++n) numbers[n] = moved[n];
     };
-    double* const arrays[] = {w.d,      w.d_stage, w.rate[0], w.rate[1], w.rate[2], w.rate[3],
-                              w.memory, w.nx,      w.ny,      w.turn,    w.bend,    w.share};
+    double* const arrays[] = {w.d,       w.d_stage, w.rate[0], w.rate[1], w.rate[2], w.rate[3],
+                              w.inverse, w.nx,      w.ny,      w.turn,    w.bend,    w.share};
     for (double* array : arrays) move(array, w.moved);
     int* const places[] = {w.i, w.j, w.id};
     for (int* array : places) move(array, w.spare);
@@ -68,11 +68,12 @@ CAROM_INLINE bool gaps_add_up(const Work& w) {
     return sum(open) >= 4.0 + padded(w.count) - w.count;
 }
 
-// Adds the forces of four contacts to the slopes of their balls. At a stage the normals have turned for `time`, and
-// `rate` gets the rates of the overlaps.
+// The forces of four contacts, into w.force. At a stage the normals have turned for `time`, and `rate` gets the rates of the overlaps.
+// Apart from add_forces(), because a processor that looks a few hundred instructions ahead then has the roots and divisions of all
+// contacts under way at once.
 template <bool kFalls, bool kStage>
-CAROM_INLINE void add_forces(const Work& w, const Law<kFalls>& law, const double* y, const double* d,
-                             double time, int first, double* dy, double* rate) {
+CAROM_INLINE void find_forces(const Work& w, const Law<kFalls>& law, const double* y, const double* d,
+                              double time, int first, double* rate) {
     const int *i = w.i + first, *j = w.j + first;
     Four nx = load<4>(w.nx + first), ny = load<4>(w.ny + first);
     Four motion[4];
@@ -91,15 +92,29 @@ CAROM_INLINE void add_forces(const Work& w, const Law<kFalls>& law, const double
     const Four overlap = load<4>(d + first), none = broadcast<4>(0.0);
     // The last four may hold some that do not overlap.
     const Four F =
-        select(none < overlap, normal_force(law.a, law.b, law.p, overlap, load<4>(w.memory + first)), none);
+        select(none < overlap, normal_force(law.a, law.b, law.p, overlap, load<4>(w.inverse + first)), none);
     // t = n x z = (n_y, -n_x); s_x = (v_i - v_j) . t - R (w_iz + w_jz), s_z = R (w_i + w_j) . t.
     const Four s_x = motion[0] * ny - motion[2] * nx - turning;
     const Four s_z = motion[1] * ny - motion[3] * nx;
-    const Four slip = square_root(s_x * s_x + s_z * s_z + law.epsilon2);
+    const Four slip2 = s_x * s_x + s_z * s_z + law.epsilon2, slip = square_root(slip2);
     Four minus_mu_b = law.minus_mu_b;
     if (kFalls) minus_mu_b = minus_mu_b + law.minus_mu_b_more * falling_exponential(law.fall * slip);
-    const Four k = minus_mu_b * F / slip;
-    const Four f_x = k * s_x, f_z = k * s_z;
+    const Four k = minus_mu_b * F / slip2 * slip;  // the root and the quotient at the same time
+    double* force = w.force + kForce * first;
+    store(force, nx);
+    store(force + 4, ny);
+    store(force + 8, F);
+    store(force + 12, k * s_x);
+    store(force + 16, k * s_z);
+    store(force + 20, k);
+}
+
+// Adds the forces of four contacts to the slopes of their balls.
+CAROM_INLINE void add_forces(const Work& w, int first, double* dy) {
+    const int *i = w.i + first, *j = w.j + first;
+    const double* force = w.force + kForce * first;
+    const Four nx = load<4>(force), ny = load<4>(force + 4), F = load<4>(force + 8),
+               f_x = load<4>(force + 12), f_z = load<4>(force + 16), k = load<4>(force + 20);
     const Four twist = 2.5 * f_z;
     Four rows[4] = {f_x * ny - F * nx, twist * ny, -F * ny - f_x * nx, -twist * nx};
     Four ends[4] = {f_z, -2.5 * f_x, f_z, k};
@@ -155,7 +170,8 @@ CAROM_INLINE void forces(Work& w, const Law<kFalls>& law, const double* y, const
                          double* dy, double* rate) {
     if (out_of_order(w, d) || (!kStage && gaps_add_up(w))) reorder(w, d);
     int c = 0;
-    for (; c < w.count; c += 4) add_forces<kFalls, kStage>(w, law, y, d, time, c, dy, rate);
+    for (; c < w.count; c += 4) find_forces<kFalls, kStage>(w, law, y, d, time, c, rate);
+    for (int n = 0; n < w.count; n += 4) add_forces(w, n, dy);
     if (kStage) rates(w, y, time, c, rate);
 }
 
@@ -183,8 +199,8 @@ CAROM_INLINE double finish(const Work& w, const RungeKutta& method, double h) {
     const Four zero = broadcast<4>(0.0), turn_only = pack(0.0, 1.0, 0.0, 0.0),
                kept = pack(0.0, 1.0, 0.0, 1.0);
     // Of the second half of a row: see Work.
-    const Four v0 = pack(w0, w0, 0.0, 0.0), v1 = pack(w1, w1, 0.0, 0.0), v2 = pack(w2, w2, 0.0, 0.0),
-               v3 = pack(w3, w3, 0.5 * h, 0.0);
+    const Four two = pack(1.0, 1.0, 0.0, 0.0);
+    const Four v0 = w0 * two, v1 = w1 * two, v2 = w2 * two, v3 = w3 * two + h * pack(0.0, 0.0, 0.5, 0.0);
     Four most = zero;
     const auto take = [&most](const Four& difference) { most = larger(absolute(difference), most); };
     for (int n = 0; n < kRow * w.rows; n += kRow) {

@@ -114,7 +114,8 @@ class InSpace {
     // Adds the forces of a contact to the slopes of its balls: (3.1) to (3.3) with springs.
     void push(const double* y, int c, const Now& now, double* slope) {
         const int i = phase_.contact[c].i, j = phase_.contact[c].j;
-        const double F = normal_force(law_.a, law_.b, law_.p, now.overlap, memory_[c]);
+        const double inverse = memory_[c] > 0.0 ? 1.0 / memory_[c] : kNoMemory;
+        const double F = normal_force(law_.a, law_.b, law_.p, now.overlap, inverse);
         const Vector v = closing(y, c), spins = at(spin(y, i)) + at(spin(y, j));
         const Vector slip = (v - now.rate * now.n) + cross(spins, now.n);
         const double size = square_root(dot(slip, slip) + law_.epsilon * law_.epsilon);

@@ -66,13 +66,15 @@ CAROM_INLINE T falling_exponential(T x) {
     return power;
 }
 
-// The normal force at the overlap d > 0, `memory` its largest since the contact opened; a, b and p are those of HertzLaw.
+// The normal force at the overlap d > 0; `inverse` is 1 over its largest one since the contact opened, kNoMemory before it has
+// one; a, b and p are those of HertzLaw.
+constexpr double kNoMemory = 1e300;
 template <class T>
-CAROM_INLINE T normal_force(T a, T b, int p, T d, T memory) {
-    const T loading = d * square_root(d);
-    T share = d / memory;  // a lane whose memory is 0 does not use it
-    for (; p > 1; p /= 2) share = share * share;
-    return select(d < memory, loading * (a + b * share), loading);
+CAROM_INLINE T normal_force(T a, T b, int p, T d, T inverse) {
+    const T loading = d * square_root(d), share = d * inverse;
+    T power = share;
+    for (; p > 1; p /= 2) power = power * power;
+    return select(share < fill<T>(1.0), loading * (a + b * power), loading);
 }
 
 // The largest overlap inside a step in which the overlap stopped growing, from the cubic Hermite interpolant. Without

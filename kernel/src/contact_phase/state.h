@@ -14,6 +14,7 @@ constexpr int kPerBall = 5;  // numbers of a ball in ContactPhase::motion
 // Numbers of a ball here. A row holds velocities in the even places and spins in the odd ones: a contact feels the
 // difference of the velocities of its balls and the sum of their spins, which is one subtract_add().
 constexpr int kRow = 8;
+constexpr int kForce = 6;                                        // numbers of a contact in Work::force
 constexpr int kPlace[kPerBall] = {0, 2, 1, 3, 5};                // of v_x, v_y, R w_x, R w_y, R w_z in a row
 constexpr int kLift = 4, kTurn = 5, kAhead = 7, kStiffness = 7;  // of other numbers in a row: see Work
 
@@ -28,12 +29,14 @@ struct Work {
     // and `next` are the sum of the vertical forces, and the last number (kStiffness) is minus the sum of friction over slip. After a step
     // `lift` is the vertical impulse of the step, `next` the one of half a step with the force at its end; `ahead` belongs to drag().
     double *y, *y_stage, *dy[kStages];
-    // Of each contact: overlap, its stages and their slopes, and the largest overlap since the contact opened.
-    double *d, *d_stage, *rate[kStages], *memory;
+    // Of each contact: overlap, its stages and their slopes, and 1 over the largest overlap since the contact opened.
+    double *d, *d_stage, *rate[kStages], *inverse;
     // Normal at the start of the step, the speed at which it turns, and the curvature 1/(2 R) that it turns by: less than that of the
     // balls where it turns less (see settle()).
     double *nx, *ny, *turn, *bend;
     double* share;  // of the turning, while the contact is closed
+    // Of each contact that overlaps: n_x, n_y, F, the friction along t and upwards, and minus friction over slip; four of each side by side.
+    double* force;
     double curvature;
     bool shares;  // whether one of them is below 1
     // Where the rows of the two balls begin, and the contact's number in ContactPhase. The contacts that overlap come first, then the
@@ -67,13 +70,14 @@ CAROM_INLINE Work lay_out(const ContactPhase& phase) {
     w.d = take(next, w.lanes);
     w.d_stage = take(next, w.lanes);
     for (double*& rate : w.rate) rate = take(next, w.lanes);
-    w.memory = take(next, w.lanes);
+    w.inverse = take(next, w.lanes);
     w.nx = take(next, w.lanes);
     w.ny = take(next, w.lanes);
     w.turn = take(next, w.lanes);
     w.bend = take(next, w.lanes);
     w.share = take(next, w.lanes);
     w.moved = take(next, w.lanes);
+    w.force = take(next, kForce * w.lanes);
     w.curvature = phase.curvature;
     w.shares = false;
     w.i = phase.places;
@@ -88,6 +92,7 @@ CAROM_INLINE Work lay_out(const ContactPhase& phase) {
     for (int c = 0; c < w.lanes; ++c) {
         const bool real = c < w.contacts;
         w.id[c] = c;
+        w.inverse[c] = kNoMemory;
         w.i[c] = kRow * (real ? phase.contact[c].i : w.balls);
         w.j[c] = kRow * (real ? phase.contact[c].j : w.balls);
         if (!real) continue;
@@ -138,7 +143,7 @@ CAROM_INLINE void look(Work& w) {
 // The contacts after a step of length h, whose state is there already: overlaps and the largest of each, normals, their turning, and the
 // rates into rate[0]. The normals move by the mean of the speeds at both ends.
 CAROM_INLINE void advance(Work& w, const RungeKutta& method, double h) {
-    const Four zero = broadcast<4>(0.0), one = broadcast<4>(1.0);
+    const Four zero = broadcast<4>(0.0), one = broadcast<4>(1.0), none = broadcast<4>(kNoMemory);
     const double w0 = h * method.weight[0], w1 = h * method.weight[1], w2 = h * method.weight[2],
                  w3 = h * method.weight[3];
     for (int c = 0; c < w.lanes; c += 4) {
@@ -152,15 +157,15 @@ CAROM_INLINE void advance(Work& w, const RungeKutta& method, double h) {
         const Four straight = h * turn_before, x = nx - straight * ny, y = ny + straight * nx;
         const Four turn = turning(w, c, dv, x, y, d);
         const Four angle = (0.5 * h) * (turn_before + turn);
-        const Four shrink = one / square_root(one + angle * angle);
+        const Four half = 0.5 * (angle * angle), shrink = one - half * (one - 1.5 * half);
         const Four nx_now = (nx - angle * ny) * shrink, ny_now = (ny + angle * nx) * shrink;
-        const Four memory = load<4>(w.memory + c);
+        const Four inverse = load<4>(w.inverse + c), one_over_d = one / d;
         store(w.d + c, d);
         store(w.turn + c, turn);
         store(w.nx + c, nx_now);
         store(w.ny + c, ny_now);
         store(w.rate[0] + c, dv[0] * nx_now + dv[2] * ny_now);
-        store(w.memory + c, select(zero < d, larger(d, memory), zero));
+        store(w.inverse + c, select(zero < d, smaller(one_over_d, inverse), none));
         // The overlap may have been larger within the step. Its rate at the end is that of the normal that the stages had.
         const Four now = dv[0] * x + dv[2] * y;
         const int turned = bits_less(zero, rate) & bits_less(now, zero) & bits_less(zero, d);
@@ -171,9 +176,9 @@ CAROM_INLINE void advance(Work& w, const RungeKutta& method, double h) {
         store(ends[2], h * rate);
         store(ends[3], h * now);
         for (int k = 0; k < 4; ++k) {
-            if ((turned >> k & 1) != 0)
-                w.memory[c + k] =
-                    largest(w.memory[c + k], peak(ends[0][k], ends[1][k], ends[2][k], ends[3][k]));
+            if ((turned >> k & 1) == 0) continue;
+            const double most = peak(ends[0][k], ends[1][k], ends[2][k], ends[3][k]);
+            if (most > 0.0) w.inverse[c + k] = smallest(w.inverse[c + k], 1.0 / most);
         }
     }
 }

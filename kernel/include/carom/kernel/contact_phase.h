@@ -42,7 +42,7 @@ struct ContactPhase {
 };
 
 constexpr std::size_t contact_phase_numbers(int balls, int contacts) noexcept {
-    return 48 * (static_cast<std::size_t>(balls) + 4) + 14 * (static_cast<std::size_t>(contacts) + 8);
+    return 48 * (static_cast<std::size_t>(balls) + 4) + 20 * (static_cast<std::size_t>(contacts) + 8);
 }
 constexpr std::size_t contact_phase_places(int contacts) noexcept {
     return 6 * (static_cast<std::size_t>(contacts) + 8);
