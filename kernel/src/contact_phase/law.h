@@ -29,7 +29,7 @@ CAROM_INLINE bool has_friction(const HertzLaw& law) {
 }
 
 // Stability of the step. The regularised friction is stiff: with k = mu_b F / |s|, friction over slip, the friction
-// of one contact makes its slip decay at the rate 7 k. Each further contact of one of the two balls, and the cloth under it, adds at most 3.5 times
+// of one contact makes its slip decay at the rate 7 k. Each further contact of one of the two balls adds at most 3.5 times
 // its own k; so by the theorem of Gershgorin no rate of all contacts together exceeds 3.5 times the sums of k over both balls of a contact, where
 // these are largest. A step takes at most 4.8 over it.
 constexpr double kStableShare = 4.8 / 3.5;
