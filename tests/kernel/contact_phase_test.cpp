@@ -81,7 +81,8 @@ HertzLaw random_law(reference::Generator& rng) {
 }
 
 TEST(ContactPhase, EveryInstructionSetIsThePlainProgram) {
-    reference::Generator rng(9);  // a seed at which an open contact between those that overlap would shorten a step
+    reference::Generator rng(
+        9);  // a seed at which an open contact between those that overlap would shorten a step
     std::set<std::size_t> sizes;
     for (int k = 0; k < 300; ++k) {
         const Cluster start = random_cluster(rng);

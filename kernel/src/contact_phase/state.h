@@ -42,7 +42,7 @@ struct Work {
     // Where the rows of the two balls begin, and the contact's number in ContactPhase. The contacts that overlap come first, then the
     // others, either in the order of their numbers: so four of them lie side by side, and the sums of a ball have one order.
     int *i, *j, *id;
-    int count;  // contacts that overlap
+    int count;  // contacts that come first: those that overlap, and fewer than four that opened since they were put into order
     // To put contacts into another order.
     double* moved;
     int *order, *spare;
