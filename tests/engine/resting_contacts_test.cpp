@@ -2,6 +2,7 @@
 // sections 7 and 9).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -81,6 +82,30 @@ TEST(RestingContacts, ObliqueSpinIntoACushion) {
     EXPECT_NEAR(record.state_at(0, roll->time).velocity.y(), 5.0 / 7.0, 2e-5);
     EXPECT_NEAR(record.state_at(0, roll->time).position.x(), 1.0 - R, 1e-12);
     EXPECT_LE(record.events.size(), 12u);
+}
+
+// A ball that its spin holds at a cushion is struck along the cushion: the contact goes on. Struck into the cushion, it ends in a bounce.
+TEST(RestingContacts, GoesOnThroughAnImpactThatHardlyMovesIt) {
+    for (const bool oblique : {false, true}) {
+        Scene scene = empty_scene();
+        scene.table = box(1.0, 4.0, 0.036576);
+        scene.balls.mu_b = 0.0;
+        scene.stop.time = 0.2;
+        const double R = scene.balls.R;
+        add_ball(scene, "a", 1.0 - R, 2.0, 0.0, 0.0, Vec3(0.0, 50.0, 0.0));
+        add_ball(scene, "b", oblique ? 1.0 - 1.2 * R : 1.0 - R, 2.0 - 4.0 * R, 0.0, 1.0);
+        const Record record = run_verified(scene);
+        const Event* hit = first(record, EventType::kBallBall);
+        ASSERT_NE(hit, nullptr);
+        const auto count = [&](EventType type) {
+            return std::count_if(record.events.begin(), record.events.end(), [&](const Event& e) {
+                return e.type == type && e.a == 0 && e.time <= hit->time + 1e-9;
+            });
+        };
+        EXPECT_EQ(count(EventType::kBallCushionHold), 1);
+        EXPECT_EQ(count(EventType::kBallCushionRelease), oblique ? 1 : 0);
+        EXPECT_EQ(count(EventType::kBallCushion), oblique ? 1 : 0);
+    }
 }
 
 // H4: at the cushion exactly, moving into it: an immediate rebound.

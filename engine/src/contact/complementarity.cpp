@@ -14,36 +14,68 @@ constexpr int kBlockTries = 8;
 // smallest eigenvalue, so more of them help only where the matrix is singular to rounding.
 constexpr int kMoreRefinements = 20;
 constexpr double kSlowRow = 0.25, kSlowestRow = 0.9999;  // [-] extrapolated ratios of successive refinements
+// [-] Softness, relative to the mobility, with which a solution is approached, and most approaches.
+constexpr double kApproachSoftness = 1e-4;
+constexpr int kApproaches = 40;
 constexpr double kSumUlp = 4.0;  // [ulp of a row's terms] a smaller residual is the rounding of their sum
 }  // namespace
 
-// LU factorisation with partial pivoting of the basic rows and columns.
+void Complementarity::multiply_add(double factor, const std::vector<double>& x,
+                                   std::vector<double>& result) const {
+    for (std::size_t j = 0; j < size; ++j) {
+        const double by = factor * x[j];
+        if (by == 0.0) continue;
+        for (const Entry& e : column(j)) result[e.row] += e.value * by;
+    }
+}
+
+// LU factorisation with partial pivoting of the basic rows and columns. Contacts that are ordered by place fill a band, beyond which all stays zero.
 bool Complementarity::factor() {
     index_.clear();
-    for (std::size_t i = 0; i < size; ++i)
-        if (basic_[i]) index_.push_back(i);
+    place_.assign(size, size);
+    for (std::size_t i = 0; i < size; ++i) {
+        if (!basic_[i]) continue;
+        place_[i] = index_.size();
+        index_.push_back(i);
+    }
     const std::size_t m = index_.size();
-    lu_.resize(m * m);
+    lu_.assign(m * m, 0.0);
     pivot_.resize(m);
+    top_.resize(m);
+    bottom_.resize(m);
     for (std::size_t c = 0; c < m; ++c) {
-        for (std::size_t r = 0; r < m; ++r) lu_[c * m + r] = at(index_[r], index_[c]);
+        top_[c] = bottom_[c] = c;
+        for (const Entry& e : column(index_[c])) {
+            const std::size_t r = place_[e.row];
+            if (r == size) continue;
+            lu_[c * m + r] = e.value;
+            top_[c] = std::min(top_[c], r);
+            bottom_[c] = std::max(bottom_[c], r);
+        }
         lu_[c * m + c] += kContactSoftness * std::abs(lu_[c * m + c]);
     }
     for (std::size_t k = 0; k < m; ++k) {
         double* const column = &lu_[k * m];
         std::size_t best = k;
-        for (std::size_t r = k + 1; r < m; ++r)
+        for (std::size_t r = k + 1; r <= bottom_[k]; ++r)
             if (std::abs(column[r]) > std::abs(column[best])) best = r;
         pivot_[k] = best;
-        if (best != k)
-            for (std::size_t c = 0; c < m; ++c) std::swap(lu_[c * m + k], lu_[c * m + best]);
+        if (best != k) {
+            for (std::size_t c = 0; c < m; ++c) {
+                std::swap(lu_[c * m + k], lu_[c * m + best]);
+                if (lu_[c * m + k] != 0.0) top_[c] = std::min(top_[c], k);
+                if (lu_[c * m + best] != 0.0) bottom_[c] = std::max(bottom_[c], best);
+            }
+        }
         if (!(std::abs(column[k]) > 0.0)) return false;
-        for (std::size_t r = k + 1; r < m; ++r) column[r] /= column[k];
+        const std::size_t end = bottom_[k] + 1;
+        for (std::size_t r = k + 1; r < end; ++r) column[r] /= column[k];
         for (std::size_t c = k + 1; c < m; ++c) {
             double* const other = &lu_[c * m];
             const double head = other[k];
             if (head == 0.0) continue;
-            for (std::size_t r = k + 1; r < m; ++r) other[r] -= head * column[r];
+            bottom_[c] = std::max(bottom_[c], bottom_[k]);
+            for (std::size_t r = k + 1; r < end; ++r) other[r] -= head * column[r];
         }
     }
     return true;
@@ -54,29 +86,34 @@ void Complementarity::back_substitute(std::vector<double>& x) const {
     for (std::size_t k = 0; k < m; ++k)
         if (pivot_[k] != k) std::swap(x[k], x[pivot_[k]]);
     for (std::size_t c = 0; c < m; ++c)
-        for (std::size_t r = c + 1; r < m; ++r) x[r] -= lu_[c * m + r] * x[c];
+        for (std::size_t r = c + 1; r <= bottom_[c]; ++r) x[r] -= lu_[c * m + r] * x[c];
     for (std::size_t c = m; c-- > 0;) {
         x[c] /= lu_[c * m + c];
-        for (std::size_t r = 0; r < c; ++r) x[r] -= lu_[c * m + r] * x[c];
+        for (std::size_t r = top_[c]; r < c; ++r) x[r] -= lu_[c * m + r] * x[c];
     }
 }
 
 void Complementarity::residual(std::vector<double>& w) const {
     w = q;
+    multiply_add(1.0, z, w);
+}
+
+// size_of_: of each row, the sum of the absolute values of its terms.
+void Complementarity::add_sizes() {
+    size_of_.resize(size);
+    for (std::size_t i = 0; i < size; ++i) size_of_[i] = std::abs(q[i]);
     for (std::size_t j = 0; j < size; ++j) {
         if (z[j] == 0.0) continue;
-        for (std::size_t i = 0; i < size; ++i) w[i] += at(i, j) * z[j];
+        for (const Entry& e : column(j)) size_of_[e.row] += std::abs(e.value * z[j]);
     }
 }
 
 // Largest residual of a basic row, relative to the sum of the absolute values of its terms.
-double Complementarity::worst_residual(const std::vector<double>& w) const {
+double Complementarity::worst_residual(const std::vector<double>& w) {
+    add_sizes();
     double worst = 0.0;
-    for (const std::size_t i : index_) {
-        double scale = std::abs(q[i]);
-        for (const std::size_t j : index_) scale += std::abs(at(i, j) * z[j]);
-        if (scale > 0.0) worst = std::max(worst, std::abs(w[i]) / scale);
-    }
+    for (const std::size_t i : index_)
+        if (size_of_[i] > 0.0) worst = std::max(worst, std::abs(w[i]) / size_of_[i]);
     return worst;
 }
 
@@ -131,31 +168,60 @@ void Complementarity::find_wrong(const std::vector<double>& w) {
     double largest = 0.0;
     for (const double x : z) largest = std::max(largest, std::abs(x));
     wrong_.clear();
+    add_sizes();
     for (std::size_t i = 0; i < size; ++i) {
-        if (basic_[i]) {
-            if (z[i] < -kRounding * largest) wrong_.push_back(i);
-        } else if (w[i] < 0.0) {
-            double scale = std::abs(q[i]);
-            for (std::size_t j = 0; j < size; ++j) scale += std::abs(at(i, j) * z[j]);
-            if (w[i] < -kRounding * scale) wrong_.push_back(i);
-        }
+        const bool wrong = basic_[i] ? z[i] < -kRounding * largest : w[i] < -kRounding * size_of_[i];
+        if (wrong) wrong_.push_back(i);
     }
 }
 
-bool Complementarity::solve() {
-    residual(w_);
-    basic_.resize(size);
-    for (std::size_t i = 0; i < size; ++i) basic_[i] = z[i] > 0.0 || w_[i] < 0.0;
-    if (exchange(20 + 2 * size, false)) return true;
-    // Rows that the compliance decides may be exchanged without end: now each answer is refined before it is judged.
-    for (std::size_t i = 0; i < size; ++i) basic_[i] = q[i] < 0.0;
-    if (exchange(200 + 20 * size, true)) return true;
+bool Complementarity::solve(bool thorough) {
+    if (exchange(20 + 2 * size) || (thorough && approach())) return true;
     std::fill(z.begin(), z.end(), 0.0);
     return false;
 }
 
-bool Complementarity::exchange(std::size_t most, bool refined) {
+// Contacts between which the softness decides may be exchanged without end. With more of it they are not, and each solution is where
+// the next one is soft towards: what the softness changes dies away (the proximal point method of Martinet and Rockafellar).
+bool Complementarity::approach() {
+    const std::vector<double> wanted = q;
+    std::vector<double> soft(size), before;
+    const auto each_diagonal = [this](auto&& take) {
+        for (std::size_t c = 0; c < size; ++c)
+            for (std::size_t k = first[c]; k < end_of(c); ++k)
+                if (entries[k].row == c) take(c, entries[k].value);
+    };
+    each_diagonal([&](std::size_t c, double& value) {
+        soft[c] = kApproachSoftness * std::abs(value);
+        value += soft[c];
+    });
+    std::fill(z.begin(), z.end(), 0.0);
+    bool found = false;
+    for (int round = 0; round < kApproaches; ++round) {
+        before = z;
+        for (std::size_t c = 0; c < size; ++c) q[c] = wanted[c] - soft[c] * before[c];
+        if (!exchange(200 + 20 * size)) {
+            z = before;  // as near as rounding lets it come
+            break;
+        }
+        found = true;
+        double moved = 0.0, largest = 0.0;
+        for (std::size_t c = 0; c < size; ++c) {
+            moved = std::max(moved, std::abs(z[c] - before[c]));
+            largest = std::max(largest, z[c]);
+        }
+        if (!(kApproachSoftness * moved > std::numeric_limits<double>::epsilon() * largest)) break;
+    }
+    each_diagonal([&](std::size_t c, double& value) { value -= soft[c]; });
+    q = wanted;
+    return found;
+}
+
+bool Complementarity::exchange(std::size_t most) {
     std::vector<double>& w = w_;
+    residual(w);
+    basic_.resize(size);
+    for (std::size_t i = 0; i < size; ++i) basic_[i] = z[i] > 0.0 || w[i] < 0.0;
     std::size_t fewest = size + 1;
     int tries = kBlockTries;
     for (std::size_t pivots = 0; pivots < most; ++pivots) {
@@ -163,9 +229,8 @@ bool Complementarity::exchange(std::size_t most, bool refined) {
         std::fill(z.begin(), z.end(), 0.0);
         w = q;
         refine(w);
-        if (refined) polish(w);
         find_wrong(w);
-        if (wrong_.empty() && !refined) {
+        if (wrong_.empty()) {
             polish(w);
             find_wrong(w);
         }

@@ -1,8 +1,9 @@
-// Dense linear complementarity problems of a few dozen unknowns: the steps of Newton's method for the impulses in a group of
+// Linear complementarity problems of a few dozen unknowns: the steps of Newton's method for the impulses in a group of
 // resting contacts.
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace carom {
@@ -13,13 +14,23 @@ inline constexpr double kContactSoftness = 1e-12;
 
 /// z >= 0, w = A z + q >= 0, z . w = 0.
 struct Complementarity {
-    /// All zero, in the memory that it has.
+    /// n unknowns, without columns, in the memory that it has.
     void resize(std::size_t n) {
-        A.assign(n * n, 0.0);
         q.assign(n, 0.0);
         z.assign(n, 0.0);
         size = n;
+        clear();
     }
+    void clear() {
+        entries.clear();
+        first.clear();
+    }
+    /// The next column of A: begin_column(), then its entries, each row once. What is left out is zero, as between contacts without a
+    /// common ball.
+    void begin_column() { first.push_back(entries.size()); }
+    void add(std::size_t row, double value) { entries.push_back({row, value}); }
+    /// result += A x, column by column.
+    void multiply_add(double factor, const std::vector<double>& x, std::vector<double>& result) const;
 
     /// Block principal pivoting: exchanges all infeasible rows while their number decreases, otherwise one row
     /// (Murty's rule), which terminates for every P-matrix (Judice and Pires, "A block principal pivoting
@@ -27,24 +38,32 @@ struct Complementarity {
     /// increased by kContactSoftness of itself, so that redundant contacts (a ball in three of them) share their
     /// load evenly and the solution is unique; iterative refinement removes this effect again, down to rounding.
     /// It begins with the rows in which z is positive or A z + q negative.
-    /// @return false if no solution was found within the bound on pivots (A is not a P-matrix); z is then 0
-    bool solve();
+    /// @param thorough  whether to go on where the pivots do not end: for matrices without negative eigenvalues, in which rounding decides
+    /// @return false if no solution was found (A may have none); z is then 0
+    bool solve(bool thorough = true);
 
-    double& at(std::size_t row, std::size_t column) { return A[column * size + row]; }
-    double at(std::size_t row, std::size_t column) const { return A[column * size + row]; }
-
-    std::vector<double> A;  ///< by columns
+    struct Entry {
+        std::size_t row;
+        double value;
+    };
+    std::vector<Entry> entries;      ///< of A, by columns
+    std::vector<std::size_t> first;  ///< of each column
     std::vector<double> q;
     std::vector<double> z;  ///< guess and result
     std::size_t size = 0;
 
   private:
+    std::size_t end_of(std::size_t c) const { return c + 1 < first.size() ? first[c + 1] : entries.size(); }
+    std::span<const Entry> column(std::size_t c) const {
+        return {entries.data() + first[c], end_of(c) - first[c]};
+    }
     bool factor();
     void back_substitute(std::vector<double>& x) const;
     void residual(std::vector<double>& w) const;
-    double worst_residual(const std::vector<double>& w) const;
-    /// @param refined  whether each answer is refined, or only one that is right
-    bool exchange(std::size_t most, bool refined);
+    double worst_residual(const std::vector<double>& w);
+    void add_sizes();
+    bool exchange(std::size_t most);
+    bool approach();
     void find_wrong(const std::vector<double>& w);
     void polish(std::vector<double>& w);
     void refine(std::vector<double>& w);
@@ -52,7 +71,9 @@ struct Complementarity {
 
     std::vector<char> basic_;
     std::vector<std::size_t> index_, pivot_, wrong_;
-    std::vector<double> lu_, w_, part_, before_, last_;
+    std::vector<std::size_t> place_;         // of a basic row in index_
+    std::vector<std::size_t> top_, bottom_;  // the first and the last row of a column of lu_ that is not zero
+    std::vector<double> lu_, w_, part_, before_, last_, size_of_;
 };
 
 }  // namespace carom

@@ -21,6 +21,8 @@ constexpr double kStopNoise = 1e-12;
 // [s] The same without rolling friction, with sliding friction instead: such a speed moves a ball by no more than
 // 1e-12 m in an hour.
 constexpr double kSlideNoise = 1e-16;
+// [s] A slip that an impulse leaves counts as zero if sliding friction ends it within this time.
+constexpr double kSlipNoise = 1e-12;
 
 }  // namespace
 
@@ -83,13 +85,15 @@ Link link_of(const Group& g, const RestingContact& c) {
 
 // Takes the velocities at the end of a step as the present ones.
 void accept(Group& g) {
+    const double gone = std::max(g.noise, 3.5 * g.motion.slide * kSlipNoise);
     for (std::size_t k = 0; k < g.bodies.size(); ++k) {
         const Body& b = g.bodies[k];
         RestingBall& ball = g.group.balls[k];
         if (!(b.impulses > 0.0)) continue;
+        const Vec2& s = length(b.slip_end()) > gone ? b.s_end : b.v_end;
         ball.v = Vec3(b.v_end.x(), b.v_end.y(), 0.0);
-        ball.w.x() = -b.s_end.y() / g.motion.R;
-        ball.w.y() = b.s_end.x() / g.motion.R;
+        ball.w.x() = -s.y() / g.motion.R;
+        ball.w.y() = s.x() / g.motion.R;
         read(g, k);
     }
 }

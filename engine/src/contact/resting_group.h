@@ -21,9 +21,6 @@ namespace carom::resting {
 
 /// [s] Shortest interval: whatever reverses within it is taken as what it is at its end.
 inline constexpr double kShortestInterval = 1e-5;
-/// [s] Interval over which the impulses act that remove closing speeds. Friction does not change a speed within it, but stops
-/// those that are mere rounding.
-inline constexpr double kInstant = 1e-12;
 /// [m] and [s] A deeper overlap is removed within the interval, but not in less than this time: otherwise the rounding
 /// errors of a long push would add up to nearly 1e-12 m.
 inline constexpr double kOverlapDepth = 2e-14;
@@ -62,6 +59,7 @@ struct Body {
     double lift = 0.0;                                ///< vertical impulse of the contacts
     double impulses = 0.0;                            ///< sum of |J|, for rounding
     Matrix by_push, by_couple;                        ///< derivatives of v_end
+    Vec2 by_lift = Vec2::Zero();                      ///< the same: less load, less friction
 
     Vec2 slip_end() const { return v_end - s_end; }
 };
@@ -115,7 +113,7 @@ double end_rate(const Group& g, const Link& link);
 Vec2 contact_slip(const Group& g, const Link& link, bool at_end);
 
 // resting_step.cpp
-/// Solves the step over h [s]. @return whether there is a solution; without one the closest state is left
+/// Solves the step over h [s]; without friction for 0, an instant. @return whether there is a solution; without one the closest state is left
 bool step(Group& g, double h, const StepOptions& options = {});
 /// Solves for the impulses that leave no contact closing. @return whether there is a solution
 bool strike(Group& g);
@@ -123,6 +121,8 @@ bool strike(Group& g);
 double rate_rounding(const Group& g);
 /// [m/s] Friction between balls as it would be with the slip at the start.
 double friction_at_start(const Group& g, const Link& link);
+/// [m/s] Slip of two balls that their friction ends within the interval.
+double slip_ended(const Group& g, const Link& link);
 
 // resting_interval.cpp
 /// Chooses the interval, solves it and writes the segments.

@@ -153,9 +153,11 @@ double link_interval(const Group& g, const Link& link, double h) {
     const double force = link.J / h;
     if (rate > 0.0) interval = std::min(interval, 2.0 * kGapLeft / rate);
     if (link.j >= 0) {
-        // The friction between two balls changes with their slip.
+        // The friction between two balls changes with their slip, until that is gone.
         const double change = std::abs(friction_at_start(g, link) - link.friction_z);
-        interval = std::min(interval, allowed_interval(h, change * force * h * h / 8.0, kPlaceError, 2));
+        const double share = std::min(1.0, length(contact_slip(g, link, false)) / slip_ended(g, link));
+        interval =
+            std::min(interval, allowed_interval(h, change * force * h * h * share / 8.0, kPlaceError, 2));
     }
     const Across t = across(g, link, h);
     const double v = std::abs(t.v), a = std::abs(t.a);
@@ -196,11 +198,17 @@ bool guide(Group& g) {
     return any;
 }
 
+// Whether what was guided still goes the way that its friction opposes.
+bool keeps_direction(const Group& g) {
+    return std::all_of(g.bodies.begin(), g.bodies.end(),
+                       [&g](const Body& b) { return !b.guided || dot(moving(g, b).end, b.guide) >= 0.0; });
+}
+
 // The same interval again, guided; without a solution it stays as it was.
 void guide_friction(Group& g, double h) {
     g.bodies_before = g.bodies;
     g.links_before = g.links;
-    if (!guide(g) || step(g, h)) return;
+    if (!guide(g) || (step(g, h) && keeps_direction(g))) return;
     g.bodies.swap(g.bodies_before);
     g.links.swap(g.links_before);
 }

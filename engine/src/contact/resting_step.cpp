@@ -13,6 +13,9 @@ namespace {
 
 // [-] Most Newton steps of one solution; a few are usual, each is exact as soon as every ball's kind of motion is right.
 constexpr int kNewtonSteps = 40;
+// [-] Until this step, what a change of the load does to the friction of the cloth is part of the linear problem: fewer steps, but where balls lock
+// each other no solution.
+constexpr int kLoadSteps = 12;
 // [-] From this step on, each second one takes balls for stopped that move by less than this share of what friction takes from them:
 // on the way to rest, Newton's method only halves their speed again and again.
 constexpr int kStopsFrom = 5;
@@ -28,9 +31,10 @@ constexpr double kNoGap = 4e-15;
 // [-] Most trials of a line search, and the share of its first slope that may be left.
 constexpr int kSearches = 8;
 constexpr double kSlopeLeft = 0.25;
-// [-] Mobility of a ball at rest in the derivatives only, so that balls at rest share a load; a sliding ball has 1.
-constexpr double kRestCompliance = 1e-9;
-// [of its coefficient] Accuracy of the friction between balls, and of the load. It is halved in each step, up to 2^20 times, for
+// [-] Mobility of a ball at rest in the derivatives only, so that balls at rest share a load; a sliding ball has 1. With less of it a
+// rate that is nearly right asks for impulses that set the balls moving.
+constexpr double kRestCompliance = 1e-4;
+// [of its coefficient] Accuracy of the friction between balls. It is halved in each step, up to 2^20 times, for
 // contacts that hold each other's slip.
 constexpr double kFrictionAccuracy = 1e-9;
 constexpr int kLooser = 20;
@@ -64,13 +68,20 @@ void slide(Body& b, const Vec2& friction) {
 // The motion of a ball under the impulses on it, and its derivatives.
 void respond(const Group& g, Body& b, double h, bool stops) {
     const double grip = g.motion.slide * b.load * h, drag = std::min(g.motion.roll * h, grip);
-    // What acts at an instant moves a ball at rest like one that rolls.
-    const double at_rest = h > kInstant ? kRestCompliance : 5.0 / 7.0;
     const bool slips = moves(b.u);
+    const double by_load = b.load > 0.0 && g.around.gravity > 0.0 ? g.motion.slide / g.around.gravity : 0.0;
+    b.by_lift = Vec2::Zero();
+    if (h == 0.0) {
+        slide(b, Vec2::Zero());
+        b.by_push = identity(1.0);
+        b.by_couple = {};
+        return;
+    }
     if (b.guided && slips) {
         slide(b, -grip * b.guide);
         b.by_push = identity(1.0);
         b.by_couple = {};
+        b.by_lift = by_load * b.guide;
         return;
     }
     const Vec2 slip = b.u + b.push - 2.5 * b.couple;
@@ -81,6 +92,7 @@ void respond(const Group& g, Body& b, double h, bool stops) {
         const Matrix turn = across_of(grip / size, d);
         b.by_push = minus(identity(1.0), turn);
         b.by_couple = times(2.5, turn);
+        b.by_lift = by_load * d;
         return;
     }
     const Vec2 rolls = b.v + b.push - slip * (2.0 / 7.0);
@@ -99,19 +111,19 @@ void respond(const Group& g, Body& b, double h, bool stops) {
         b.mode = Mode::kRolling;
         b.v_end = rolls - drag * d;
         b.by_push = b.by_couple = stops && speed <= (1.0 + kHardlyMoves) * drag
-                                      ? identity(at_rest)
+                                      ? identity(kRestCompliance)
                                       : minus(identity(5.0 / 7.0), across_of((5.0 / 7.0) * drag / speed, d));
     } else {
         b.mode = Mode::kResting;
         b.v_end = Vec2::Zero();
-        b.by_push = b.by_couple = identity(at_rest);
+        b.by_push = b.by_couple = identity(kRestCompliance);
     }
     if (!moves(b.v_end)) b.mode = Mode::kResting;
     b.s_end = b.v_end;
 }
 
 // @param stops  the derivatives are those at rest for a ball that hardly moves
-void respond(Group& g, double h, bool stops = false) {
+void respond(Group& g, double h, bool friction, bool stops = false) {
     for (Body& b : g.bodies) {
         b.push = b.couple = Vec2::Zero();
         b.lift = b.impulses = 0.0;
@@ -129,7 +141,11 @@ void respond(Group& g, double h, bool stops = false) {
         bj.lift -= link.friction_z * link.J;
         bj.impulses += std::abs(link.J);
     }
-    for (Body& b : g.bodies) respond(g, b, h, stops);
+    const double weight = g.around.gravity * h;
+    for (Body& b : g.bodies) {
+        b.load = friction && weight > 0.0 ? std::max(0.0, 1.0 - b.lift / weight) : 1.0;
+        respond(g, b, h, stops);
+    }
 }
 
 // What must not become negative: the rate of a gap at the end, with the turning of its normal.
@@ -137,14 +153,22 @@ double wanted_rate(const Group& g, const Link& link, double h, const StepOptions
     return end_rate(g, link) + (options.stabilise ? h * link.turning : 0.0);
 }
 
-// The friction between two balls opposes their slip at the end; the upward slip without it, X, and the impulse's effect on it give
-// f = -X / (effect + |slip| / mu), in which |slip| follows in a few turns.
-double vertical_friction(const Group& g, const Link& link) {
-    const Vec2 slip = contact_slip(g, link, true);
+// How much one of impulse between two balls changes their upward slip.
+double ease_of(const Group& g, const Link& link) {
     const auto ease = [](const Body& b) {
         return b.mode == Mode::kSliding ? 2.5 : (b.mode == Mode::kRolling ? 5.0 / 7.0 : 0.0);
     };
-    const double effect = (ease(g.bodies[link.i]) + ease(g.bodies[link.j])) * link.J;
+    return ease(g.bodies[link.i]) + ease(g.bodies[link.j]);
+}
+
+// The friction between two balls opposes their slip at the end; the upward slip without it, X, and the impulse's effect on it give
+// f = -X / (effect + |slip| / mu), in which |slip| follows in a few turns.
+double vertical_friction(const Group& g, const Link& link) {
+    // What holds two balls at rest may have any size.
+    if (g.bodies[link.i].mode == Mode::kResting && g.bodies[link.j].mode == Mode::kResting)
+        return link.friction_z;
+    const Vec2 slip = contact_slip(g, link, true);
+    const double effect = ease_of(g, link) * link.J;
     const double without = slip.x() - effect * link.friction_z;
     double size = length(slip), f = 0.0;
     for (int turn = 0; turn < 30; ++turn) {
@@ -210,14 +234,50 @@ bool update(Group& g, double h, const StepOptions& options, int times) {
         }
         link.friction_z = f;
     }
-    for (Body& b : g.bodies) {
-        const double weight = g.around.gravity * h;
-        const double load = weight > 0.0 ? std::max(0.0, 1.0 - b.lift / weight) : 1.0;
-        changed = changed || std::abs(load - b.load) > accuracy;
-        b.load = options.friction ? load : 1.0;
-    }
     return changed;
 }
+
+/// Frictions between balls follow from a solution and change the next one. Two changes in turn tell where that leads to (D. G. Anderson,
+/// "Iterative procedures for nonlinear integral equations", J. ACM 12, 1965, with one step back): balls that hold each other's spin come
+/// to it by a few percent of the way in each step.
+class Extrapolation {
+  public:
+    void note(const Group& g) {
+        before_.clear();
+        for (const Link& link : g.links) before_.push_back(link.friction_z);
+    }
+    void forget() { last_.clear(); }
+    /// @param g  with the frictions that follow from those that were noted
+    void extrapolate(Group& g) {
+        const bool known = !last_.empty();
+        now_.clear();
+        change_.resize(g.links.size());
+        double both = 0.0, square = 0.0;
+        for (std::size_t c = 0; c < g.links.size(); ++c) {
+            const Link& link = g.links[c];
+            const double change = link.J * (link.friction_z - before_[c]), more = change - change_[c];
+            both += change * more;
+            square += more * more;
+            change_[c] = change;
+            now_.push_back(link.friction_z);
+        }
+        if (known && square > 0.0) {
+            const double back = std::clamp(both / square, -kFarthest, 1.0),
+                         most = ball_friction(g.around.balls, 0.0);
+            for (std::size_t c = 0; c < g.links.size(); ++c) {
+                Link& link = g.links[c];
+                if (link.j >= 0 && link.J > 0.0)
+                    link.friction_z = std::clamp(now_[c] - back * (now_[c] - last_[c]), -most, most);
+            }
+        }
+        last_.swap(now_);
+    }
+
+  private:
+    static constexpr double kFarthest = 50.0;  // [changes]
+    std::vector<double> before_, now_, last_;  // frictions
+    std::vector<double> change_;               // of the vertical impulses
+};
 
 /// The impulses of the contacts that do not open, by Newton's method on J >= 0, rate >= 0, J rate = 0. That is piecewise smooth and, but
 /// for the friction between balls, monotone.
@@ -233,29 +293,51 @@ class Newton {
         }
         problem_.resize(active_.size());
         before_.resize(active_.size());
+        rates_.resize(active_.size());
+        list_contacts();
     }
 
     /// @return whether there is a solution
     bool run() {
         for (int newton = 0;; ++newton) {
             const bool stops = newton >= kStopsFrom && newton % 2 == 1;
-            respond(g_, h_, stops);
-            // What a solution takes from the one before: friction between balls, load on the cloth, turning of normals.
+            respond(g_, h_, options_.friction, stops);
+            // What a solution takes from the one before: friction between balls, turning of normals.
+            frictions_.note(g_);
             const bool changed = update(g_, h_, options_, newton);
-            if (changed) respond(g_, h_, stops);
+            if (changed) {
+                frictions_.extrapolate(g_);
+                respond(g_, h_, options_.friction, stops);
+            } else {
+                frictions_.forget();
+            }
             double worst = 0.0;
             if (is_solved(worst) && !changed) return true;
             // Where balls go over from rest to rolling and back, a share of kRestCompliance is left: no gap notices it.
             const bool harmless = !changed && worst * std::max(h_, kShortestInterval) <= kOverlapGrowth;
             if (newton >= kStopsFrom && harmless) return true;
             if (newton == kNewtonSteps) return false;
-            linearise();
-            if (!problem_.solve()) return harmless;
+            if (!solve(newton < kLoadSteps ? 1.0 : 0.0)) return harmless;
             search();
         }
     }
 
   private:
+    void list_contacts() {
+        first_.assign(g_.bodies.size() + 1, 0);
+        const auto each = [this](auto&& take) {
+            for (std::size_t k = active_.size(); k-- > 0;) {
+                const Link& link = g_.links[active_[k]];
+                take(k, link.i);
+                if (link.j >= 0) take(k, link.j);
+            }
+        };
+        each([this](std::size_t, int body) { ++first_[body]; });
+        for (std::size_t b = 1; b < first_.size(); ++b) first_[b] += first_[b - 1];
+        of_body_.resize(first_.back());
+        each([this](std::size_t k, int body) { of_body_[--first_[body]] = k; });
+    }
+
     double rate(std::size_t k) const { return wanted_rate(g_, g_.links[active_[k]], h_, options_); }
 
     // Notes the rates, and the worst that is wrong.
@@ -263,7 +345,7 @@ class Newton {
         const double rounding = rate_rounding(g_);
         bool solved = true;
         for (std::size_t k = 0; k < active_.size(); ++k) {
-            const double now = problem_.q[k] = rate(k);
+            const double now = rates_[k] = rate(k);
             const bool pressed = g_.links[active_[k]].J > 0.0;
             worst = std::max(worst, pressed ? std::abs(now) : -now);
             solved = solved && (pressed ? std::abs(now) <= rounding : now >= -rounding);
@@ -271,27 +353,49 @@ class Newton {
         return solved;
     }
 
+    // With friction there may be none, and no use in looking for it long.
+    bool solve(double lifts) {
+        linearise(lifts);
+        if (problem_.solve(!options_.friction)) return true;
+        if (lifts == 0.0) return false;
+        linearise(0.0);
+        return problem_.solve(!options_.friction);
+    }
+
     // rate + A (J - J now) for the present kinds of motion.
-    void linearise() {
-        std::fill(problem_.A.begin(), problem_.A.end(), 0.0);
+    void linearise(double lifts) {
+        problem_.q = rates_;
+        problem_.clear();
         for (std::size_t k = 0; k < active_.size(); ++k) {
             const Link& column = g_.links[active_[k]];
-            before_[k] = problem_.z[k] = column.J;
-            const auto add = [&](int body, const Vec2& dv) {
-                for (std::size_t r = 0; r < active_.size(); ++r) {
-                    const Link& row = g_.links[active_[r]];
-                    if (row.i == body) problem_.at(r, k) -= dot(row.n, dv);
-                    if (row.j == body) problem_.at(r, k) += dot(row.n, dv);
-                }
-            };
+            problem_.z[k] = column.J;
+            problem_.begin_column();
             const Body& bi = g_.bodies[column.i];
-            add(column.i, -(bi.by_push * column.n) - column.friction_z * (bi.by_couple * column.n));
-            if (column.j < 0) continue;
-            const Body& bj = g_.bodies[column.j];
-            add(column.j, bj.by_push * column.n - column.friction_z * (bj.by_couple * column.n));
+            const Vec2 dvi =
+                -(bi.by_push * column.n) - column.friction_z * (bi.by_couple * column.n - lifts * bi.by_lift);
+            double own = -dot(column.n, dvi);
+            add(k, column.i, dvi);
+            if (column.j >= 0) {
+                const Body& bj = g_.bodies[column.j];
+                const Vec2 dvj = bj.by_push * column.n -
+                                 column.friction_z * (bj.by_couple * column.n + lifts * bj.by_lift);
+                own += dot(column.n, dvj);
+                add(k, column.j, dvj);
+            }
+            problem_.add(k, own);
         }
-        for (std::size_t r = 0; r < active_.size(); ++r)
-            for (std::size_t k = 0; k < active_.size(); ++k) problem_.q[r] -= problem_.at(r, k) * before_[k];
+        before_ = problem_.z;
+        problem_.multiply_add(-1.0, before_, problem_.q);
+    }
+
+    // What the change dv of a ball's velocity changes in the rates of its contacts, but for number k.
+    void add(std::size_t k, int body, const Vec2& dv) {
+        for (std::size_t n = first_[body]; n < first_[body + 1]; ++n) {
+            const std::size_t r = of_body_[n];
+            if (r == k) continue;
+            const Link& row = g_.links[active_[r]];
+            problem_.add(r, row.i == body ? -dot(row.n, dv) : dot(row.n, dv));
+        }
     }
 
     // Without friction between balls the rates are the gradient of a convex function of the impulses: its least value on the way to the
@@ -316,7 +420,7 @@ class Newton {
     void go(double share) {
         for (std::size_t k = 0; k < active_.size(); ++k)
             g_.links[active_[k]].J = before_[k] + share * (problem_.z[k] - before_[k]);
-        respond(g_, h_);
+        respond(g_, h_, options_.friction);
     }
 
     double slope() const {
@@ -330,14 +434,16 @@ class Newton {
     const StepOptions options_;
     std::vector<std::size_t> active_;  // links
     Complementarity& problem_;
-    std::vector<double> before_;  // impulses before the step, as active_
+    Extrapolation frictions_;
+    std::vector<double> before_, rates_;  // impulses and rates before the step, as active_
+    // The contacts of each ball, as places in active_, and where those of a ball begin.
+    std::vector<std::size_t> of_body_, first_;
 };
 
 bool solve_with(Group& g, double h, const StepOptions& options) {
     if (!options.friction) {
         // Not from what a step with friction has left: balls between two walls keep any impulse.
         for (Link& link : g.links) link.friction_z = link.J = 0.0;
-        for (Body& b : g.bodies) b.load = 1.0;
     }
     return Newton(g, h, options).run();
 }
@@ -370,6 +476,10 @@ double friction_at_start(const Group& g, const Link& link) {
     return size > 0.0 ? -ball_friction(g.around.balls, size) * slip.x() / size : 0.0;
 }
 
+double slip_ended(const Group& g, const Link& link) {
+    return ease_of(g, link) * ball_friction(g.around.balls, length(contact_slip(g, link, false))) * link.J;
+}
+
 bool step(Group& g, double h, const StepOptions& options) {
     // An interval of another length is nearly solved already.
     const double share = g.solved > 0.0 ? h / g.solved : 0.0;
@@ -380,7 +490,6 @@ bool step(Group& g, double h, const StepOptions& options) {
         if (link.j >= 0) link.friction_z = options.friction ? friction_at_start(g, link) : 0.0;
     }
     for (Body& b : g.bodies) {
-        if (share == 0.0) b.load = 1.0;
         b.v_end = b.v + share * (b.v_end - b.v);
         b.s_end = b.s + share * (b.s_end - b.s);
     }
@@ -401,7 +510,7 @@ bool step(Group& g, double h, const StepOptions& options) {
 
 bool strike(Group& g) {
     g.solved = 0.0;
-    const bool solved = step(g, kInstant, {.friction = false, .stabilise = false});
+    const bool solved = step(g, 0.0, {.friction = false, .stabilise = false});
     g.solved = 0.0;
     return solved;
 }

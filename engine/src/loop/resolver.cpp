@@ -96,11 +96,10 @@ void Resolver::ball_ball(int a, int b) {
     const kernel::ImpactResult result =
         collide(one, two, kernel_ball(r1, balls_.velocity(one), balls_.spin(one)),
                 kernel_ball(r2, balls_.velocity(two), balls_.spin(two)));
-    resting_.release(one);
-    resting_.release(two);
-    begin(one, r1, vec(result.v1), vec(result.w1));
-    begin(two, r2, vec(result.v2), vec(result.w2));
     if (result.status == kernel::ImpactStatus::kOk) log_.event(EventType::kBallBall, a, b);
+    resting_.strike(one, after_impact(one, r1, vec(result.v1), vec(result.w1)));
+    resting_.strike(two, after_impact(two, r2, vec(result.v2), vec(result.w2)));
+    resting_.go_on();
 }
 
 kernel::ImpactResult Resolver::collide(int one, int two, const kernel::Ball& b1, const kernel::Ball& b2) {
@@ -184,14 +183,16 @@ bool Resolver::cluster(int a, int b, double v_n) {
     }
     if (slow && hold_in_cluster(Pressed::kAfter)) return true;
     const std::vector<ClusterBall>& members = clusters_.balls();
-    for (const ClusterBall& ball : members) resting_.release(ball.ball);
+    if (in_space)
+        for (const ClusterBall& ball : members) resting_.release(ball.ball);
     log_.cluster(a, b, members);
     for (const ClusterBall& ball : members) {
         if (in_space)
             go_on(ball.ball, ball.r, {ball.v, ball.w});
         else
-            begin(ball.ball, ball.r, ball.v, ball.w);
+            resting_.strike(ball.ball, after_impact(ball.ball, ball.r, ball.v, ball.w));
     }
+    if (!in_space) resting_.go_on();
     return true;
 }
 
@@ -231,12 +232,12 @@ void Resolver::cushion(const Contact& contact) {
         return;
     }
     if (cost_ != nullptr) cost_->method = model;
-    resting_.release(ball);
-    log_.begin(ball, after);
     for (const TableTouch& touch : touches) {
         const Contact& met = touch.approach.contact;
         log_.event(is_jaw(met, plan_.geometry) ? EventType::kBallJaw : EventType::kBallCushion, met);
     }
+    resting_.strike(ball, after);
+    resting_.go_on();
 }
 
 void Resolver::pocket(const Contact& contact) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "carom/engine/tolerances.h"
@@ -21,6 +22,8 @@ constexpr int kMostBounces = 200;
 constexpr int kHoldCounts = 20;
 // [bounces] What a cluster counts for that begins with this contact: it resolves all bounces of its balls at once, so that even a second one is rare.
 constexpr int kClusterCounts = 10;
+// [balls] Room for those of one impact; a larger cluster takes more.
+constexpr std::size_t kMostStruck = 32;
 
 EventType with_phase(EventPhase phase, const Contact& contact, const Geometry& geometry) {
     const Partner partner = contact.with == With::kBall ? Partner::kBall
@@ -48,6 +51,10 @@ Contact contact_of(const Event& event) {
     return {event.a};
 }
 
+bool lies(MotionState state) {
+    return !flies(state) && !is_gone(state) && state != MotionState::kFalling;
+}
+
 bool touches(const RestingContact& c, int ball) {
     return c.contact.ball == ball || c.contact.partner() == ball;
 }
@@ -57,6 +64,8 @@ bool touches(const RestingContact& c, int ball) {
 RestingContacts::RestingContacts(const Plan& plan, const Balls& balls, Log& log, RestingMemory& memory)
     : Borrowed(memory), plan_(plan), balls_(balls), log_(log) {
     contacts_.clear();
+    struck_.clear();
+    struck_.reserve(std::min<std::size_t>(plan.sizes.size(), kMostStruck));
 }
 
 bool RestingContacts::find(const Contact& contact) const {
@@ -141,6 +150,55 @@ void RestingContacts::release(int ball) {
     for (const RestingContact& c : ended) {
         const int partner = c.contact.ball == ball ? c.contact.partner() : c.contact.ball;
         if (partner >= 0 && balls_.segment(partner).held) solve(partner, Transitions::kNotYet);
+    }
+}
+
+const RestingContacts::Struck* RestingContacts::find_struck(int ball) const {
+    const auto it =
+        std::find_if(struck_.begin(), struck_.end(), [ball](const Struck& s) { return s.ball == ball; });
+    return it != struck_.end() ? &*it : nullptr;
+}
+
+// Whether a contact goes on after an impact of its balls.
+bool RestingContacts::goes_on(RestingContact& c) const {
+    const int i = c.contact.ball, j = c.contact.partner();
+    const Struck *const si = find_struck(i), *const sj = j >= 0 ? find_struck(j) : nullptr;
+    if (si == nullptr && sj == nullptr) return true;
+    if ((si != nullptr && !lies(si->segment.state)) || (sj != nullptr && !lies(sj->segment.state)))
+        return false;
+    refresh_normal(c);
+    const Vec2 vi = planar(si != nullptr ? si->segment.v : balls_.velocity(i));
+    const Vec2 vj = j < 0 ? Vec2(Vec2::Zero()) : planar(sj != nullptr ? sj->segment.v : balls_.velocity(j));
+    const double rate = std::abs(dot(c.n, vj - vi)), e = j >= 0 ? plan_.balls.e_b : plan_.balls.e_c;
+    return holds(rate, 2.0 * balls_.motion(i).slide, e);
+}
+
+void RestingContacts::go_on() {
+    const bool any_held = std::any_of(struck_.begin(), struck_.end(),
+                                      [this](const Struck& s) { return balls_.segment(s.ball).held; });
+    std::vector<RestingContact> ended;
+    std::vector<int> unsolved;
+    if (any_held) {
+        const auto kept = std::stable_partition(contacts_.begin(), contacts_.end(),
+                                                [this](RestingContact& c) { return goes_on(c); });
+        ended.assign(kept, contacts_.end());
+        contacts_.erase(kept, contacts_.end());
+        sort_by_place(ended);
+        for (const RestingContact& c : ended) end(c);
+        for (const Struck& s : struck_) unsolved.push_back(s.ball);
+        for (const RestingContact& c : ended)
+            for (const int ball : {c.contact.ball, c.contact.partner()})
+                if (ball >= 0 && balls_.segment(ball).held && find_struck(ball) == nullptr)
+                    unsolved.push_back(ball);
+    }
+    const std::vector<int>& touched = log_.touched();
+    const auto before = static_cast<std::ptrdiff_t>(touched.size());
+    for (const Struck& s : struck_) log_.begin(s.ball, s.segment);
+    struck_.clear();
+    for (const int ball : unsolved) {
+        // The group of another one may have solved it meanwhile.
+        const bool is_new = std::find(touched.begin() + before, touched.end(), ball) != touched.end();
+        if (!(is_new && balls_.segment(ball).held)) start(ball);
     }
 }
 

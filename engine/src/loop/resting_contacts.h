@@ -14,7 +14,13 @@
 namespace carom {
 
 struct RestingMemory {
+    /// A ball and its motion after an impact.
+    struct Struck {
+        int ball;
+        Segment segment;
+    };
     std::vector<RestingContact> contacts_;
+    std::vector<Struck> struck_;
 };
 
 class RestingContacts : private Borrowed<RestingMemory> {
@@ -41,6 +47,10 @@ class RestingContacts : private Borrowed<RestingMemory> {
     void start(int ball);
     /// Ends all resting contacts of a ball before another event changes its motion; its partners continue without it.
     void release(int ball);
+    /// Notes the motion of a ball after an impact; go_on() begins those that were noted together. Of the resting contacts of these balls
+    /// those go on that now close or open so slowly that friction alone could press or close them (holds()); the others end.
+    void strike(int ball, const Segment& after) { struck_.push_back({ball, after}); }
+    void go_on();
     /// Ends an interval of the ball's group: applies the state transitions, then starts the next interval.
     void advance(int ball);
 
@@ -49,6 +59,8 @@ class RestingContacts : private Borrowed<RestingMemory> {
     enum class Transitions : std::uint8_t { kNotYet, kDue };
 
     bool find(const Contact& contact) const;
+    const Struck* find_struck(int ball) const;
+    bool goes_on(RestingContact& contact) const;
     bool chatters(const Contact& contact) const;
     void end(const RestingContact& contact);
     void solve(int ball, Transitions transitions);
