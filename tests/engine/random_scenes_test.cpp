@@ -307,6 +307,11 @@ TEST(RandomSceneRegressions, GuidedFrictionDrivesNothing) {
     EXPECT_EQ(what_breaks(*family_scene("rings/extreme", 37)), "");
 }
 
+// An impact ended the only contact of a ball that it did not strike: that ball must not go on as if it were pushed.
+TEST(RandomSceneRegressions, WhatAnImpactLeavesIsFree) {
+    EXPECT_EQ(what_breaks(RandomScene(115203).make()), "");
+}
+
 // Three balls that lean on each other and roll off: a slip of 4e-9 m/s at the start of each interval set its length, 14 000 times.
 TEST(RandomSceneRegressions, SlipsThatEndAtOnceSetNoInterval) {
     settles_within(*family_scene("rings/wide", 15), 3000);

@@ -104,11 +104,14 @@ bool RestingContacts::try_begin(const Approach& a, double restitution) {
     return true;
 }
 
+bool RestingContacts::in_contact(int ball) const {
+    return std::any_of(contacts_.begin(), contacts_.end(),
+                       [ball](const RestingContact& c) { return touches(c, ball); });
+}
+
 void RestingContacts::start(int ball) {
     // A contact of a ball that fell has not begun.
-    if (std::any_of(contacts_.begin(), contacts_.end(),
-                    [ball](const RestingContact& c) { return touches(c, ball); }))
-        solve(ball, Transitions::kNotYet);
+    if (in_contact(ball)) solve(ball, Transitions::kNotYet);
 }
 
 // Determined from the log, so that a resumed run decides in the same way.
@@ -198,7 +201,11 @@ void RestingContacts::go_on() {
     for (const int ball : unsolved) {
         // The group of another one may have solved it meanwhile.
         const bool is_new = std::find(touched.begin() + before, touched.end(), ball) != touched.end();
-        if (!(is_new && balls_.segment(ball).held)) start(ball);
+        if (is_new && balls_.segment(ball).held) continue;
+        if (in_contact(ball))
+            solve(ball, Transitions::kNotYet);
+        else if (!is_new)
+            log_.begin(ball, free_segment(ball));
     }
 }
 
@@ -265,9 +272,8 @@ void RestingContacts::solve(int ball, Transitions transitions) {
     if (!any_released) return;
     // After a release, a ball without resting contacts is free; the others form smaller groups.
     for (const RestingBall& m : group.balls) {
-        const bool still = std::any_of(contacts_.begin(), contacts_.end(),
-                                       [&](const RestingContact& c) { return touches(c, m.ball); });
-        if (!still) log_.begin(m.ball, start_segment(balls_.now(), m.r, m.v, m.w, balls_.motion(m.ball)));
+        if (!in_contact(m.ball))
+            log_.begin(m.ball, start_segment(balls_.now(), m.r, m.v, m.w, balls_.motion(m.ball)));
     }
 }
 

@@ -59,6 +59,7 @@ class RestingContacts : private Borrowed<RestingMemory> {
     enum class Transitions : std::uint8_t { kNotYet, kDue };
 
     bool find(const Contact& contact) const;
+    bool in_contact(int ball) const;
     const Struck* find_struck(int ball) const;
     bool goes_on(RestingContact& contact) const;
     bool chatters(const Contact& contact) const;
