@@ -1,5 +1,5 @@
-// One solution of one group of resting contacts (resting.h): the step over an interval (resting_step.cpp), and how long an
-// interval may be (resting_interval.cpp). resting.cpp defines the order.
+// One solution of one group of resting contacts (resting.h): what impulses do (resting_response.cpp), the step over an interval
+// (resting_step.cpp), and how long an interval may be (resting_interval.cpp). resting.cpp defines the order.
 //
 // Everything is evaluated at the end of the interval h (an implicit step, after J. J. Moreau's time-stepping for unilateral
 // contacts with friction). For each ball, per mass, with v its velocity, s = R (w_y, -w_x) the velocity with which it would roll,
@@ -111,6 +111,12 @@ double gap_rate(const Group& g, const Link& link);
 double end_rate(const Group& g, const Link& link);
 /// [m/s] Upward slip of two balls at their contact, and the one parallel to the cloth.
 Vec2 contact_slip(const Group& g, const Link& link, bool at_end);
+
+// resting_response.cpp
+/// Moves the balls by the impulses of their contacts over h [s]; at an instant, h = 0, without friction.
+/// @param friction  whether the contacts' vertical friction loads the cloth
+/// @param stops     whether the derivatives of a ball that hardly moves are those at rest
+void respond(Group& g, double h, bool friction, bool stops = false);
 
 // resting_step.cpp
 /// Solves the step over h [s]; without friction for 0, an instant. @return whether there is a solution; without one the closest state is left

@@ -1,0 +1,125 @@
+// How the balls of a group answer the impulses of their contacts over an interval (resting_group.h).
+#include <algorithm>
+#include <cmath>
+
+#include "contact/resting_group.h"
+
+namespace carom::resting {
+
+namespace {
+
+// [of what friction takes] A ball that moves by less hardly moves.
+constexpr double kHardlyMoves = 1e-2;
+// [-] Mobility of a ball at rest in the derivatives only, so that balls at rest share a load; a sliding ball has 1. With less of it a
+// rate that is nearly right asks for impulses that set the balls moving.
+constexpr double kRestCompliance = 1e-4;
+
+Matrix identity(double c) {
+    return {c, 0.0, c};
+}
+
+// c (1 - d d^T)
+Matrix across_of(double c, const Vec2& d) {
+    return {c * (d.y() * d.y()), -c * (d.x() * d.y()),
+            c * (d.x() * d.x())};  // the products first: the same turned
+}
+
+Matrix minus(const Matrix& a, const Matrix& b) {
+    return {a.xx - b.xx, a.xy - b.xy, a.yy - b.yy};
+}
+
+Matrix times(double c, const Matrix& a) {
+    return {c * a.xx, c * a.xy, c * a.yy};
+}
+
+void slide(Body& b, const Vec2& friction) {
+    b.mode = Mode::kSliding;
+    b.v_end = b.v + b.push + friction;
+    b.s_end = b.s + 2.5 * (b.couple - friction);
+}
+
+// The motion of a ball under the impulses on it, and its derivatives.
+void respond(const Group& g, Body& b, double h, bool stops) {
+    const double grip = g.motion.slide * b.load * h, drag = std::min(g.motion.roll * h, grip);
+    const bool slips = moves(b.u);
+    const double by_load = b.load > 0.0 && g.around.gravity > 0.0 ? g.motion.slide / g.around.gravity : 0.0;
+    b.by_lift = Vec2::Zero();
+    if (h == 0.0) {
+        slide(b, Vec2::Zero());
+        b.by_push = identity(1.0);
+        b.by_couple = {};
+        return;
+    }
+    if (b.guided && slips) {
+        slide(b, -grip * b.guide);
+        b.by_push = identity(1.0);
+        b.by_couple = {};
+        b.by_lift = by_load * b.guide;
+        return;
+    }
+    const Vec2 slip = b.u + b.push - 2.5 * b.couple;
+    const double size = length(slip);
+    if (size > 3.5 * grip) {
+        const Vec2 d = slip / size;
+        slide(b, -grip * d);
+        const Matrix turn = across_of(grip / size, d);
+        b.by_push = minus(identity(1.0), turn);
+        b.by_couple = times(2.5, turn);
+        b.by_lift = by_load * d;
+        return;
+    }
+    const Vec2 rolls = b.v + b.push - slip * (2.0 / 7.0);
+    const double speed = length(rolls);
+    // A ball that begins with a slip rolls at the end at most: it is not braked yet.
+    if (slips || drag == 0.0) {
+        b.mode = Mode::kRolling;
+        b.v_end = rolls;
+        b.by_push = b.by_couple = identity(5.0 / 7.0);
+    } else if (b.guided) {
+        b.mode = Mode::kRolling;
+        b.v_end = rolls - drag * b.guide;
+        b.by_push = b.by_couple = identity(5.0 / 7.0);
+    } else if (speed > drag) {
+        const Vec2 d = rolls / speed;
+        b.mode = Mode::kRolling;
+        b.v_end = rolls - drag * d;
+        b.by_push = b.by_couple = stops && speed <= (1.0 + kHardlyMoves) * drag
+                                      ? identity(kRestCompliance)
+                                      : minus(identity(5.0 / 7.0), across_of((5.0 / 7.0) * drag / speed, d));
+    } else {
+        b.mode = Mode::kResting;
+        b.v_end = Vec2::Zero();
+        b.by_push = b.by_couple = identity(kRestCompliance);
+    }
+    if (!moves(b.v_end)) b.mode = Mode::kResting;
+    b.s_end = b.v_end;
+}
+
+}  // namespace
+
+void respond(Group& g, double h, bool friction, bool stops) {
+    for (Body& b : g.bodies) {
+        b.push = b.couple = Vec2::Zero();
+        b.lift = b.impulses = 0.0;
+    }
+    for (const Link& link : g.links) {
+        Body& bi = g.bodies[link.i];
+        bi.push -= link.J * link.n;
+        bi.couple -= link.friction_z * link.J * link.n;
+        bi.lift += link.friction_z * link.J;
+        bi.impulses += std::abs(link.J);
+        if (link.j < 0) continue;
+        Body& bj = g.bodies[link.j];
+        bj.push += link.J * link.n;
+        bj.couple -= link.friction_z * link.J * link.n;
+        bj.lift -= link.friction_z * link.J;
+        bj.impulses += std::abs(link.J);
+    }
+    const double weight = g.around.gravity * h;
+    for (Body& b : g.bodies) {
+        b.load = friction && weight > 0.0 ? std::max(0.0, 1.0 - b.lift / weight) : 1.0;
+        respond(g, b, h, stops);
+    }
+}
+
+}  // namespace carom::resting
