@@ -14,9 +14,9 @@ constexpr int kBlockTries = 8;
 // smallest eigenvalue, so more of them help only where the matrix is singular to rounding.
 constexpr int kMoreRefinements = 20;
 constexpr double kSlowRow = 0.25, kSlowestRow = 0.9999;  // [-] extrapolated ratios of successive refinements
-// [-] Softness, relative to the mobility, with which a solution is approached, and most approaches.
+// [-] Softness, relative to the mobility, with which a solution is approached, and most rounds.
 constexpr double kApproachSoftness = 1e-4;
-constexpr int kApproaches = 40;
+constexpr int kMostRounds = 40;
 constexpr double kSumUlp = 4.0;  // [ulp of a row's terms] a smaller residual is the rounding of their sum
 }  // namespace
 
@@ -197,7 +197,7 @@ bool Complementarity::approach() {
     });
     std::fill(z.begin(), z.end(), 0.0);
     bool found = false;
-    for (int round = 0; round < kApproaches; ++round) {
+    for (int round = 0; round < kMostRounds; ++round) {
         before = z;
         for (std::size_t c = 0; c < size; ++c) q[c] = wanted[c] - soft[c] * before[c];
         if (!exchange(200 + 20 * size)) {
