@@ -44,6 +44,7 @@ void respond(const Group& g, Body& b, double h, bool stops) {
     const bool slips = moves(b.u);
     const double by_load = b.load > 0.0 && g.around.gravity > 0.0 ? g.motion.slide / g.around.gravity : 0.0;
     b.by_lift = Vec2::Zero();
+    // At an instant there is no friction.
     if (h == 0.0) {
         slide(b, Vec2::Zero());
         b.by_push = identity(1.0);
