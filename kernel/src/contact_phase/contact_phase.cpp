@@ -298,9 +298,11 @@ long integrate(const ContactPhase& phase, const HertzLaw& law, double longest_st
         const double h = step(w, lanes, kShortest * longest_step, longest, next);
         ++steps;
         time += h;
-        if (any_overlap(w)) continue;
+        if (any_pressed(w, law, time_limit - time)) continue;
         const double flight = next_touch(w);
         if (!(flight < look_ahead)) break;
+        // What overlaps and does not push goes on opening.
+        if (any_overlap(w)) continue;
         fly(phase, w, flight, look_ahead);
         time += flight;
     }

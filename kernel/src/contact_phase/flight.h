@@ -22,6 +22,17 @@ CAROM_INLINE bool any_overlap(const Work& w) {
     return bits != 0;
 }
 
+// Whether a contact overlaps that has something left to do.
+CAROM_INLINE bool any_pressed(const Work& w, const HertzLaw& law, double time_left) {
+    for (int c = 0; c < w.contacts; ++c) {
+        const double d = w.d[c];
+        if (!(d > 0.0)) continue;
+        const double F = normal_force(law.a, law.b, law.p, d, w.inverse[c]);
+        if (!is_over(F, d, w.rate[0][c], time_left)) return true;
+    }
+    return false;
+}
+
 constexpr double kNever = 1e300;
 
 // The motion of two balls along and across their line of centres, while nothing pushes them. Lengths in L, kappa = L/(2 R).
@@ -63,11 +74,11 @@ CAROM_INLINE void turn_by_flight(const Way& way, double s, double& nx, double& n
     ny = y / length;
 }
 
-// When the next contact closes, if nothing overlaps.
+// When the next contact closes, if nothing pushes.
 CAROM_INLINE double next_touch(const Work& w) {
     double first = kNever;
     for (int c = 0; c < w.contacts; ++c) {
-        if (w.rate[0][c] > 0.0) first = smallest(first, way(w, c, w.nx[c], w.ny[c], -w.d[c]).touch());
+        if (w.rate[0][c] > kNothing) first = smallest(first, way(w, c, w.nx[c], w.ny[c], -w.d[c]).touch());
     }
     return first;
 }

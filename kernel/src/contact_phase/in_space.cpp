@@ -77,7 +77,7 @@ class InSpace {
         double time = 0.0;
         for (long steps = 1; time < time_limit; ++steps) {
             time += step(longest_step);
-            if (overlaps()) continue;
+            if (presses(time_limit - time)) continue;
             const double flight = next_touch();
             if (!(flight < look_ahead)) {
                 for (int b = 0; b < phase_.balls; ++b) {
@@ -86,6 +86,7 @@ class InSpace {
                 }
                 return steps;
             }
+            if (overlaps()) continue;
             for (int b = 0; b < phase_.balls; ++b) add(y_ + kPerState * b, flight * at(velocity(y_, b)));
             time += flight;
         }
@@ -111,11 +112,15 @@ class InSpace {
         return {n, diameter_ - distance, dot(closing(y, c), n)};
     }
 
+    double force(int c, const Now& now) const {
+        const double inverse = memory_[c] > 0.0 ? 1.0 / memory_[c] : kNoMemory;
+        return normal_force(law_.a, law_.b, law_.p, now.overlap, inverse);
+    }
+
     // Adds the forces of a contact to the slopes of its balls: (3.1) to (3.3) with springs.
     void push(const double* y, int c, const Now& now, double* slope) {
         const int i = phase_.contact[c].i, j = phase_.contact[c].j;
-        const double inverse = memory_[c] > 0.0 ? 1.0 / memory_[c] : kNoMemory;
-        const double F = normal_force(law_.a, law_.b, law_.p, now.overlap, inverse);
+        const double F = force(c, now);
         const Vector v = closing(y, c), spins = at(spin(y, i)) + at(spin(y, j));
         const Vector slip = (v - now.rate * now.n) + cross(spins, now.n);
         const double size = square_root(dot(slip, slip) + law_.epsilon * law_.epsilon);
@@ -207,7 +212,16 @@ class InSpace {
         return false;
     }
 
-    // When the next contact closes, if nothing overlaps: |z - v s| = 2 R, without the difference of numbers that are
+    // Whether a contact overlaps that has something left to do.
+    bool presses(double time_left) const {
+        for (int c = 0; c < phase_.contacts; ++c) {
+            const Now now = look(y_, c);
+            if (now.overlap > 0.0 && !is_over(force(c, now), now.overlap, now.rate, time_left)) return true;
+        }
+        return false;
+    }
+
+    // When the next contact closes, if nothing pushes: |z - v s| = 2 R, without the difference of numbers that are
     // nearly equal.
     double next_touch() const {
         double first = kNever;
@@ -216,7 +230,7 @@ class InSpace {
             const double towards = dot(v, z), distance = square_root(dot(z, z));
             const double q = (distance - diameter_) * (distance + diameter_),
                          root2 = towards * towards - dot(v, v) * q;
-            if (towards > 0.0 && root2 >= 0.0) first = smallest(first, q / (towards + square_root(root2)));
+            if (towards > kNothing * distance && root2 >= 0.0) first = smallest(first, q / (towards + square_root(root2)));
         }
         return first;
     }

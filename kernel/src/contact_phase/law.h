@@ -77,6 +77,16 @@ CAROM_INLINE T normal_force(T a, T b, int p, T d, T inverse) {
     return select(share < fill<T>(1.0), loading * (a + b * power), loading);
 }
 
+// What a contact changes in the speeds of its balls from here on, [V], may be left out below this: it is rounding. Balls that move on together close at
+// such speeds without end.
+constexpr double kNothing = 1e-12;
+
+// Whether a contact that overlaps by d has nothing left to do: it closes at kNothing at most, and its force F pushes no more than that until
+// it has opened, or in the time that is left.
+CAROM_INLINE bool is_over(double F, double d, double rate, double time_left) {
+    return rate <= kNothing && (F * time_left <= kNothing || F * d <= -rate * kNothing);
+}
+
 // The largest overlap inside a step in which the overlap stopped growing, from the cubic Hermite interpolant. Without
 // it the energy of each contact has an error of order h^2.
 CAROM_INLINE double peak(double before, double after, double m0, double m1) {
