@@ -188,6 +188,23 @@ TEST(ClusterInSpace, LevelWithoutClothIsTheMapOnTheCloth) {
     EXPECT_LT(worst, 1e-5);
 }
 
+// Two balls that move on together close at the rounding of their speeds, which has no end: nothing waits for it.
+TEST(ClusterInSpace, EndsWhenNothingIsLeftToDo) {
+    const double V = 2.0, D = 2.0 * kPoolR;
+    std::vector<ClusterBall> balls{ball(0, {0.0, -D, kPoolR}, {0.0, V, 0.0}), ball(1, {0.0, 0.0, kPoolR}),
+                                   ball(2, {D, 0.0, kPoolR}, {0.2 * V * (1.0 + 1e-16), 0.0, 0.0}),
+                                   ball(3, {2.0 * D, 0.0, kPoolR}, {0.2 * V * (1.0 - 1e-16), 0.0, 0.0})};
+    ASSERT_GT(balls[2].v.x(), balls[3].v.x());
+    MovingLaw law = pool_law();
+    law.mu_b = law.mu_b_more = 0.0;
+    ClusterMap map;
+    const std::vector<ClusterContact> contacts{{0, 1, {0.0, 1.0, 0.0}, 0.0}, {2, 3, {1.0, 0.0, 0.0}, 0.0}};
+    const long steps = map.compliant_in_space(balls, contacts, settings_of(law), V);
+    EXPECT_GT(steps, 0);
+    EXPECT_LT(steps, 300);
+    EXPECT_NEAR(balls[3].v.x(), 0.2 * V, 1e-15 * V);
+}
+
 // As rigid bodies: the ball that comes down goes up again, and nothing goes through the cloth.
 TEST(ClusterInSpace, RigidKeepsBallsOnTheCloth) {
     const double root3 = std::sqrt(3.0), height = std::sqrt(8.0 / 3.0) * kPoolR;

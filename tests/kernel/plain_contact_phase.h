@@ -61,9 +61,10 @@ class Plain {
         double time = 0.0;
         for (long steps = 1; time < kTimeLimit; ++steps) {
             time += step(settle(longest_step), longest_step / 64.0);
-            if (overlapping()) continue;
+            if (pressed(kTimeLimit - time)) continue;
             const double flight = next_touch();
             if (!(flight < kLookAhead)) return steps;
+            if (overlapping()) continue;
             fly(flight);
             time += flight;
         }
@@ -118,6 +119,17 @@ class Plain {
 
     bool overlapping() const {
         return std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.d > 0.0; });
+    }
+
+    // Whether a contact can change a speed by more than 1e-12 V.
+    bool pressed(double time_left) const {
+        for (std::size_t c = 0; c < contacts_.size(); ++c) {
+            const double d = contacts_[c].d, opens = -rate(c);
+            if (!(d > 0.0)) continue;
+            const double F = force(contacts_[c], d);
+            if (opens < -1e-12 || (F * time_left > 1e-12 && F * d > opens * 1e-12)) return true;
+        }
+        return false;
     }
 
     struct Way {
@@ -203,16 +215,18 @@ class Plain {
         contact.n = {x / length, y_ / length};
     }
 
+    double force(const Contact& contact, double d) const {
+        double share = d * (1.0 / contact.memory);
+        if (!(share < 1.0)) return d * std::sqrt(d);
+        for (int p = law_.p; p > 1; p /= 2) share *= share;
+        return d * std::sqrt(d) * (law_.a + law_.b * share);
+    }
+
     void push(const std::vector<double>& at, double d, std::size_t c, double nx, double ny,
               Slope& slope) const {
         const auto i = static_cast<std::size_t>(start_[c].i), j = static_cast<std::size_t>(start_[c].j);
         const double *yi = &at[5 * i], *yj = &at[5 * j];
-        double F = d * std::sqrt(d);
-        double share = d * (1.0 / contacts_[c].memory);
-        if (share < 1.0) {
-            for (int p = law_.p; p > 1; p /= 2) share *= share;
-            F *= law_.a + law_.b * share;
-        }
+        const double F = force(contacts_[c], d);
         const double sx = (yi[0] - yj[0]) * ny - (yi[1] - yj[1]) * nx - (yi[4] + yj[4]);
         const double sz = (yi[2] + yj[2]) * ny - (yi[3] + yj[3]) * nx;
         const double slip2 = sx * sx + sz * sz + law_.epsilon * law_.epsilon, slip = std::sqrt(slip2);

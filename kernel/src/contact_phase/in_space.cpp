@@ -230,7 +230,8 @@ class InSpace {
             const double towards = dot(v, z), distance = square_root(dot(z, z));
             const double q = (distance - diameter_) * (distance + diameter_),
                          root2 = towards * towards - dot(v, v) * q;
-            if (towards > kNothing * distance && root2 >= 0.0) first = smallest(first, q / (towards + square_root(root2)));
+            if (towards > kNothing * distance && root2 >= 0.0)
+                first = smallest(first, q / (towards + square_root(root2)));
         }
         return first;
     }
