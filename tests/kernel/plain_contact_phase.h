@@ -60,7 +60,7 @@ class Plain {
         next_ = longest_step;
         double time = 0.0;
         for (long steps = 1; time < kTimeLimit; ++steps) {
-            time += step(settle(longest_step), longest_step / 64.0);
+            time += step(settle(longest_step * slowness()), longest_step / 64.0);
             if (pressed(kTimeLimit - time)) continue;
             const double flight = next_touch();
             if (!(flight < kLookAhead)) return steps;
@@ -309,6 +309,23 @@ class Plain {
         return ratio > 1.0 ? std::max(before, ratio * h) : std::max(0.5, ratio) * h;
     }
 
+    bool has_friction() const { return law_.mu_b > 0.0 || law_.mu_b_more > 0.0; }
+
+    // How much longer steps may be without friction, where all is slow.
+    double slowness() const {
+        if (has_friction()) return 1.0;
+        double fastest = 0.0;
+        for (std::size_t c = 0; c < contacts_.size(); ++c) {
+            Contact contact = contacts_[c];
+            const double closes = rate(c);
+            if (closes <= 0.0 && contact.d <= 0.0) continue;
+            if (closes > 0.0) contact.memory = 0.0;
+            const double energy = contact.d > 0.0 ? contact.d * force(contact, contact.d) : 0.0;
+            fastest = std::max(fastest, closes * closes + energy);
+        }
+        return fastest < 1.0 ? std::min(16.0, 1.0 / std::sqrt(std::sqrt(fastest))) : 1.0;
+    }
+
     double step(double longest, double shortest) {
         std::array<Slope, 4> k;
         std::vector<double> now;
@@ -320,10 +337,10 @@ class Plain {
                 least = std::min(least, k[0].limit[static_cast<std::size_t>(start_[c].i)] +
                                             k[0].limit[static_cast<std::size_t>(start_[c].j)]);
         }
-        longest = std::min(longest, next_);
+        if (has_friction()) longest = std::min(longest, next_);
         double h = 4.8 / 3.5 < longest * -least ? 4.8 / 3.5 / -least : longest;
         // The classical method where nothing is stiff, else Simpson's weights at 0, 1/4, 1/2, 1.
-        const bool stiff = law_.mu_b > 0.0 || law_.mu_b_more > 0.0;
+        const bool stiff = has_friction();
         const std::array<double, 4> node = {0.0, stiff ? 0.25 : 0.5, 0.5, 1.0},
                                     weight = {1.0 / 6.0, stiff ? 0.0 : 1.0 / 3.0,
                                               stiff ? 2.0 / 3.0 : 1.0 / 3.0, 1.0 / 6.0};

@@ -240,14 +240,28 @@ CAROM_INLINE double stable_step(const Work& w, const double* dy, double longest)
     return kStableShare < longest * worst ? kStableShare / worst : longest;
 }
 
+// The square of the fastest contact's speed (slowness()); of what opens, only what overlaps counts.
+template <bool kFalls>
+CAROM_INLINE double fastest_squared(const Work& w, const Law<kFalls>& law) {
+    const Four none = broadcast<4>(0.0), first = broadcast<4>(kNoMemory);
+    Four most = none;
+    for (int c = 0; c < w.lanes; c += 4) {
+        const Four d = load<4>(w.d + c), rate = load<4>(w.rate[0] + c), overlap = larger(d, none);
+        const Four memory = select(none < rate, first, load<4>(w.inverse + c));
+        const Four speed = select(none < d, rate, larger(rate, none));
+        most = larger(most, speed * speed + overlap * normal_force(law.a, law.b, law.p, overlap, memory));
+    }
+    return largest_lane(most);
+}
+
 // One Runge-Kutta step; returns its length. At entry rate[0] belongs to the state. `longest` is its limit; the error, which friction
-// makes, sets that of the next step into `next`.
+// makes, sets that of the next step into `next`; without friction `next` is not read.
 template <bool kFalls>
 CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double shortest, double longest, double& next) {
     const RungeKutta& method = law.friction ? kStabilised : kClassical;
     const int count = kRow * w.rows;
     forces<false>(w, law, w.y, w.d, 0.0, w.dy[0], nullptr);
-    double h = stable_step(w, w.dy[0], smallest(longest, next));
+    double h = law.friction ? stable_step(w, w.dy[0], smallest(longest, next)) : longest;
     for (;;) {
         for (int k = 1; k < kStages; ++k) {
             const double time = h * method.node[k];
@@ -294,7 +308,9 @@ long integrate(const ContactPhase& phase, const HertzLaw& law, double longest_st
     double time = 0.0;
     for (;;) {
         if (!(time < time_limit)) return -1;
-        const double longest = w.shares ? settle(phase, w, longest_step) : longest_step;
+        const double most =
+            lanes.friction ? longest_step : longest_step * slowness(fastest_squared(w, lanes));
+        const double longest = w.shares ? settle(phase, w, most) : most;
         const double h = step(w, lanes, kShortest * longest_step, longest, next);
         ++steps;
         time += h;

@@ -165,7 +165,7 @@ class InSpace {
         }
         const bool friction = has_friction(law_);
         const RungeKutta& method = friction ? kStabilised : kClassical;
-        const double limit = smallest(longest, next_);
+        const double limit = friction ? smallest(longest, next_) : longest * slowness(fastest_squared());
         double h = kStableShare < limit * most ? kStableShare / most : limit;
         for (;;) {
             for (int k = 1; k < kStages; ++k) {
@@ -185,6 +185,17 @@ class InSpace {
                           (w[2] * slope_[2][n] + w[3] * slope_[3][n]));
         for (int c = 0; c < phase_.contacts; ++c) remember(c, h);
         return h;
+    }
+
+    // The square of the fastest contact's speed before the step (slowness()).
+    double fastest_squared() const {
+        double most = 0.0;
+        for (int c = 0; c < phase_.contacts; ++c) {
+            const double d = largest(0.0, before_[c]), rate = d > 0.0 ? rate_[c] : largest(0.0, rate_[c]);
+            const double inverse = rate <= 0.0 && memory_[c] > 0.0 ? 1.0 / memory_[c] : kNoMemory;
+            most = largest(most, rate * rate + d * normal_force(law_.a, law_.b, law_.p, d, inverse));
+        }
+        return most;
     }
 
     // The largest difference of a velocity or spin from the midpoint rule.
