@@ -137,8 +137,10 @@ TEST_F(Mistakes, ARecordIsNoScene) {
     const std::string record = folder_.file("r.json");
     ASSERT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
     for (const char* command : {"simulate", "check", "margin"})
-        refused("this is JSON, and a scene is TOML; if it is a record, carom render, view and export take it",
-                {command, record});
+        refused(
+            "this is JSON, and a scene is TOML; if it is a record, carom render, view, export and compare "
+            "take it",
+            {command, record});
 }
 
 TEST_F(Mistakes, NumbersOfAnotherUnitAreWarnedAbout) {
