@@ -48,6 +48,12 @@ TEST(CliDescribe, BashOffersCommandsOptionsValuesAndFiles) {
     folder.write("completion", described("bash"));
     folder.write("a shot.toml", "");
     EXPECT_EQ(offered(folder, {"carom", "s"}), (Words{"simulate", "sweep"}));
+    EXPECT_EQ(offered(folder, {"carom", "co"}), Words{"compare"});
+    EXPECT_EQ(offered(folder, {"carom", "compare", "--to"}), Words{"--tolerance"});
+    EXPECT_EQ(offered(folder, {"carom", "compare", "a"}), Words{"a shot.toml"});
+    EXPECT_EQ(offered(folder, {"carom", "compare", "a shot.toml", "a"}), Words{"a shot.toml"});
+    EXPECT_EQ(offered(folder, {"carom", "export", "a"}), Words{"a shot.toml"});
+    EXPECT_EQ(offered(folder, {"carom", "validate", "a"}), Words{});
     EXPECT_EQ(offered(folder, {"carom", "--v"}), Words{"--version"});
     EXPECT_EQ(offered(folder, {"carom", "bench", "k"}), Words{"kernel"});
     EXPECT_EQ(offered(folder, {"carom", "bench", "kernel", "--ran"}), Words{"--random"});

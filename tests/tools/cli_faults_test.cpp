@@ -70,13 +70,15 @@ TEST_F(Faults, AFileThatMayNotGrowIsNamedAndNotLeftHalf) {
         {"simulate", scene_, "--sample-dt", "0.1", "--samples"},
         {"margin", scene_, "--no-render", "--csv"},
         {"margin", scene_, "--no-render", "--trace"},
+        {"compare", scene_, scene_, "--plot"},
         {"accuracy", scene_, "--repeat", "1", "--csv"},
         {"render", scene_, "--size", "320x180", "--at", "0.5", "-o"},
         {"render", scene_, "--size", "320x180", "--sheet", "2x2", "-o"},
     };
     for (std::vector<std::string> command : commands) {
         const bool frames = std::find(command.begin(), command.end(), "--at") != command.end();
-        command.push_back(folder_.file(frames ? "out%d.png" : "out.png"));
+        const bool plot = command.back() == "--plot";
+        command.push_back(folder_.file(frames ? "out%d.png" : plot ? "out.svg" : "out.png"));
         ProcessOptions options;
         options.file_limit = 500;
         const ProcessResult result = carom(command, options);
@@ -96,6 +98,7 @@ TEST_F(Faults, AFolderThatTakesNoFilesIsNamed) {
              {"simulate", scene_, "--events", "/proc/carom.csv"},
              {"margin", scene_, "--no-render", "--csv", "/proc/carom.csv"},
              {"margin", scene_, "--no-render", "--plot", "/proc/carom.svg"},
+             {"compare", scene_, scene_, "--plot", "/proc/carom.svg"},
              {"accuracy", scene_, "--repeat", "1", "--plot", "/proc/carom.svg"},
              {"render", scene_, "--at", "0.1", "--size", "64x36", "-o", "/proc/carom%d.png"}}) {
         const ProcessResult result = carom(command);
@@ -109,6 +112,8 @@ TEST_F(Faults, AReaderThatLeavesEndsEveryCommandQuietly) {
          std::vector<std::vector<std::string>>{{"simulate", scene_},
                                                {"simulate", scene_, "--json"},
                                                {"check", scene_},
+                                               {"compare", scene_, scene_},
+                                               {"compare", scene_, scene_, "--json"},
                                                {"margin", scene_, "--no-render"},
                                                {"accuracy", scene_, "--repeat", "1"},
                                                {"render", scene_, "--raw", "--size", "64x36"}}) {

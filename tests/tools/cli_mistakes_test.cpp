@@ -45,6 +45,26 @@ TEST_F(Mistakes, AMistypedCommandNamesTheNearest) {
     refused("name a command before the file, as in carom simulate " + scene_, {scene_});
 }
 
+TEST_F(Mistakes, MistypedKeysAndValuesNameTheNearest) {
+    const struct {
+        const char *text, *message;
+    } kCases[] = {
+        {"[cue]\nsped = 2\n", "typo.toml:2:1: unknown key \"sped\" in [cue]; the keys there are preset"},
+        {"[cue]\nsped = 2\n", "; did you mean speed?\n"},
+        {"[table]\npreset = \"nine_fot\"\n", "; did you mean nine_foot?\n"},
+        {"[physics]\ncushion = \"stonge\"\n", "; did you mean stronge?\n"},
+    };
+    for (const auto& c : kCases) refused(c.message, {"check", folder_.write("typo.toml", c.text)});
+    refused("unknown key \"sped\" in [cue]",
+            {"sweep", scene_, "--vary", "cue.sped=normal(1)", "--count", "2", "-o", folder_.file("t.csv")});
+    const std::string picture = folder_.file("f.png");
+    refused(
+        "--camera: palyer not in {top,rail,player,follow}; did you mean player? See carom render --help\n",
+        {"render", scene_, "--at", "0", "--camera", "palyer", "-o", picture});
+    refused("; did you mean trails?\n",
+            {"render", scene_, "--at", "0", "--overlay", "spin,trial", "-o", picture});
+}
+
 TEST_F(Mistakes, HelpAndVersionAreWordsToo) {
     EXPECT_EQ(carom({"help"}).out, carom({"--help"}).out);
     EXPECT_EQ(carom({"help", "sweep"}).out, carom({"sweep", "--help"}).out);
@@ -117,8 +137,10 @@ TEST_F(Mistakes, ARecordIsNoScene) {
     const std::string record = folder_.file("r.json");
     ASSERT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
     for (const char* command : {"simulate", "check", "margin"})
-        refused("this is JSON, and a scene is TOML; if it is a record, carom render, view and export take it",
-                {command, record});
+        refused(
+            "this is JSON, and a scene is TOML; if it is a record, carom render, view, export and compare "
+            "take it",
+            {command, record});
 }
 
 TEST_F(Mistakes, NumbersOfAnotherUnitAreWarnedAbout) {

@@ -97,7 +97,9 @@ TEST_F(OnATerminal, SimulateMoves) {
         "2.54]\n"
         "[[table.cushion]]\nfrom = [1.27, 2.54]\nto = [1.27, 0]\n[[table.cushion]]\nfrom = [1.27, 0]\nto = "
         "[0, 0]\n";
-    moves_and_stops({"simulate", folder_.write("endless.toml", box + bare)}, "simulating: ");
+    const std::string scene = folder_.write("endless.toml", box + bare);
+    moves_and_stops({"simulate", scene}, "simulating: ");
+    moves_and_stops({"compare", scene_, scene}, "simulating: ");
 }
 
 // The summary has a line of its own, and so has every line after it.

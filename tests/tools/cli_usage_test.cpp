@@ -18,7 +18,8 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "a command is missing: simulate, render, view, export, margin, accuracy, sweep, validate, check, "
+         "a command is missing: simulate, render, view, export, compare, margin, accuracy, sweep, validate, "
+         "check, "
          "impact, "
          "bench or "
          "describe; see carom --help"},
@@ -61,6 +62,8 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         {{"margin", scene, "--sweep", "--fps", "60"}, "--sweep goes through the frame rates"},
         {{"margin", scene, "--sweep", "--trace", folder.file("t.json")}, "--trace is of one setting"},
         {{"margin", scene, "--plot", folder.file("t.png")}, "a name that ends in .svg"},
+        {{"compare", scene}, "B is required; see carom compare --help"},
+        {{"compare", scene, scene, "more"}, "more"},
         {{"check", scene, "more"}, "more"},
         {{"impact", "--method", "magic"}, "magic"},
         {{"impact", "--substeps", "0"}, "--substeps"},
@@ -83,8 +86,8 @@ TEST(CliUsage, VersionAndHelpExit0) {
     EXPECT_EQ(carom({"--version"}).out, "carom " CAROM_VERSION "\n");
     const ProcessResult help = carom({"--help"});
     EXPECT_EQ(help.status, 0);
-    for (const char* command :
-         {"simulate", "render", "margin", "accuracy", "sweep", "validate", "check", "impact", "describe"}) {
+    for (const char* command : {"simulate", "render", "compare", "margin", "accuracy", "sweep", "validate",
+                                "check", "impact", "describe"}) {
         EXPECT_TRUE(contains(help.out, command)) << command;
         const ProcessResult result = carom({command, "--help"});
         EXPECT_EQ(result.status, 0) << command;
@@ -93,8 +96,8 @@ TEST(CliUsage, VersionAndHelpExit0) {
 }
 
 TEST(CliUsage, HelpNamesEveryDefault) {
-    for (const char* command :
-         {"simulate", "render", "margin", "accuracy", "sweep", "validate", "check", "impact", "describe"}) {
+    for (const char* command : {"simulate", "render", "compare", "margin", "accuracy", "sweep", "validate",
+                                "check", "impact", "describe"}) {
         // Options begin with two blanks and a dash; their text may go on in the lines below.
         std::string option;
         const auto has_default = [&option] {

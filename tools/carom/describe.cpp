@@ -29,9 +29,9 @@ std::string meaning(const Option& row) {
 }
 
 bool takes_file(const Option& row) {
-    for (const char* word : {"FILE", "SCENE", "PATTERN"})
-        if ((row.value + " " + row.names.front()).find(word) != std::string::npos) return true;
-    return false;
+    // What is known by its place is a scene or a record, but for the cases of carom validate.
+    if (row.by_place()) return row.choices.empty() && row.names.front() != "CASE";
+    return row.value.find("FILE") != std::string::npos || row.value.find("PATTERN") != std::string::npos;
 }
 
 std::string joined(const std::vector<std::string>& words, const char* between) {

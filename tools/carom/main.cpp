@@ -14,6 +14,7 @@ void add_simulate(Options& program);
 void add_render(Options& program);
 void add_view(Options& program);
 void add_export(Options& program);
+void add_compare(Options& program);
 void add_margin(Options& program);
 void add_accuracy(Options& program);
 void add_sweep(Options& program);
@@ -42,6 +43,7 @@ int run(int argc, char** argv) {
     add_render(program);
     add_view(program);
     add_export(program);
+    add_compare(program);
     add_margin(program);
     add_accuracy(program);
     add_sweep(program);

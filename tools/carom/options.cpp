@@ -15,6 +15,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/nearest.h"
 #include "carom/engine/printable.h"
 #include "console.h"
 
@@ -43,9 +44,20 @@ class HelpFormatter : public CLI::Formatter {
     }
 };
 
+/// CLI::IsMember, with the nearest choice in the message.
+CLI::Validator is_choice(const std::vector<std::string>& choices) {
+    const std::string all = fmt::format("{{{}}}", fmt::join(choices, ","));
+    const auto problem = [choices, all](const std::string& text) {
+        if (std::find(choices.begin(), choices.end(), text) != choices.end()) return std::string();
+        return fmt::format("{} not in {}{}", printable(text), all,
+                           did_you_mean(text, {choices.begin(), choices.end()}));
+    };
+    return {problem, all};
+}
+
 void restrict(CLI::Option& option, CLI::App& app, const Option& row) {
     if (!row.value.empty()) option.type_name(row.value);
-    if (!row.choices.empty()) option.check(CLI::IsMember(row.choices));
+    if (!row.choices.empty()) option.check(is_choice(row.choices));
     if (!row.needs.empty()) option.needs(app.get_option(row.needs));
     if (!row.excludes.empty()) option.excludes(app.get_option(row.excludes));
     option.required(row.required);
@@ -116,21 +128,6 @@ std::string path_of(const CLI::App& app) {
     return app.get_name() + (named.empty() ? "" : " " + path_of(*named.front()));
 }
 
-/// Steps from one word to the other, each a letter more, less, or another one.
-std::size_t edits(std::string_view from, std::string_view to) {
-    std::vector<std::size_t> row(to.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < from.size(); ++i) {
-        std::size_t before = std::exchange(row[0], i + 1);
-        for (std::size_t k = 0; k < to.size(); ++k) {
-            const std::size_t changed = before + (from[i] == to[k] ? 0 : 1);
-            before = row[k + 1];
-            row[k + 1] = std::min({changed, row[k] + 1, before + 1});
-        }
-    }
-    return row.back();
-}
-
 /// The arguments in the order that CLI11 wants, the last one first. `carom help [COMMAND]` and `carom version` are `--help` and
 /// `--version`, and a first word that is no command is told apart from an option. @throws UsageError
 std::vector<std::string> with_spelled_help(const Options& program, int argc, char** argv) {
@@ -145,18 +142,14 @@ std::vector<std::string> with_spelled_help(const Options& program, int argc, cha
     } else if (!words.empty() && words[0] == "version") {
         words[0] = "--version";
     } else if (!words.empty() && !words[0].starts_with('-') && !named(words[0])) {
-        const auto nearest = std::min_element(program.commands.begin(), program.commands.end(),
-                                              [&words](const Options& x, const Options& y) {
-                                                  return edits(words[0], x.name) < edits(words[0], y.name);
-                                              });
         if (std::filesystem::exists(words[0]))
             throw UsageError(fmt::format("{}: name a command before the file, as in carom simulate {}",
                                          words[0], words[0]));
-        if (edits(words[0], nearest->name) <= 2)
-            throw UsageError(
-                fmt::format("there is no command {}; did you mean {}?", in_quotes(words[0]), nearest->name));
-        throw UsageError(fmt::format("there is no command {}; there are {}", in_quotes(words[0]),
-                                     listed(program.commands)));
+        std::vector<std::string_view> names;
+        for (const Options& command : program.commands) names.emplace_back(command.name);
+        const std::string near = did_you_mean(words[0], names);
+        throw UsageError(fmt::format("there is no command {}{}", in_quotes(words[0]),
+                                     near.empty() ? "; there are " + listed(program.commands) : near));
     }
     std::reverse(words.begin(), words.end());
     return words;
@@ -276,7 +269,8 @@ int run_command_line(Options& program, int argc, char** argv) {
         print(std::string(version.what()) + "\n");
         return kOk;
     } catch (const CLI::ParseError& error) {
-        throw UsageError(std::string(error.what()) + "; see " + path_of(app) + " --help");
+        const std::string what = error.what();
+        throw UsageError(what + (what.ends_with('?') ? " See " : "; see ") + path_of(app) + " --help");
     }
     if (named->run) {
         check_files(*named, app);

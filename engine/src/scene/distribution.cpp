@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/draws.h"
+#include "base/nearest.h"
 #include "scene/reader.h"
 #include "scene/toml_depth.h"
 
@@ -66,9 +67,8 @@ Distribution parse_distribution(std::string_view text, const toml::node* own) {
         need(1, 2, "normal(sd) or normal(mean,sd)");
         if (list.size() == 1 && (own == nullptr || !own->is_number()))
             fail(
-                "normal(sd) is around the number in the scene, and there is none; check the name of the key, "
-                "write "
-                "the number there, or use "
+                "normal(sd) is around the number in the scene, and there is none; write the number there, or "
+                "use "
                 "normal(mean,sd)");
         const double mean = list.size() == 1 ? *own->value<double>() : number(name, list, 0);
         const double deviation = number(name, list, list.size() - 1);
@@ -90,7 +90,8 @@ Distribution parse_distribution(std::string_view text, const toml::node* own) {
             return values->get(static_cast<std::size_t>(random.below(static_cast<int>(values->size()))));
         };
     }
-    fail("unknown distribution {}; use uniform, normal, integer or list", in_quotes(name));
+    fail("unknown distribution {}; use uniform, normal, integer or list{}", in_quotes(name),
+         did_you_mean(name, {"uniform", "normal", "integer", "list"}));
 }
 
 }  // namespace carom::detail

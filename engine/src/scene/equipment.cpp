@@ -6,8 +6,11 @@
 #include <iterator>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
+#include "base/nearest.h"
 #include "carom/engine/cushion.h"
+#include "carom/engine/printable.h"
 #include "carom/engine/scene.h"
 
 namespace carom {
@@ -90,8 +93,11 @@ constexpr Cloth kClothFriction[] = {{"club", 0.01}, {"tournament", 0.0075}, {"ma
 template <class Row, std::size_t kRows>
 const Row& named(const Row (&rows)[kRows], std::string_view name, const char* what) {
     const Row* row = std::find_if(rows, std::end(rows), [&](const Row& r) { return r.name == name; });
-    if (row == std::end(rows)) throw std::invalid_argument(fmt::format("unknown {} \"{}\"", what, name));
-    return *row;
+    if (row != std::end(rows)) return *row;
+    std::vector<std::string_view> names;
+    for (const Row& r : rows) names.emplace_back(r.name);
+    throw std::invalid_argument(
+        fmt::format("unknown {} {}{}", what, in_quotes(name), did_you_mean(name, names)));
 }
 
 }  // namespace

@@ -52,8 +52,8 @@ toml::table toml_from(std::string_view text, const std::string& name) {
     if (first != text.npos && text[first] == '{')
         throw SceneError(
             name, {1, 1},
-            "this is JSON, and a scene is TOML; if it is a record, carom render, view and export "
-            "take it");
+            "this is JSON, and a scene is TOML; if it is a record, carom render, view, export and "
+            "compare take it");
     if (const auto deep = too_deep(text)) throw SceneError(name, deep->where, deep->what);
     try {
         return toml::parse(text, name);

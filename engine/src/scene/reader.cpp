@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/nearest.h"
+
 namespace carom::detail {
 namespace {
 
@@ -34,6 +36,14 @@ std::string listed(const std::vector<const char*>& names) {
 
 }  // namespace
 
+UnknownKey::UnknownKey(const std::string& file, SourceLocation where, std::string_view key,
+                       const std::string& section, const std::vector<std::string_view>& keys)
+    : SceneError(file, where,
+                 fmt::format("unknown {} {}{}; the {} are {}{}", section.empty() ? "section or key" : "key",
+                             in_quotes(key), section.empty() ? "" : " in [" + section + "]",
+                             section.empty() ? "sections" : "keys there", fmt::join(keys, ", "),
+                             did_you_mean(key, keys))) {}
+
 SourceLocation place(const toml::source_region& region) {
     return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
@@ -48,12 +58,7 @@ Section::Section(const toml::table& table, const std::string& file, std::string 
         if (!unknown || place(key.source()) < place(unknown->source())) unknown = &key;
     }
     if (!unknown) return;
-    if (path_.empty()) {
-        fail(place(unknown->source()), "unknown section or key {}; the sections are {}",
-             in_quotes(unknown->str()), fmt::join(keys, ", "));
-    }
-    fail(place(unknown->source()), "unknown key {} in [{}]; the keys there are {}", in_quotes(unknown->str()),
-         path_, fmt::join(keys, ", "));
+    throw UnknownKey(file_, place(unknown->source()), unknown->str(), path_, keys);
 }
 
 std::string Section::full(std::string_view key) const {
@@ -90,7 +95,8 @@ void Section::check_integer(SourceLocation at, std::int64_t x, const Key& key) c
 void Section::check_text(SourceLocation at, const std::string& x, const Key& key) const {
     const std::vector<const char*> names = key.names();
     if (!names.empty() && std::find(names.begin(), names.end(), x) == names.end())
-        fail(at, "unknown {} {}; use {}", full(key.key), in_quotes(x), listed(names));
+        fail(at, "unknown {} {}; use {}{}", full(key.key), in_quotes(x), listed(names),
+             did_you_mean(x, {names.begin(), names.end()}));
 }
 
 void Section::check_whole(SourceLocation at, const std::vector<double>& list, const Key& key) const {

@@ -20,13 +20,20 @@ using carom::in_quotes;
 
 SourceLocation place(const toml::source_region& region);
 
+/// A key that a section does not have, or a section that there is not (`section` is "").
+class UnknownKey : public SceneError {
+  public:
+    UnknownKey(const std::string& file, SourceLocation where, std::string_view key,
+               const std::string& section, const std::vector<std::string_view>& keys);
+};
+
 /// Reads one table of the file. `path` names it in messages ("cue", "table.cushion"); the file as a whole is "".
 /// A section of a scene that was built in code has no table: it only checks, and its errors have no place.
 class Section {
   public:
     Section(const std::string& file, std::string path) : file_(file), path_(std::move(path)) {}
 
-    /// @throws SceneError for a key that is not in `keys`
+    /// @throws UnknownKey for a key that is not in `keys`
     Section(const toml::table& table, const std::string& file, std::string path,
             const std::vector<std::string_view>& keys);
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/nearest.h"
 #include "scene/distribution.h"
 #include "scene/keys.h"
 #include "scene/sections.h"
@@ -72,7 +73,8 @@ Found find(const Field<T> (&fields)[kRows], const char* section, std::string_vie
                     }};
         break;
     }
-    fail("it names no number in [{}]", section);
+    fail("it names no number in [{}]{}", section,
+         did_you_mean(key.substr(0, dot), keys_of(fields, Files::kScene)));
 }
 
 Found find_in_ball(const Scene& scene, std::string_view key) {
@@ -149,7 +151,8 @@ Found find_number(const Scene& scene, std::string_view key) {
     }
     fail(
         "name a number in its section, such as cue.speed; sections are balls, ball, cue, physics, stop and "
-        "table");
+        "table{}",
+        did_you_mean(key.substr(0, key.find('.')), {"balls", "ball", "cue", "physics", "stop", "table"}));
 }
 
 }  // namespace

@@ -2,12 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/nearest.h"
 #include "carom/engine/math.h"
+#include "carom/engine/printable.h"
 #include "carom/engine/scene.h"
 #include "carom/engine/tolerances.h"
 #include "scene/sections.h"
@@ -238,7 +241,9 @@ Table make_table(std::string_view preset) {
     if (preset == "eight_foot") return build("eight_foot", eight_foot());
     if (preset == "snooker") return build("snooker", snooker_table());
     if (preset == "carom" || preset == "carom_ten_foot") return carom_table();
-    throw std::invalid_argument(fmt::format("unknown table preset \"{}\"", preset));
+    throw std::invalid_argument(
+        fmt::format("unknown table preset {}{}", in_quotes(preset),
+                    did_you_mean(preset, {std::begin(kTablePresets), std::end(kTablePresets)})));
 }
 
 }  // namespace carom

@@ -84,8 +84,7 @@ void check_effects(const Scene& scene) {
                          [&](const EffectInfo& info) { return effect->keyword == info.keyword; })) {
             std::vector<std::string_view> keywords;
             for (const EffectInfo& info : known) keywords.emplace_back(info.keyword);
-            section.fail(SourceLocation{}, "unknown key {} in [effects]; the keys there are {}",
-                         in_quotes(effect->keyword), fmt::join(keywords, ", "));
+            throw detail::UnknownKey(scene.file, {}, effect->keyword, "effects", keywords);
         }
         if (std::any_of(scene.effects.begin(), effect,
                         [&](const EffectOverride& other) { return other.keyword == effect->keyword; }))

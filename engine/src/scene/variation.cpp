@@ -16,6 +16,7 @@
 #include "scene/distribution.h"
 #include "scene/keys.h"
 #include "scene/rack.h"
+#include "scene/reader.h"
 #include "scene/sections.h"
 
 namespace carom {
@@ -173,14 +174,26 @@ std::vector<Step> find_path(toml::table& file, std::string_view key) {
     return path;
 }
 
-Rule parse_rule(toml::table& file, const std::string& text) {
+/// Refuses a key that no scene has. Where the file has no value for it, nothing else tells it from one that was left out.
+void check_known(toml::table file, const std::string& name, const std::vector<Step>& path) {
+    put_value(file, path, 0.0);
+    try {
+        detail::scene_from(file, name);
+    } catch (const detail::UnknownKey& error) {
+        fail("{}", error.message());
+    } catch (const SceneError&) {  // 0 is not allowed there
+    }
+}
+
+Rule parse_rule(toml::table& file, const std::string& name, const std::string& text) {
     const std::size_t equals = text.find('=');
     if (equals == text.npos || equals == 0) fail("expected KEY=DISTRIBUTION, such as cue.speed=uniform(2,4)");
     Rule rule;
     rule.key = text.substr(0, equals);
     rule.path = find_path(file, rule.key);
-    rule.distribution =
-        detail::parse_distribution(std::string_view(text).substr(equals + 1), follow(file, rule.path));
+    const toml::node* const own = follow(file, rule.path);
+    if (own == nullptr) check_known(file, name, rule.path);
+    rule.distribution = detail::parse_distribution(std::string_view(text).substr(equals + 1), own);
     return rule;
 }
 
@@ -267,7 +280,7 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
     print.add(seed);
     for (const std::string& text : rules) {
         try {
-            Rule rule = parse_rule(parts->file, text);
+            Rule rule = parse_rule(parts->file, parts->path, text);
             for (const Rule& other : parts->rules)
                 if (overlap(rule, other)) fail("{} varies this value already", other.key);
             find_number(parts->base, rule);

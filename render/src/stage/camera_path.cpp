@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/nearest.h"
 #include "carom/engine/printable.h"
 #include "carom/render/error.h"
 
@@ -155,7 +156,8 @@ CameraPath::CameraPath(const Record& record, const TableMesh& table, const std::
         fixed_.up = Vec3::UnitZ();
     } else {
         throw RenderError("unknown camera '" + printable(name) +
-                          "'; use top, rail, player, follow, or give eye and target");
+                          "'; use top, rail, player, follow, or give eye and target" +
+                          did_you_mean(name, {"top", "rail", "player", "follow"}));
     }
 }
 

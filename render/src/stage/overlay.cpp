@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "base/nearest.h"
+#include "carom/engine/printable.h"
 #include "carom/render/error.h"
 
 namespace carom::render {
@@ -31,8 +33,10 @@ Overlay parse_overlay(std::string_view list) {
             known = true;
         }
         if (!known) {
-            throw RenderError("unknown overlay '" + std::string(word) +
-                              "'; use trails (or trails=ball), events, spin, ghost, clock, margin, or all");
+            throw RenderError(
+                "unknown overlay '" + printable(word) +
+                "'; use trails (or trails=ball), events, spin, ghost, clock, margin, or all" +
+                did_you_mean(word, {"trails", "events", "spin", "ghost", "clock", "margin", "all"}));
         }
     }
     return overlay;

@@ -262,8 +262,9 @@ void add_bench_kernel(Options& bench) {
     add_cloth_slip(command, args.cloth_slip, "Sign of the cloth slip inside the impact");
     command.flag("--no-growth", args.growth, "Leave out N = 100 and 10000 (default: measured)");
     command.option("--only", &args.only, "NAME",
-                   "Time only this form, such as 'march reduced state', or all whose names begin with these "
-                   "words, such as 'tolerance'; may be repeated (default: all)");
+                   "Time only this form, or all whose names begin with these words, such as 'tolerance'; may "
+                   "be repeated "
+                   "(default: all)");
     command.footer = "Without CAROM_ISA all instruction sets that this processor has run in one call.";
 }
 

@@ -17,7 +17,8 @@ namespace {
 constexpr const char* kPalette[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                     "#e69f00", "#56b4e9", "#000000", "#999999"};
 constexpr int kColours = 8;
-constexpr double kWidth = 960, kLeft = 80, kRight = 710, kTop = 60, kBottom = 470, kHeight = 530;
+constexpr double kWidth = 960, kLeft = 80, kRight = kLeft + kPlotWidth;
+constexpr double kTop = 60, kBottom = kTop + kPlotHeight, kHeight = 530;
 constexpr double kLineHeight = 18;
 
 std::string escaped(const std::string& text) {
@@ -83,7 +84,7 @@ class Scale {
         const double part = rough / decade;
         const double step = decade * (part <= 1.0 ? 1.0 : part <= 2.0 ? 2.0 : part <= 5.0 ? 5.0 : 10.0);
         for (double k = std::ceil(low_ / step); k * step <= high_; k += 1.0)
-            list.emplace_back(k * step, fmt::format("{:g}", k * step));
+            list.emplace_back(k * step, fmt::format("{:g}", k * step + 0.0));  // no -0
         return list;
     }
 

@@ -47,6 +47,9 @@ struct Plot {
     std::vector<Level> levels;
 };
 
+/// The frame between the axes [pixels].
+inline constexpr double kPlotWidth = 630.0, kPlotHeight = 410.0;
+
 /// The whole file. Text is escaped; equal plots give equal bytes.
 std::string plot_svg(const Plot& plot);
 

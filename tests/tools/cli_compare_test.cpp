@@ -1,0 +1,194 @@
+// carom compare: what it prints, what it returns.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class Compare : public testing::Test {
+  protected:
+    /// The scene with another speed of the cue.
+    std::string faster(const std::string& speed) {
+        std::string text = kSmallScene;
+        text.replace(text.find("4.0"), 3, speed);
+        return folder_.write("faster.toml", text);
+    }
+    static Json json_of(std::vector<std::string> arguments, int status) {
+        arguments.insert(arguments.begin(), "compare");
+        arguments.emplace_back("--json");
+        const ProcessResult result = carom(arguments);
+        EXPECT_EQ(result.status, status) << result.err;
+        EXPECT_EQ(lines_of(result.out).size(), 1u);
+        return Json::parse(result.out);
+    }
+
+    TemporaryFolder folder_;
+    std::string scene_ = folder_.write("s.toml", kSmallScene);
+};
+
+TEST_F(Compare, ASceneAndItsRecordAreTheSameBitForBit) {
+    const std::string record = folder_.file("r.json");
+    ASSERT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
+    for (const auto& [a, b] :
+         {std::pair(scene_, record), {record, scene_}, {record, record}, {scene_, scene_}}) {
+        const ProcessResult result = carom({"compare", a, b, "--tolerance", "0"});
+        EXPECT_EQ(result.status, 0) << result.err;
+        EXPECT_EQ(lines_of(result.out).back(), "the same, bit for bit");
+        EXPECT_TRUE(contains(result.out, "alike: all, at the same times\n")) << result.out;
+        EXPECT_EQ(result.err, "");
+    }
+    const Json same = json_of({scene_, record}, 0);
+    EXPECT_EQ(same["same_bits"], true);
+    EXPECT_EQ(same["equal"], true);
+    EXPECT_EQ(same["a"]["hash"], same["b"]["hash"]);
+    EXPECT_EQ(same["a"]["hash"].get<std::string>() + "\n", carom({"simulate", scene_, "--hash"}).out);
+}
+
+TEST_F(Compare, AnotherShotIsATableAndAStatus) {
+    const std::string other = faster("4.4");
+    const ProcessResult result = carom({"compare", scene_, other});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(result.err, "");
+    const std::vector<std::string> lines = lines_of(result.out);
+    EXPECT_EQ(lines[0].find("A  " + scene_ + ": 3 balls, "), 0u) << result.out;
+    EXPECT_EQ(lines[1].find("B  " + other + ": 3 balls, "), 0u) << result.out;
+    const Json json = json_of({scene_, other}, 1);
+    EXPECT_EQ(json["same_bits"], false);
+    EXPECT_EQ(json["equal"], false);
+    EXPECT_EQ(json["tolerance"], 1e-4);
+    EXPECT_EQ(json["only_in_a"], Json::array());
+    ASSERT_EQ(json["balls"].size(), 3u);
+    // A row for every ball, with the numbers of the JSON.
+    for (const Json& ball : json["balls"]) {
+        const std::string id = ball["id"];
+        std::string row;
+        for (const std::string& line : lines)
+            if (line.find("  " + id + " ") == 0) row = line;
+        char numbers[64];
+        std::snprintf(numbers, sizeof numbers, "%11.3g%13.3g", ball["end"].get<double>(),
+                      ball["largest"].get<double>());
+        EXPECT_TRUE(contains(row, numbers)) << row << numbers;
+        EXPECT_EQ(row.back() == '*', !ball["equal"].get<bool>()) << row;
+        EXPECT_GE(ball["largest"].get<double>(), ball["end"].get<double>());
+    }
+    const Json& events = json["events"];
+    EXPECT_EQ(events["first_apart"]["number"], 2) << events;
+    EXPECT_EQ(events["first_apart"]["a"]["type"], events["first_apart"]["b"]["type"]);
+    EXPECT_GT(events["first_apart"]["a"]["time"], events["first_apart"]["b"]["time"])
+        << "the faster ball is there earlier";
+    EXPECT_TRUE(contains(result.out, "number 2 is the first at another time: ")) << result.out;
+    EXPECT_EQ(lines.back().find("different: 2 of 3 balls more than 0.0001 m apart, the farthest "), 0u)
+        << lines.back();
+}
+
+TEST_F(Compare, TheToleranceDecides) {
+    const std::string other = faster("4.0000001");
+    const double largest = [&] {
+        double most = 0.0;
+        const Json json = json_of({scene_, other}, 0);
+        for (const Json& ball : json["balls"]) most = std::max(most, ball["largest"].get<double>());
+        return most;
+    }();
+    EXPECT_GT(largest, 0.0);
+    EXPECT_LT(largest, 1e-4);
+    for (const auto& [factor, status] : {std::pair(1.01, 0), {0.99, 1}}) {
+        const ProcessResult result =
+            carom({"compare", scene_, other, "--tolerance", std::to_string(1e9 * factor * largest) + "e-9"});
+        EXPECT_EQ(result.status, status) << result.out;
+        EXPECT_EQ(lines_of(result.out).back().find(status == 0 ? "equal within " : "different: "), 0u)
+            << result.out;
+    }
+    EXPECT_EQ(carom({"compare", scene_, other, "--tolerance", "0"}).status, 1);
+}
+
+TEST_F(Compare, OtherBallsAreSaidAndTheRestIsCompared) {
+    std::string text = kSmallScene;
+    text.replace(text.find("\"ball 2\""), 8, "\"3\"");
+    const std::string other = folder_.write("other.toml", text);
+    const ProcessResult result = carom({"compare", scene_, other});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_TRUE(contains(result.out, "\nballs of A alone: ball 2\nballs of B alone: 3\n")) << result.out;
+    EXPECT_TRUE(
+        contains(result.out, "\ndifferent: not the same balls; those of both are equal within 0.0001 m"))
+        << result.out;
+    EXPECT_EQ(json_of({scene_, other}, 1)["only_in_b"], Json::array({"3"}));
+    const std::string none = folder_.write("none.toml", "[[ball]]\nid = \"x\"\n");
+    EXPECT_EQ(lines_of(carom({"compare", scene_, none}).out).back(),
+              "different: they have no ball in common");
+}
+
+TEST_F(Compare, AShotThatWasStoppedIsComparedSoFar) {
+    const std::string record = folder_.file("r.json");
+    ASSERT_EQ(carom({"simulate", scene_, "--until", "0.5", "-o", record}).status, 0);
+    const ProcessResult result = carom({"compare", scene_, record});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_TRUE(contains(result.out, "\n  largest: up to 0.5000 s, when one of them was stopped\n"))
+        << result.out;
+    EXPECT_TRUE(contains(result.out, " m at the end")) << result.out;
+    const Json json = json_of({scene_, record}, 1);
+    EXPECT_EQ(json["until"], 0.5);
+    for (const Json& ball : json["balls"]) EXPECT_EQ(ball["largest"], 0.0);
+    EXPECT_TRUE(json["events"]["first_other"]["b"].is_null()) << json["events"];
+}
+
+// 1 is the answer that they differ, so what gives no answer is 2.
+TEST_F(Compare, NoAnswerIs2) {
+    const std::string bad = folder_.write("bad.toml", "[cue]\nsped = 1\n");
+    const std::string stuck = folder_.write("stuck.toml", kStuckScene);
+    const std::string no_record = folder_.write("no.json", "{}");
+    EXPECT_EQ(carom({"simulate", stuck}).status, 1);
+    const struct {
+        std::vector<std::string> arguments;
+        std::string message;
+    } kCases[] = {
+        {{scene_}, "B is required; see carom compare --help"},
+        {{scene_, folder_.file("none.toml")}, "none.toml: cannot be read"},
+        {{bad, scene_}, "bad.toml:2:1: unknown key \"sped\""},
+        {{scene_, no_record}, "no.json"},
+        {{scene_, stuck}, "stuck.toml: "},
+        {{stuck, scene_}, "stuck.toml: "},
+        {{scene_, scene_, "--tolerance", "-1"}, "--tolerance: expected a length in m of at least 0"},
+        {{scene_, scene_, "--tolerance", "nan"}, "--tolerance: expected a length in m of at least 0"},
+        {{scene_, scene_, "--tolerance", "much"}, "much"}};
+    for (const auto& c : kCases) {
+        std::vector<std::string> arguments = c.arguments;
+        arguments.insert(arguments.begin(), "compare");
+        const ProcessResult result = carom(arguments);
+        EXPECT_EQ(result.status, 2) << c.message << "\n" << result.err;
+        EXPECT_EQ(result.out, "") << c.message;
+        EXPECT_TRUE(contains(result.err, c.message)) << result.err;
+    }
+}
+
+TEST_F(Compare, ThePictureHasBothWays) {
+    const std::string plot = folder_.file("ways.svg");
+    EXPECT_EQ(carom({"compare", scene_, faster("4.4"), "--plot", plot}).status, 1);
+    const std::string svg = read_file(plot);
+    EXPECT_EQ(svg.substr(0, 4), "<svg");
+    EXPECT_TRUE(contains(svg, ">ball 2</text>"));
+    EXPECT_TRUE(contains(svg, "stroke-dasharray"));
+    const ProcessResult bad = carom({"compare", scene_, scene_, "--plot", folder_.file("ways.png")});
+    EXPECT_EQ(bad.status, 2);
+    EXPECT_TRUE(contains(bad.err, "a name that ends in .svg")) << bad.err;
+    EXPECT_EQ(carom({"compare", scene_, scene_, "--plot", scene_}).status, 2);
+}
+
+TEST_F(Compare, AllScenesThatComeWithCaromEqualThemselves) {
+    for (const std::string& scene : shipped_scenes()) {
+        const Json same = json_of({scene, scene, "--tolerance", "0"}, 0);
+        EXPECT_EQ(same["same_bits"], true) << scene;
+        EXPECT_TRUE(same["events"]["first_other"].is_null()) << scene;
+    }
+}
+
+}  // namespace
+}  // namespace carom::test

@@ -1,0 +1,245 @@
+// What differs between two shots, where the answer is known on paper.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/scene.h"
+#include "carom/engine/simulate.h"
+#include "carom/kernel/isa.h"
+#include "compare/difference.h"
+#include "compare/picture.h"
+#include "report/plot.h"
+
+namespace carom::tools {
+namespace {
+
+Record played(const std::string& text) {
+    return simulate(make_plan(parse_scene(text, "a test"), kernel::Isa::kFastest));
+}
+
+ShotDifference between(const std::string& a, const std::string& b) {
+    return difference(played(a), played(b));
+}
+
+/// A ball on an endless cloth.
+std::string lone(const std::string& position, const std::string& velocity = "[0, 0]",
+                 const std::string& more = "") {
+    return "[table]\ncushion = []\n[[ball]]\nid = \"a\"\nposition = " + position +
+           "\nvelocity = " + velocity + "\n" + more;
+}
+
+TEST(Difference, OfAShotAndItselfIsNone) {
+    const ShotDifference d = between(lone("[0, 0]", "[1, 0.5]"), lone("[0, 0]", "[1, 0.5]"));
+    EXPECT_TRUE(d.same_bits);
+    EXPECT_TRUE(d.within(0.0));
+    EXPECT_TRUE(d.events.ends_alike());
+    EXPECT_FALSE(d.events.first_apart);
+    ASSERT_EQ(d.balls.size(), 1u);
+    EXPECT_EQ(d.balls[0].end, 0.0);
+    EXPECT_EQ(d.balls[0].largest, 0.0);
+}
+
+TEST(Difference, OfAShiftIsTheShift) {
+    const ShotDifference d = between(lone("[0, 0]", "[1, 0.5]"), lone("[0.03, 0.04]", "[1, 0.5]"));
+    EXPECT_FALSE(d.same_bits);
+    EXPECT_NEAR(d.balls[0].end, 0.05, 1e-15);
+    EXPECT_NEAR(d.balls[0].largest, 0.05, 1e-15);
+    EXPECT_TRUE(d.within(0.0500001));
+    EXPECT_FALSE(d.within(0.0499999));
+    EXPECT_TRUE(d.events.ends_alike()) << "events do not name places";
+    EXPECT_FALSE(d.events.first_apart);
+}
+
+// A ball that is thrown up is v^2 / 2g above one that rests, after v / g: between two events, and back at the end.
+TEST(Difference, FindsTheLargestBetweenEvents) {
+    for (const double v : {1.0, 2.0}) {
+        const std::string up = "[0, 0, " + std::to_string(v) + "]";
+        const ShotDifference d = between(lone("[0, 0]", up), lone("[0, 0]"));
+        EXPECT_NEAR(d.balls[0].largest, v * v / (2.0 * 9.81), 1e-12);
+        EXPECT_NEAR(d.balls[0].largest_at, v / 9.81, 1e-7);
+        EXPECT_NEAR(d.balls[0].end, 0.0, 1e-12);
+        EXPECT_FALSE(d.within(1e-4)) << "what counts is not the end alone";
+    }
+}
+
+// The same from samples: no instant of a real shot is farther apart than the largest, and one is as far.
+TEST(Difference, IsTheLargestOfManySamples) {
+    const auto scene = [](const char* name) {
+        return std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml";
+    };
+    const Record a = simulate(make_plan(read_scene(scene("eight_ball_break")), kernel::Isa::kFastest));
+    const Record b = simulate(make_plan(read_scene(scene("raised_break")), kernel::Isa::kFastest));
+    const ShotDifference d = difference(a, b);
+    for (std::size_t i = 0; i < d.balls.size(); ++i) {
+        const BallDifference& ball = d.balls[i];
+        ASSERT_EQ(ball.id, a.tracks[i].id);
+        ASSERT_EQ(ball.id, b.tracks[i].id);
+        double largest = 0.0;
+        for (int k = 0; k <= 20000; ++k) {
+            const double t = d.until * k / 20000;
+            const BallState x = a.state_at(static_cast<int>(i), t), y = b.state_at(static_cast<int>(i), t);
+            if (!is_gone(x.state) && !is_gone(y.state))
+                largest = std::max(largest, (x.position - y.position).norm());
+        }
+        EXPECT_LE(largest, ball.largest + 1e-12) << ball.id;
+        // At 12 m/s, the fastest of both, half a sample is 2.4 mm of the way for each; one that is gone in one shot may go on.
+        if (!ball.a.gone() && !ball.b.gone()) {
+            EXPECT_GE(largest, ball.largest - 0.005) << ball.id;
+        }
+        EXPECT_GE(ball.largest, ball.end) << ball.id;
+    }
+}
+
+// What lies in one pocket is equal, however it fell; nor does it count that it is put on the bottom at once, a little later here than there.
+TEST(Difference, OfBallsInOnePocketIsNone) {
+    const auto shot = [](const char* speed) {
+        return std::string("[[ball]]\nid = \"a\"\nposition = [0.2, 0.2]\nvelocity = [") + speed + ", " +
+               speed + "]\nspin = [-20, 20, 0]\n";
+    };
+    const ShotDifference d = between(shot("-1"), shot("-1.0000001"));
+    ASSERT_EQ(d.balls.size(), 1u);
+    EXPECT_EQ(d.balls[0].a.pocket, "p1");
+    EXPECT_EQ(d.balls[0].b.pocket, "p1");
+    EXPECT_EQ(d.balls[0].end, 0.0);
+    EXPECT_GT(d.balls[0].largest, 0.0);
+    EXPECT_LT(d.balls[0].largest, 1e-5);
+    EXPECT_TRUE(d.within(1e-5));
+    EXPECT_TRUE(d.events.ends_alike());
+    ASSERT_TRUE(d.events.first_apart);
+    EXPECT_GT(d.events.farthest_apart, 0.0);
+
+    const ShotDifference other = between(shot("-1"), shot("-0.05"));
+    EXPECT_TRUE(other.balls[0].a.gone());
+    EXPECT_FALSE(other.balls[0].b.gone());
+    EXPECT_FALSE(other.within(1e3)) << "one in a pocket and one on the table are never equal";
+}
+
+TEST(Difference, GoesAsFarAsBothAreKnown) {
+    const std::string whole = lone("[0, 0]", "[1, 0]"),
+                      stopped = lone("[0, 0]", "[1, 0]", "[stop]\ntime = 0.25\n");
+    const ShotDifference d = between(whole, stopped);
+    EXPECT_EQ(d.until, 0.25);
+    EXPECT_EQ(d.balls[0].largest, 0.0);
+    EXPECT_GT(d.balls[0].end, 0.1);
+    EXPECT_FALSE(d.within(0.1));
+    EXPECT_FALSE(d.events.ends_alike());
+    // At rest is known for ever: the longer shot counts.
+    const Record slow = played(lone("[0, 0]", "[0.1, 0]")), fast = played(whole);
+    EXPECT_EQ(difference(slow, fast).until, fast.duration);
+    EXPECT_NEAR(difference(slow, fast).balls[0].largest, difference(slow, fast).balls[0].end, 1e-15);
+}
+
+TEST(Difference, ComparesTheBallsThatBothHaveByTheirNames) {
+    const auto two = [](const char* first, const char* second) {
+        return std::string("[[ball]]\nid = \"") + first +
+               "\"\nposition = [0.5, 0.5]\nvelocity = [0, 0.5]\n[[ball]]\nid = \"" + second +
+               "\"\nposition = [0.5, 0.8]\n";
+    };
+    const ShotDifference d = between(two("a", "b"), two("c", "b"));
+    EXPECT_TRUE(d.same_bits) << "names are no part of a hash";
+    EXPECT_EQ(d.only_a, std::vector<std::string>{"a"});
+    EXPECT_EQ(d.only_b, std::vector<std::string>{"c"});
+    ASSERT_EQ(d.balls.size(), 1u);
+    EXPECT_EQ(d.balls[0].id, "b");
+    EXPECT_EQ(d.balls[0].largest, 0.0);
+    EXPECT_FALSE(d.within(1.0)) << "other balls are another shot";
+    // The same balls in another order are the same, and so are events that name them in another order.
+    const std::string swapped =
+        "[[ball]]\nid = \"b\"\nposition = [0.5, 0.8]\n[[ball]]\nid = \"a\"\nposition = [0.5, 0.5]\nvelocity "
+        "= [0, 0.5]\n";
+    const ShotDifference same = between(two("a", "b"), swapped);
+    EXPECT_TRUE(same.same_balls());
+    EXPECT_EQ(same.balls[0].id, "a");
+    EXPECT_LT(same.balls[0].largest, 1e-12);
+    EXPECT_GT(same.events.a.size(), 3u);
+    EXPECT_TRUE(same.events.ends_alike()) << same.events.alike;
+}
+
+TEST(Difference, FindsTheFirstEventOfAnotherKind) {
+    const auto shot = [](const char* x) {
+        return std::string(
+                   "[[ball]]\nid = \"a\"\nposition = [0.5, 0.5]\nvelocity = [0, 0.5]\n[[ball]]\nid = "
+                   "\"b\"\nposition = [") +
+               x + ", 0.8]\n";
+    };
+    const ShotDifference d = between(shot("0.5"), shot("0.8"));
+    EXPECT_EQ(d.events.alike, 1u);
+    EXPECT_FALSE(d.events.first_apart);
+    ASSERT_GT(d.events.a.size(), 1u);
+    ASSERT_GT(d.events.b.size(), 1u);
+    EXPECT_EQ(d.events.a[0].type, "slide_roll");
+    EXPECT_EQ(d.events.a[1].type, "ball_ball");
+    EXPECT_EQ(d.events.a[1].who, (std::vector<std::string>{"a", "b"}));
+    EXPECT_EQ(d.events.b[1].who, (std::vector<std::string>{"a"}));
+    EXPECT_EQ(d.balls[1].id, "b");
+}
+
+/// The ways of some name in a plot, without the dots at their ends.
+std::vector<Series> ways(const Plot& plot, bool dashed) {
+    std::vector<Series> found;
+    for (const Series& series : plot.series)
+        if (series.line && series.dashed == dashed && series.colour != 7) found.push_back(series);
+    return found;
+}
+
+// Up the table, then to the right: on the paper that is to the right, then down.
+TEST(WaysPlot, IsTurnedNotMirroredAndToScale) {
+    const std::string up = "[[ball]]\nid = \"a\"\nposition = [0.3, 0.4]\nvelocity = [0, 0.4]\n",
+                      right = "[[ball]]\nid = \"a\"\nposition = [0.3, 0.4]\nvelocity = [0.4, 0]\n";
+    const Record a = played(up), b = played(right);
+    const Plot plot = ways_plot(a, "up", b, "right");
+    EXPECT_EQ(plot.title, "up and right");
+    ASSERT_EQ(ways(plot, false).size(), 1u);
+    ASSERT_EQ(ways(plot, true).size(), 1u);
+    const Series solid = ways(plot, false)[0], dashed = ways(plot, true)[0];
+    EXPECT_EQ(solid.name, "a");
+    EXPECT_EQ(dashed.name, "");
+    EXPECT_EQ(solid.colour, dashed.colour);
+    const double length = a.state_at(0, a.duration).position.y() - 0.4;
+    EXPECT_GT(length, 0.1);
+    EXPECT_EQ(solid.points.front(), (std::pair{0.4, -0.3}));
+    EXPECT_NEAR(solid.points.back().first - 0.4, length, 1e-12);
+    EXPECT_NEAR(solid.points.back().second, -0.3, 1e-12);
+    EXPECT_NEAR(dashed.points.back().first, 0.4, 1e-12);
+    EXPECT_NEAR(dashed.points.back().second, -0.3 - length, 1e-12);
+    EXPECT_NEAR(kPlotWidth / (*plot.x.high - *plot.x.low), kPlotHeight / (*plot.y.high - *plot.y.low), 1e-9);
+    // The whole table is in the frame, and the marks say x.
+    EXPECT_LT(*plot.x.low, 0.0);
+    EXPECT_GT(*plot.x.high, 2.54);
+    EXPECT_LT(*plot.y.low, -1.27);
+    EXPECT_GT(*plot.y.high, 0.0);
+    for (const auto& [place, text] : plot.y.marks) EXPECT_EQ(std::stod(text), 0.0 - place) << text;
+    EXPECT_GE(plot.y.marks.size(), 3u);
+    EXPECT_EQ(plot_svg(plot).find(">-0<"), std::string::npos);
+}
+
+TEST(WaysPlot, ColoursGoByName) {
+    const auto two = [](const char* first, const char* second) {
+        return played(std::string("[[ball]]\nid = \"") + first +
+                      "\"\nposition = [0.3, 0.4]\n[[ball]]\nid = \"" + second +
+                      "\"\nposition = [0.6, 0.4]\n");
+    };
+    const std::vector<Series> a = ways(ways_plot(two("a", "b"), "", two("b", "a"), ""), false),
+                              b = ways(ways_plot(two("a", "b"), "", two("b", "a"), ""), true);
+    ASSERT_EQ(a.size(), 2u);
+    ASSERT_EQ(b.size(), 2u);
+    EXPECT_NE(a[0].colour, a[1].colour);
+    EXPECT_EQ(a[0].colour, b[1].colour);
+    EXPECT_EQ(a[1].colour, b[0].colour);
+    // A ball that A does not have is grey, as the cushions are.
+    EXPECT_EQ(ways(ways_plot(two("a", "b"), "", two("b", "c"), ""), true).size(), 1u);
+}
+
+TEST(WaysPlot, TakesAnEndlessClothWithOneBallAtRest) {
+    const Record rest = played(lone("[3, 4]"));
+    const std::string svg = plot_svg(ways_plot(rest, "a", rest, "b"));
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    EXPECT_EQ(svg.find("inf"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace carom::tools
