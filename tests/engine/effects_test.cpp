@@ -306,6 +306,22 @@ TEST(Effects, LateNeedIsCaught) {
               std::string::npos);
 }
 
+// Two balls that move and cannot meet within the time: each goes on along its own segments. The first one of b would lead through a, if it
+// lasted.
+TEST(Effects, VerifyKnowsThatSegmentsEnd) {
+    Scene scene = empty_scene();
+    scene.table = {};
+    scene.balls.mu_s = 0.2;
+    scene.balls.mu_r = 1e-9;
+    scene.stop.time = 60.0;
+    add_ball(scene, "a", 0.0, 0.0, 0.0, 1e-4);
+    add_ball(scene, "b", 0.2, 0.0, 1e-4, 0.0);
+    const Plan plan = plan_of(scene);
+    EXPECT_FALSE(plan.pairs);
+    const auto violation = verify(simulate(plan), plan);
+    EXPECT_FALSE(violation) << violation->message;
+}
+
 // P4: no cliff between a skipped effect and a vanishing one.
 TEST(Effects, VanishingFrictionIsNoFriction) {
     reference::Generator rng(3);

@@ -134,6 +134,13 @@ void ClusterMap::keep_energy(double before, int axes) {
 
 namespace {
 
+// L/(2 R), by which normals turn. The stiffness is that of pool balls, so that small balls at hundreds of m/s would overlap by more than their
+// radius, and then no normal is left; they are taken for larger ones that touch in the same places.
+double curvature(double L, double R) {
+    constexpr double kLargest = 0.125;
+    return std::min(kLargest, L / (2.0 * R));
+}
+
 // A slow pair can be the first to touch where faster ones are about to: these set the scale, or their
 // forces would need a million steps.
 double fastest(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double V) {
@@ -162,7 +169,7 @@ long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<Cl
                                      contacts_.data(),
                                      on_cache_line(numbers_),
                                      places_.data(),
-                                     L / (2.0 * settings.R)};
+                                     curvature(L, settings.R)};
     const long steps = settings.integrate(phase, law_of(settings, V), settings.longest_step,
                                           kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
@@ -184,7 +191,7 @@ long ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
     numbers_.resize(std::max(numbers_.size(), kernel::contact_phase_in_space_numbers(m, n)));
     const double before = energy(3);
     const long steps = kernel::contact_phase_in_space(
-        {m, n, motion_.data(), contacts_in_space_.data(), numbers_.data(), L / (2.0 * settings.R)},
+        {m, n, motion_.data(), contacts_in_space_.data(), numbers_.data(), curvature(L, settings.R)},
         law_of(settings, V), settings.longest_step, kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
     keep_energy(before, 3);

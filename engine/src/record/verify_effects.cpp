@@ -31,14 +31,14 @@ class Skipped {
                 // A run after which nothing more happens leaves its last segments as they are for ever.
                 const bool for_ever =
                     record_.stopped == StopReason::kAtRest || record_.stopped == StopReason::kEndless;
-                const double last = for_ever ? kNever : record_.duration;
-                const double end = k + 1 < segments.size() ? segments[k + 1].start : last;
+                last_ = for_ever ? kNever : record_.duration;
+                const double end = end_of(segments, k);
                 if (is_gone(segments[k].state) || end < start_) continue;
                 check_frictions(segments[k], end > start_);
-                const Path path = path_of(segments[k], std::min(end - start_, segments[k].duration));
+                const Path path = path_of(segments[k], start_, end);
                 if (check_cushions) check_table(path);
                 if (check_pockets) check_pocket(path);
-                if (!plan_.pairs) check_pairs(static_cast<int>(i), path);
+                if (!plan_.pairs && path.moves) check_pairs(static_cast<int>(i), segments[k], end);
             }
         }
         return found_;
@@ -54,8 +54,18 @@ class Skipped {
             fmt::format("the plan skips {}, but ball {} {} after {:.17g} s", keyword, *ball_, what, start_)};
     }
 
-    static Path path_of(const Segment& s, double duration) {
-        return {s.r.head<2>(),      s.v.head<2>(), s.a, duration, s.state == MotionState::kRolling,
+    double end_of(const std::vector<Segment>& segments, std::size_t k) const {
+        return k + 1 < segments.size() ? segments[k + 1].start : last_;
+    }
+
+    /// A segment from one time on to another; it has begun by then.
+    static Path path_of(const Segment& s, double from, double to) {
+        const double t = from - s.start;
+        return {s.r.head<2>() + t * (s.v.head<2>() + 0.5 * t * s.a),
+                s.v.head<2>() + t * s.a,
+                s.a,
+                std::min(to - from, s.duration - t),
+                s.state == MotionState::kRolling,
                 translates(s.state)};
     }
 
@@ -95,14 +105,19 @@ class Skipped {
         }
     }
 
-    // Where no pair can meet, at most one ball moves, and the others stay where they are.
-    void check_pairs(int ball, const Path& path) {
+    // Each other ball goes along its own segments meanwhile.
+    void check_pairs(int ball, const Segment& s, double end) {
         for (std::size_t j = 0; j < record_.tracks.size(); ++j) {
             if (static_cast<int>(j) == ball) continue;
-            const Path other = path_of(record_.tracks[j].segments.front(), kNever);
-            if (path.moves &&
-                time_to_ball(path, other, contact_distance(R_, record_.size(static_cast<int>(j)).R)) < kNever)
-                need("ball-ball impacts", "meets ball " + record_.tracks[j].id);
+            const double reach = contact_distance(R_, record_.size(static_cast<int>(j)).R);
+            const std::vector<Segment>& others = record_.tracks[j].segments;
+            for (std::size_t k = 0; k < others.size(); ++k) {
+                const double from = std::max(s.start, others[k].start),
+                             to = std::min(end, end_of(others, k));
+                if (is_gone(others[k].state) || to < from) continue;
+                if (time_to_ball(path_of(s, from, to), path_of(others[k], from, to), reach) < kNever)
+                    need("ball-ball impacts", "meets ball " + record_.tracks[j].id);
+            }
         }
     }
 
@@ -110,7 +125,7 @@ class Skipped {
     const Plan& plan_;
     double R_ = 0.0;  // of that ball
     const std::string* ball_ = nullptr;
-    double start_ = 0.0;
+    double start_ = 0.0, last_ = 0.0;  // [s] of its segment; of the last one
     std::optional<Violation> found_;
 };
 
