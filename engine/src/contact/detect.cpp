@@ -144,6 +144,7 @@ double first_touch(const Relative& m, double reach, double c0, double horizon, b
     const Vec2 r = near > 0.0 ? at(m, near) : m.r, v = rate(m, near);
     if (near > 0.0) {
         const double d = length(r);
+        if (!(d > reach)) return near;  // it closes more slowly than rounding can tell
         c0 = (d - reach) * (d + reach);
     }
     const double c[5] = {c0, 2.0 * dot(r, v), dot(v, v) + dot(r, m.a), dot(v, m.a), 0.25 * dot(m.a, m.a)};

@@ -264,7 +264,7 @@ void solve_interval(Group& g) {
     double h = std::max(shortest, std::min(first_attempt(g), kGrowth * g.group.last));
     int longer = 0;
     double gone_before = 0.0;  // something has gone before this time, but not before the last interval
-    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    for (int attempt = 1;; ++attempt) {
         const bool solved = step(g, h);
         double accurate = solved ? kNever : 0.25 * h, gone = kNever, later = kNever;
         for (const Body& b : g.bodies) {
@@ -273,6 +273,7 @@ void solve_interval(Group& g) {
             later = std::min(later, gone_later(g, b, h));
         }
         for (const Link& link : g.links) accurate = std::min(accurate, link_interval(g, link, h));
+        if (attempt == kAttempts) break;  // the bodies hold the solution of this h
         if (std::min(accurate, gone) < h * (1.0 - kMet) && h > shortest) {
             gone_before = gone <= accurate ? h : 0.0;
             // A much too long interval says little about what a shorter one needs.
