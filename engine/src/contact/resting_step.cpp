@@ -34,8 +34,10 @@ constexpr double kSlopeLeft = 0.25;
 // contacts that hold each other's slip.
 constexpr double kFrictionAccuracy = 1e-9;
 constexpr int kLooser = 20;
+// [of what drives a group] Where a contact pushes more than that, balls lock each other, and a friction that is nearly right would drive them.
+constexpr double kLocked = 10.0;
 // [of the accelerations that drive a group] Larger forces show that a wedge cannot be stabilised.
-constexpr double kLargestStabilised = 1e4;
+constexpr double kLargestStabilised = 1e3;
 
 // What must not become negative: the rate of a gap at the end, with the turning of its normal.
 double wanted_rate(const Group& g, const Link& link, double h, const StepOptions& options) {
@@ -100,9 +102,17 @@ double turning_of(const Link& link, const Across& t, double h) {
     return (free ? level : std::min(level, least)) + recovery;
 }
 
+// [m/s^2] The accelerations that drive a group.
+double drive_of(const Group& g) {
+    double drive = g.motion.slide + g.motion.roll;
+    for (const Link& link : g.links) drive = std::max(drive, std::abs(link.turning));
+    return drive;
+}
+
 // Takes over from a solution what the next one starts from. @return whether it differs
 bool update(Group& g, double h, const StepOptions& options, int times) {
-    const double accuracy = kFrictionAccuracy * static_cast<double>(1 << std::min(times, kLooser));
+    const double looser = static_cast<double>(1 << std::min(times, kLooser)), free = kLocked * drive_of(g) * h;
+    const double mu = ball_friction(g.around.balls, 0.0);
     bool changed = false;
     for (Link& link : g.links) {
         if (options.stabilise && !link.open && !link.walled) {
@@ -112,8 +122,9 @@ bool update(Group& g, double h, const StepOptions& options, int times) {
         }
         if (link.j < 0 || link.open || !options.friction) continue;
         const double f = link.J > 0.0 ? vertical_friction(g, link) : friction_at_start(g, link);
-        changed = changed || (link.J > 0.0 &&
-                              std::abs(f - link.friction_z) > accuracy * ball_friction(g.around.balls, 0.0));
+        const double accuracy = link.J > free ? std::max(1.0, looser * free / link.J) : looser;
+        changed = changed ||
+                  (link.J > 0.0 && std::abs(f - link.friction_z) > accuracy * kFrictionAccuracy * mu);
         // The next contact of the balls already feels it.
         const Vec2 change = (f - link.friction_z) * link.J * link.n;
         for (const int k : {link.i, link.j}) {
@@ -339,11 +350,10 @@ bool solve_with(Group& g, double h, const StepOptions& options) {
 
 // Two opposing fixed normals cannot both be stabilised: the forces are then huge and mean nothing.
 bool drop_stabilisation(Group& g, double h) {
-    double drive = g.motion.slide + g.motion.roll;
-    for (const Link& link : g.links) drive = std::max(drive, std::abs(link.turning));
+    const double most = kLargestStabilised * drive_of(g) * h;
     bool any = false;
     for (Link& link : g.links) {
-        if (link.turning == 0.0 || link.J <= kLargestStabilised * drive * h) continue;
+        if (link.turning == 0.0 || link.J <= most) continue;
         link.walled = true;
         link.turning = 0.0;
         any = true;
