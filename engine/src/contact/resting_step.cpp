@@ -35,7 +35,7 @@ constexpr double kSlopeLeft = 0.25;
 constexpr double kFrictionAccuracy = 1e-9;
 constexpr int kLooser = 20;
 // [of what drives a group] Where a contact pushes more than that, balls lock each other, and a friction that is nearly right would drive them.
-constexpr double kLocked = 10.0;
+constexpr double kLocked = 1.0;
 // [of the accelerations that drive a group] Larger forces show that a wedge cannot be stabilised.
 constexpr double kLargestStabilised = 1e3;
 
@@ -358,6 +358,9 @@ bool drop_stabilisation(Group& g, double h) {
         link.turning = 0.0;
         any = true;
     }
+    // Nor from these forces, which a wedge keeps.
+    if (any)
+        for (Link& link : g.links) link.J = 0.0;
     return any;
 }
 
