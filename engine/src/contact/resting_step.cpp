@@ -38,6 +38,8 @@ constexpr int kLooser = 20;
 constexpr double kLocked = 1.0;
 // [of the accelerations that drive a group] Larger forces show that a wedge cannot be stabilised.
 constexpr double kLargestStabilised = 1e3;
+// [-] They are a wedge's own where it has them without being stabilised, but for this factor.
+constexpr double kOwnForce = 2.0;
 
 // What must not become negative: the rate of a gap at the end, with the turning of its normal.
 double wanted_rate(const Group& g, const Link& link, double h, const StepOptions& options) {
@@ -348,20 +350,29 @@ bool solve_with(Group& g, double h, const StepOptions& options) {
     return Newton(g, h, options).run();
 }
 
-// Two opposing fixed normals cannot both be stabilised: the forces are then huge and mean nothing.
-bool drop_stabilisation(Group& g, double h) {
+// Two opposing fixed normals cannot both be stabilised: the forces are then huge and mean nothing. Nor may those be left that a wedge keeps. But
+// a flat wedge also has large ones of its own, which stay about as large without.
+bool drop_stabilisation(Group& g, double h, const StepOptions& options) {
     const double most = kLargestStabilised * drive_of(g) * h;
-    bool any = false;
+    const auto is_huge = [most](const Link& link) { return link.turning != 0.0 && link.J > most; };
+    if (std::none_of(g.links.begin(), g.links.end(), is_huge)) return true;
+    const std::vector<Body> bodies = g.bodies;
+    const std::vector<Link> links = g.links;
     for (Link& link : g.links) {
-        if (link.turning == 0.0 || link.J <= most) continue;
-        link.walled = true;
-        link.turning = 0.0;
-        any = true;
+        if (is_huge(link)) {
+            link.walled = true;
+            link.turning = 0.0;
+        }
     }
-    // Nor from these forces, which a wedge keeps.
-    if (any)
-        for (Link& link : g.links) link.J = 0.0;
-    return any;
+    for (Link& link : g.links) link.J = 0.0;
+    const bool solved = solve_with(g, h, options);
+    bool own = solved;
+    for (std::size_t c = 0; c < links.size(); ++c)
+        own = own && !(is_huge(links[c]) && links[c].J > kOwnForce * g.links[c].J);
+    if (!own) return solved;
+    g.bodies = bodies;
+    g.links = links;
+    return true;
 }
 
 }  // namespace
@@ -397,7 +408,7 @@ bool step(Group& g, double h, const StepOptions& options) {
     }
     g.solved = 0.0;
     bool solved = solve_with(g, h, options);
-    if (options.stabilise && (!solved || drop_stabilisation(g, h))) solved = solve_with(g, h, options);
+    if (options.stabilise) solved = solved ? drop_stabilisation(g, h, options) : solve_with(g, h, options);
     if (solved) {
         g.solved = h;
         return true;
