@@ -25,6 +25,8 @@ constexpr double kRateUlp = 32.0;
 constexpr double kLongestTurn = 0.1;
 // [m] Overlap that the turning of a normal may cause within an interval.
 constexpr double kOverlapLeft = 4e-15;
+// [m] A deeper overlap does not grow any more.
+constexpr double kDeep = 2e-13;
 // [m] Smaller changes of a gap are not looked at.
 constexpr double kNoGap = 4e-15;
 // [-] Most trials of a line search, and the share of its first slope that may be left.
@@ -213,10 +215,8 @@ class Newton {
             } else {
                 frictions_.forget();
             }
-            double worst = 0.0;
-            if (is_solved(worst) && !changed) return true;
-            // Where balls go over from rest to rolling and back, a share of kRestCompliance is left: no gap notices it.
-            const bool harmless = !changed && worst * std::max(h_, kShortestInterval) <= kOverlapGrowth;
+            bool harmless = !changed;
+            if (is_solved(harmless) && !changed) return true;
             if (newton >= kStopsFrom && harmless) return true;
             if (newton == kNewtonSteps) return false;
             if (!solve(newton < kLoadSteps ? 1.0 : 0.0)) return harmless;
@@ -242,15 +242,16 @@ class Newton {
 
     double rate(std::size_t k) const { return wanted_rate(g_, g_.links[active_[k]], h_, options_); }
 
-    // Notes the rates, and the worst that is wrong.
-    bool is_solved(double& worst) {
-        const double rounding = rate_rounding(g_);
+    // Notes the rates. Where balls go over from rest to rolling and back, a share of kRestCompliance is left: harmless where no gap notices it.
+    bool is_solved(bool& harmless) {
+        const double rounding = rate_rounding(g_), unnoticed = kOverlapGrowth / std::max(h_, kShortestInterval);
         bool solved = true;
         for (std::size_t k = 0; k < active_.size(); ++k) {
             const double now = rates_[k] = rate(k);
-            const bool pressed = g_.links[active_[k]].J > 0.0;
-            worst = std::max(worst, pressed ? std::abs(now) : -now);
-            solved = solved && (pressed ? std::abs(now) <= rounding : now >= -rounding);
+            const Link& link = g_.links[active_[k]];
+            const double wrong = link.J > 0.0 ? std::abs(now) : -now;
+            solved = solved && wrong <= rounding;
+            harmless = harmless && (wrong <= rounding || (wrong <= unnoticed && !(now < 0.0 && link.gap < -kDeep)));
         }
         return solved;
     }
