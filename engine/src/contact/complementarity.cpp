@@ -15,7 +15,7 @@ constexpr int kBlockTries = 8;
 constexpr int kMoreRefinements = 20;
 constexpr double kSlowRow = 0.25, kSlowestRow = 0.9999;  // [-] extrapolated ratios of successive refinements
 // [-] Softness, relative to the mobility, with which a solution is approached, and most rounds.
-constexpr double kApproachSoftness = 1e-4;
+constexpr double kApproachSoftness = 1e-4, kLeastSoftness = 1e-10;
 constexpr int kMostRounds = 40;
 constexpr double kSumUlp = 4.0;  // [ulp of a row's terms] a smaller residual is the rounding of their sum
 }  // namespace
@@ -182,27 +182,33 @@ bool Complementarity::solve(bool thorough) {
 }
 
 // Contacts between which the softness decides may be exchanged without end. With more of it they are not, and each solution is where
-// the next one is soft towards: what the softness changes dies away (the proximal point method of Martinet and Rockafellar).
+// the next one is soft towards: what the softness changes dies away (the proximal point method of Martinet and Rockafellar). It dies
+// away the faster the less of it there is, so that each round has a tenth of it, for as long as the exchanges end.
 bool Complementarity::approach() {
     const std::vector<double> wanted = q;
-    std::vector<double> soft(size), before;
-    const auto each_diagonal = [this](auto&& take) {
-        for (std::size_t c = 0; c < size; ++c)
-            for (std::size_t k = first[c]; k < end_of(c); ++k)
-                if (entries[k].row == c) take(c, entries[k].value);
-    };
-    each_diagonal([&](std::size_t c, double& value) {
-        soft[c] = kApproachSoftness * std::abs(value);
-        value += soft[c];
-    });
+    std::vector<double> own(size, 0.0), before;
+    std::vector<std::size_t> diagonal(size);
+    for (std::size_t c = 0; c < size; ++c) {
+        for (std::size_t k = first[c]; k < end_of(c); ++k)
+            if (entries[k].row == c) diagonal[c] = k;
+        own[c] = entries[diagonal[c]].value;
+    }
     std::fill(z.begin(), z.end(), 0.0);
-    bool found = false;
+    bool found = false, least = false;
+    double softness = kApproachSoftness;
     for (int round = 0; round < kMostRounds; ++round) {
         before = z;
-        for (std::size_t c = 0; c < size; ++c) q[c] = wanted[c] - soft[c] * before[c];
+        for (std::size_t c = 0; c < size; ++c) {
+            const double soft = softness * std::abs(own[c]);
+            entries[diagonal[c]].value = own[c] + soft;
+            q[c] = wanted[c] - soft * before[c];
+        }
         if (!exchange(200 + 20 * size)) {
             z = before;  // as near as rounding lets it come
-            break;
+            if (least || !found) break;
+            least = true;
+            softness *= 10.0;
+            continue;
         }
         found = true;
         double moved = 0.0, largest = 0.0;
@@ -210,9 +216,10 @@ bool Complementarity::approach() {
             moved = std::max(moved, std::abs(z[c] - before[c]));
             largest = std::max(largest, z[c]);
         }
-        if (!(kApproachSoftness * moved > std::numeric_limits<double>::epsilon() * largest)) break;
+        if (!(softness * moved > std::numeric_limits<double>::epsilon() * largest)) break;
+        if (!least) softness = std::max(kLeastSoftness, 0.1 * softness);
     }
-    each_diagonal([&](std::size_t c, double& value) { value -= soft[c]; });
+    for (std::size_t c = 0; c < size; ++c) entries[diagonal[c]].value = own[c];
     q = wanted;
     return found;
 }
