@@ -529,7 +529,7 @@ TEST(Batch, BadColumnsSayWhatToDo) {
     };
     EXPECT_EQ(error("cue.speed"), "");
     EXPECT_EQ(error("cue.speed", 1), "cue.speed: there are 1 values for 2 shots; give one for each");
-    EXPECT_EQ(error("cue.sped"), "cue.sped: it names no number in [cue]");
+    EXPECT_EQ(error("cue.sped"), "cue.sped: it names no number in [cue]; did you mean speed?");
     EXPECT_EQ(error("cue.preset"), "cue.preset: it names no number in [cue]");
     EXPECT_EQ(error("cue.offset"), "cue.offset: it names no number in [cue]");
     EXPECT_EQ(error("cue.offset.z"), "cue.offset.z: it names no number in [cue]");

@@ -115,7 +115,8 @@ double drive_of(const Group& g) {
 
 // Takes over from a solution what the next one starts from. @return whether it differs
 bool update(Group& g, double h, const StepOptions& options, int times) {
-    const double looser = static_cast<double>(1 << std::min(times, kLooser)), free = kLocked * drive_of(g) * h;
+    const double looser = static_cast<double>(1 << std::min(times, kLooser)),
+                 free = kLocked * drive_of(g) * h;
     const double mu = ball_friction(g.around.balls, 0.0);
     bool changed = false;
     for (Link& link : g.links) {
@@ -127,8 +128,8 @@ bool update(Group& g, double h, const StepOptions& options, int times) {
         if (link.j < 0 || link.open || !options.friction) continue;
         const double f = link.J > 0.0 ? vertical_friction(g, link) : friction_at_start(g, link);
         const double accuracy = link.J > free ? std::max(1.0, looser * free / link.J) : looser;
-        changed = changed ||
-                  (link.J > 0.0 && std::abs(f - link.friction_z) > accuracy * kFrictionAccuracy * mu);
+        changed =
+            changed || (link.J > 0.0 && std::abs(f - link.friction_z) > accuracy * kFrictionAccuracy * mu);
         // The next contact of the balls already feels it.
         const Vec2 change = (f - link.friction_z) * link.J * link.n;
         for (const int k : {link.i, link.j}) {
@@ -244,14 +245,16 @@ class Newton {
 
     // Notes the rates. Where balls go over from rest to rolling and back, a share of kRestCompliance is left: harmless where no gap notices it.
     bool is_solved(bool& harmless) {
-        const double rounding = rate_rounding(g_), unnoticed = kOverlapGrowth / std::max(h_, kShortestInterval);
+        const double rounding = rate_rounding(g_),
+                     unnoticed = kOverlapGrowth / std::max(h_, kShortestInterval);
         bool solved = true;
         for (std::size_t k = 0; k < active_.size(); ++k) {
             const double now = rates_[k] = rate(k);
             const Link& link = g_.links[active_[k]];
             const double wrong = link.J > 0.0 ? std::abs(now) : -now;
             solved = solved && wrong <= rounding;
-            harmless = harmless && (wrong <= rounding || (wrong <= unnoticed && !(now < 0.0 && link.gap < -kDeep)));
+            harmless =
+                harmless && (wrong <= rounding || (wrong <= unnoticed && !(now < 0.0 && link.gap < -kDeep)));
         }
         return solved;
     }

@@ -3,12 +3,21 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/detect.h"
 #include "physics/nose_reach.h"
 
 namespace carom {
 
 namespace {
 constexpr double kFar = std::numeric_limits<double>::infinity();
+}
+
+double rounding_of(const Vec3& v, const Vec3& w, double R, double t) {
+    return kClosingUlp * std::numeric_limits<double>::epsilon() * (length3(v) + R * length3(w)) * t;
+}
+
+double allowed_depth(const SeenBall& ball) {
+    return kTouchTolerance + ball.rounding;
 }
 
 double gap_between(const SeenBall& one, const SeenBall& two) {

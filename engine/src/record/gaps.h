@@ -13,7 +13,14 @@ struct SeenBall {
     Vec3 r;
     double R;
     bool flies, sinks = false;  ///< in the air; over a pocket
+    double rounding = 0.0;      ///< [m] rounding_of()
 };
+
+/// [m] What a ball with these speeds may have come too far in t [s]: closing speeds that are rounding (kClosingUlp) are no approach, and a
+/// time is rounded.
+double rounding_of(const Vec3& v, const Vec3& w, double R, double t);
+/// [m] How deep it may be in something.
+double allowed_depth(const SeenBall& ball);
 
 /// [m] Between two balls, negative where they overlap. The planar distance where both lie; one that sinks into a pocket is out of the
 /// way of those that fly.

@@ -64,7 +64,7 @@ class Checker {
                 event_ + 1 == record_.events.size() || record_.events[event_ + 1].time > e.time;
             if (!last_of_instant) continue;
             const std::vector<BallState> now = states_at(record_, e.time);
-            check_penetration(now);
+            check_penetration(now, e.time);
             check_rolling(e.time);
             const double energy = energy_of(record_, now);
             if (e.type == EventType::kCueStrike) last_energy = energy;
@@ -129,10 +129,11 @@ class Checker {
             report("U8", "too many events in one span");
     }
 
-    void check_penetration(const std::vector<BallState>& now) {
+    void check_penetration(const std::vector<BallState>& now, double t) {
         const auto seen = [&](std::size_t i) {
             const MotionState state = now[i].state;
-            return SeenBall{now[i].position, R(i), flies(state), state == MotionState::kFalling};
+            return SeenBall{now[i].position, R(i), flies(state), state == MotionState::kFalling,
+                            rounding_of(now[i].velocity, now[i].spin, R(i), t)};
         };
         for (std::size_t i = 0; i < now.size(); ++i) {
             if (is_gone(now[i].state)) continue;
@@ -140,18 +141,19 @@ class Checker {
             const std::string& id = record_.tracks[i].id;
             for (std::size_t j = i + 1; j < now.size(); ++j) {
                 if (is_gone(now[j].state)) continue;
-                const double gap = gap_between(ball, seen(j));
-                if (gap < -kTouchTolerance)
+                const SeenBall other = seen(j);
+                const double gap = gap_between(ball, other);
+                if (gap < -allowed_depth(ball) - other.rounding)
                     report("U3", "balls {} and {} overlap by {:.3g} m", id, record_.tracks[j].id, -gap);
             }
             // A ball may cross a cushion's line only where the cushion is not.
             for (const CushionLine& line : plan_.geometry.cushions)
-                if (const double gap = gap_to(line, ball); gap < -kTouchTolerance)
+                if (const double gap = gap_to(line, ball); gap < -allowed_depth(ball))
                     report("U3", "ball {} is {:.3g} m deep in a cushion", id, -gap);
             for (const Nose& nose : plan_.geometry.noses)
-                if (const double gap = gap_to(nose, ball); gap < -kTouchTolerance)
+                if (const double gap = gap_to(nose, ball); gap < -allowed_depth(ball))
                     report("U3", "ball {} is {:.3g} m deep in a jaw or cushion end", id, -gap);
-            if (const double gap = gap_to_cloth(ball); gap < -kTouchTolerance)
+            if (const double gap = gap_to_cloth(ball); gap < -allowed_depth(ball))
                 report("U3", "ball {} is {:.3g} m deep in the cloth", id, -gap);
         }
     }

@@ -77,8 +77,10 @@ class Between {
     SeenBall seen(std::size_t ball, double t) const {
         const Segment& s = segment(ball);
         const Vec2 r = place(ball, t);
-        const double z = placed_at(s, std::min(t - s.start, s.duration), record_.gravity).position.z();
-        return {Vec3(r.x(), r.y(), z), R(ball), flies(s.state), s.state == MotionState::kFalling};
+        const double tau = std::min(t - s.start, s.duration);
+        const double z = placed_at(s, tau, record_.gravity).position.z();
+        return {Vec3(r.x(), r.y(), z), R(ball), flies(s.state), s.state == MotionState::kFalling,
+                rounding_of(velocity_at(s, tau), s.w, R(ball), t)};
     }
 
     double energy(std::size_t ball, double t) const {
@@ -152,8 +154,9 @@ class Between {
         if (dot(apart, apart) > near * near) return;
         for (const double share : kShares) {
             const double t = from + share * (to - from);
-            const double gap = gap_between(seen(i, t), seen(j, t));
-            if (gap < -kTouchTolerance)
+            const SeenBall one = seen(i, t), other = seen(j, t);
+            const double gap = gap_between(one, other);
+            if (gap < -allowed_depth(one) - other.rounding)
                 report("U3", t, "balls {} and {} overlap by {:.3g} m", id(i), id(j), -gap);
         }
     }
@@ -166,8 +169,10 @@ class Between {
             if (std::abs(cross(line.direction, pieces_[ball].r - line.from)) > near) continue;
             if (!in_air) check_crossing(ball, line, from, to);
             for (const double share : kShares) {
-                const double t = from + share * (to - from), gap = gap_to(line, seen(ball, t));
-                if (gap < -kTouchTolerance)
+                const double t = from + share * (to - from);
+                const SeenBall there = seen(ball, t);
+                const double gap = gap_to(line, there);
+                if (gap < -allowed_depth(there))
                     report("U3", t, "ball {} is {:.3g} m deep in a cushion", id(ball), -gap);
             }
         }
@@ -175,8 +180,10 @@ class Between {
             const Vec2 apart = pieces_[ball].r - nose.center;
             if (dot(apart, apart) > (near + nose.radius) * (near + nose.radius)) continue;
             for (const double share : kShares) {
-                const double t = from + share * (to - from), gap = gap_to(nose, seen(ball, t));
-                if (gap < -kTouchTolerance)
+                const double t = from + share * (to - from);
+                const SeenBall there = seen(ball, t);
+                const double gap = gap_to(nose, there);
+                if (gap < -allowed_depth(there))
                     report("U3", t, "ball {} is {:.3g} m deep in a jaw or cushion end", id(ball), -gap);
             }
         }

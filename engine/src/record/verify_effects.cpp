@@ -112,8 +112,7 @@ class Skipped {
             const double reach = contact_distance(R_, record_.size(static_cast<int>(j)).R);
             const std::vector<Segment>& others = record_.tracks[j].segments;
             for (std::size_t k = 0; k < others.size(); ++k) {
-                const double from = std::max(s.start, others[k].start),
-                             to = std::min(end, end_of(others, k));
+                const double from = std::max(s.start, others[k].start), to = std::min(end, end_of(others, k));
                 if (is_gone(others[k].state) || to < from) continue;
                 if (time_to_ball(path_of(s, from, to), path_of(others[k], from, to), reach) < kNever)
                     need("ball-ball impacts", "meets ball " + record_.tracks[j].id);
