@@ -19,6 +19,8 @@ constexpr double kLongestInterval = 1e6;
 constexpr double kPlaceError = 2e-8;
 // [s] What friction stops at once rests after this time at the latest: with the error of places alone it could creep for days.
 constexpr double kStopsWithin = 0.01;
+// [s] Longest interval without the friction between balls, where that leaves no solution.
+constexpr double kSmooth = 0.01;
 // [-] Where an interval may go on for this share of itself after a stop, it is not made to end there exactly.
 constexpr double kSoon = 1e-2;
 // [rad] Up to this, a direction that turns is that of the middle of the interval.
@@ -152,7 +154,7 @@ double link_interval(const Group& g, const Link& link, double h) {
     interval = std::min(interval, allowed_interval(h, closing * h, kOverlapGrowth, 2));
     const double force = link.J / h;
     if (rate > 0.0) interval = std::min(interval, 2.0 * kGapLeft / rate);
-    if (link.j >= 0) {
+    if (link.j >= 0 && !g.smooth) {
         // The friction between two balls changes with their slip, until that is gone.
         const double change = std::abs(friction_at_start(g, link) - link.friction_z);
         const double share = std::min(1.0, length(contact_slip(g, link, false)) / slip_ended(g, link));
@@ -208,7 +210,9 @@ bool keeps_direction(const Group& g) {
 void guide_friction(Group& g, double h) {
     g.bodies_before = g.bodies;
     g.links_before = g.links;
-    if (!guide(g) || (step(g, h) && keeps_direction(g))) return;
+    const bool smooth = g.smooth;
+    if (!guide(g) || (step(g, h) && g.smooth == smooth && keeps_direction(g))) return;
+    g.smooth = smooth;
     g.bodies.swap(g.bodies_before);
     g.links.swap(g.links_before);
 }
@@ -267,6 +271,7 @@ void solve_interval(Group& g) {
     for (int attempt = 1;; ++attempt) {
         const bool solved = step(g, h);
         double accurate = solved ? kNever : 0.25 * h, gone = kNever, later = kNever;
+        if (g.smooth) accurate = std::max(0.25 * h, kSmooth);
         for (const Body& b : g.bodies) {
             gone = std::min(gone, gone_fast(g, b, h));
             accurate = std::min(accurate, friction_interval(g, b, h));

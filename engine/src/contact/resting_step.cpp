@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "contact/complementarity.h"
@@ -411,8 +412,11 @@ bool step(Group& g, double h, const StepOptions& options) {
         b.s_end = b.s + share * (b.s_end - b.s);
     }
     g.solved = 0.0;
+    // Where the last attempt had no solution with friction, one of these is looked for once, not three times.
+    const bool again = !std::exchange(g.smooth, false);
     bool solved = solve_with(g, h, options);
-    if (options.stabilise) solved = solved ? drop_stabilisation(g, h, options) : solve_with(g, h, options);
+    if (options.stabilise)
+        solved = solved ? drop_stabilisation(g, h, options) : again && solve_with(g, h, options);
     if (solved) {
         g.solved = h;
         return true;
@@ -420,9 +424,10 @@ bool step(Group& g, double h, const StepOptions& options) {
     // With friction there may be no solution at all (Painleve).
     StepOptions less = options;
     less.stabilise = false;
-    if (options.stabilise && solve_with(g, h, less)) return true;
+    if (options.stabilise && again && solve_with(g, h, less)) return true;
     less.friction = false;
-    return options.friction && solve_with(g, h, less);
+    g.smooth = options.friction && solve_with(g, h, less);
+    return g.smooth;
 }
 
 bool strike(Group& g) {
