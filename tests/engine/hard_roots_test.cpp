@@ -177,6 +177,33 @@ TEST(HardRoots, EventsAtTheStart) {
     EXPECT_EQ(record.state_at(3, 0.0).state, MotionState::kStationary);
 }
 
+// Two balls at rest touch, and accelerations of 2.6e-7 m/s^2, almost along each other, close their contact by 2.7e-10 m/s^2, while the
+// spin of one rounds speeds to 3e-14 m/s.
+TEST(HardRoots, SlowTouch) {
+    const double R = 0.007997277000662361;
+    const Path a{{0.0, 0.006429872458811686},
+                 {0.0, 0.0},
+                 {-1.180691990260985e-07, 6.05358751840543e-08},
+                 88.0,
+                 true,
+                 true,
+                 4.7e-5},
+        b{{0.007997277000662363, 0.02028156254616094},
+          {0.0, 0.0},
+          {1.11313204971654e-07, -7.22100986144071e-08},
+          1e7,
+          true,
+          true,
+          15.4};
+    const double t = time_to_ball(a, b, 2.0 * R);
+    EXPECT_GT(t, 1e-4);
+    EXPECT_LT(t, 1e-3);
+    // It opens where they go the other way.
+    Path from = b;
+    from.a = -3.0 * a.a;
+    EXPECT_EQ(time_to_ball(Path{a.r, a.v, -a.a, a.horizon, true, true, a.surface}, from, 2.0 * R), kNever);
+}
+
 // H16: on the end of a cushion there is neither a gap nor a second normal.
 TEST(HardRoots, CushionEnd) {
     for (const bool joined : {false, true}) {
