@@ -247,7 +247,7 @@ TEST(Complementarity, RoundingDoesNotDecide) {
                         problem.q[2] + z[2] - z[1]};
     for (int k = 0; k < 3; ++k) {
         EXPECT_GE(z[k], 0.0);
-        EXPECT_GE(w[k], -1e-15 * fast);
+        EXPECT_GE(w[k], -4e-15 * fast) << "1e-15 cannot be removed, the rest is the rounding of a row";
         EXPECT_LE(std::abs(w[k] * z[k]), 1e-14 * fast * fast);
     }
 }

@@ -15,7 +15,7 @@ constexpr int kBlockTries = 8;
 constexpr int kMoreRefinements = 20;
 constexpr double kSlowRow = 0.25, kSlowestRow = 0.9999;  // [-] extrapolated ratios of successive refinements
 // [-] Softness, relative to the mobility, with which a solution is approached, and most rounds.
-constexpr double kApproachSoftness = 1e-4, kLeastSoftness = 1e-10;
+constexpr double kApproachSoftness = 1e-4, kLeastSoftness = 1e-8;
 constexpr int kMostRounds = 40;
 constexpr double kSumUlp = 4.0;  // [ulp of a row's terms] a smaller residual is the rounding of their sum
 }  // namespace

@@ -83,8 +83,20 @@ Link link_of(const Group& g, const RestingContact& c) {
     return link;
 }
 
-// Takes the velocities at the end of a step as the present ones.
+// What the rounding of impulses that are a million times the speeds, in a flat wedge, would add to the energy.
+void keep_energy(Group& g) {
+    double before = 0.0, after = 0.0;
+    for (const Body& b : g.bodies) {
+        before += dot(b.v, b.v);
+        after += dot(b.v_end, b.v_end);
+    }
+    if (!(after > before)) return;
+    for (Body& b : g.bodies) b.v_end *= std::sqrt(before / after);
+}
+
+// Takes the velocities after impulses at an instant as the present ones.
 void accept(Group& g) {
+    keep_energy(g);
     const double gone = std::max(g.noise, 3.5 * g.motion.slide * kSlipNoise);
     for (std::size_t k = 0; k < g.bodies.size(); ++k) {
         const Body& b = g.bodies[k];
