@@ -203,7 +203,7 @@ bool Complementarity::approach() {
             entries[diagonal[c]].value = own[c] + soft;
             q[c] = wanted[c] - soft * before[c];
         }
-        if (!exchange(200 + 20 * size)) {
+        if (!exchange(found ? 20 + 2 * size : 200 + 20 * size)) {
             z = before;  // as near as rounding lets it come
             if (least || !found) break;
             least = true;

@@ -122,6 +122,8 @@ void respond(Group& g, double h, bool friction, bool stops = false);
 // resting_step.cpp
 /// Solves the step over h [s]; without friction for 0, an instant. @return whether there is a solution; without one the closest state is left
 bool step(Group& g, double h, const StepOptions& options = {});
+/// Whether an impulse of the solution over h is more than what drives the group makes: balls lock each other.
+bool locks(const Group& g, double h);
 /// Solves for the impulses that leave no contact closing. @return whether there is a solution
 bool strike(Group& g);
 /// [m/s] Rounding of the rates of the gaps.

@@ -211,8 +211,10 @@ void guide_friction(Group& g, double h) {
     g.bodies_before = g.bodies;
     g.links_before = g.links;
     const bool smooth = g.smooth;
-    if (!guide(g) || (step(g, h) && g.smooth == smooth && keeps_direction(g))) return;
+    if (!guide(g)) return;
+    const bool solved = step(g, h, {.friction = !smooth}) && !g.smooth && keeps_direction(g);
     g.smooth = smooth;
+    if (solved) return;
     g.bodies.swap(g.bodies_before);
     g.links.swap(g.links_before);
 }
@@ -259,6 +261,23 @@ bool accelerates(const Group& g) {
     });
 }
 
+// The step over h. Where friction leaves no solution (Painleve), balls lock each other, and may stop each other at an instant; where that has no
+// solution either, friction is left out over kSmooth at most. @return whether there is a solution
+bool attempt_at(Group& g, double& h, double shortest) {
+    if (!g.smooth) {
+        const bool solved = step(g, h);
+        if (!g.smooth || h <= shortest) return solved;
+        if (step(g, shortest) && !g.smooth && locks(g, shortest)) {
+            h = shortest;
+            return true;
+        }
+        h = std::min(h, kSmooth);
+    }
+    const bool solved = step(g, h, {.friction = false});
+    g.smooth = true;
+    return solved;
+}
+
 }  // namespace
 
 void solve_interval(Group& g) {
@@ -269,9 +288,8 @@ void solve_interval(Group& g) {
     int longer = 0;
     double gone_before = 0.0;  // something has gone before this time, but not before the last interval
     for (int attempt = 1;; ++attempt) {
-        const bool solved = step(g, h);
+        const bool solved = attempt_at(g, h, shortest);
         double accurate = solved ? kNever : 0.25 * h, gone = kNever, later = kNever;
-        if (g.smooth) accurate = std::max(0.25 * h, kSmooth);
         for (const Body& b : g.bodies) {
             gone = std::min(gone, gone_fast(g, b, h));
             accurate = std::min(accurate, friction_interval(g, b, h));

@@ -38,7 +38,7 @@ constexpr double kSlopeLeft = 0.25;
 constexpr double kFrictionAccuracy = 1e-9;
 constexpr int kLooser = 20;
 // [of what drives a group] Where a contact pushes more than that, balls lock each other, and a friction that is nearly right would drive them.
-constexpr double kLocked = 1.0;
+constexpr double kLocked = 10.0;
 // [of the accelerations that drive a group] Larger forces show that a wedge cannot be stabilised.
 constexpr double kLargestStabilised = 1e3;
 // [-] They are a wedge's own where it has them without being stabilised, but for this factor.
@@ -347,12 +347,23 @@ class Newton {
     std::vector<std::size_t> of_body_, first_;
 };
 
+// Whether balls that lock each other are driven by a friction that is only nearly right.
+bool is_driven(const Group& g, double h) {
+    if (!locks(g, h)) return false;
+    double before = 0.0, after = 0.0;
+    for (const Body& b : g.bodies) {
+        before += dot(b.v, b.v) + 0.4 * dot(b.s, b.s);
+        after += dot(b.v_end, b.v_end) + 0.4 * dot(b.s_end, b.s_end);
+    }
+    return after > before;
+}
+
 bool solve_with(Group& g, double h, const StepOptions& options) {
     if (!options.friction) {
         // Not from what a step with friction has left: balls between two walls keep any impulse.
         for (Link& link : g.links) link.friction_z = link.J = 0.0;
     }
-    return Newton(g, h, options).run();
+    return Newton(g, h, options).run() && !(options.friction && is_driven(g, h));
 }
 
 // Two opposing fixed normals cannot both be stabilised: the forces are then huge and mean nothing. Nor may those be left that a wedge keeps. But
@@ -396,6 +407,11 @@ double friction_at_start(const Group& g, const Link& link) {
 
 double slip_ended(const Group& g, const Link& link) {
     return ease_of(g, link) * ball_friction(g.around.balls, length(contact_slip(g, link, false))) * link.J;
+}
+
+bool locks(const Group& g, double h) {
+    const double most = kLocked * drive_of(g) * h;
+    return std::any_of(g.links.begin(), g.links.end(), [most](const Link& link) { return link.J > most; });
 }
 
 bool step(Group& g, double h, const StepOptions& options) {
