@@ -415,8 +415,8 @@ bool locks(const Group& g, double h) {
 }
 
 bool step(Group& g, double h, const StepOptions& options) {
-    // An interval of another length is nearly solved already.
-    const double share = g.solved > 0.0 ? h / g.solved : 0.0;
+    // An interval of another length is nearly solved already: with impulses that are as much shorter, but where balls lock each other.
+    const double share = !(g.solved > 0.0) ? 0.0 : locks(g, g.solved) ? 1.0 : h / g.solved;
     for (Link& link : g.links) {
         link.J *= share;
         if (share > 0.0) continue;
