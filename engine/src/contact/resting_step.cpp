@@ -368,10 +368,10 @@ bool solve_with(Group& g, double h, const StepOptions& options) {
 
 // Two opposing fixed normals cannot both be stabilised: the forces are then huge and mean nothing. Nor may those be left that a wedge keeps. But
 // a flat wedge also has large ones of its own, which stay about as large without.
-bool drop_stabilisation(Group& g, double h, const StepOptions& options) {
+void drop_stabilisation(Group& g, double h, const StepOptions& options) {
     const double most = kLargestStabilised * drive_of(g) * h;
     const auto is_huge = [most](const Link& link) { return link.turning != 0.0 && link.J > most; };
-    if (std::none_of(g.links.begin(), g.links.end(), is_huge)) return true;
+    if (std::none_of(g.links.begin(), g.links.end(), is_huge)) return;
     const std::vector<Body> bodies = g.bodies;
     const std::vector<Link> links = g.links;
     for (Link& link : g.links) {
@@ -381,14 +381,15 @@ bool drop_stabilisation(Group& g, double h, const StepOptions& options) {
         }
     }
     for (Link& link : g.links) link.J = 0.0;
-    const bool solved = solve_with(g, h, options);
-    bool own = solved;
-    for (std::size_t c = 0; c < links.size(); ++c)
-        own = own && !(is_huge(links[c]) && links[c].J > kOwnForce * g.links[c].J);
-    if (!own) return solved;
+    bool better = solve_with(g, h, options);
+    if (better) {
+        better = false;
+        for (std::size_t c = 0; c < links.size(); ++c)
+            better = better || (is_huge(links[c]) && links[c].J > kOwnForce * g.links[c].J);
+    }
+    if (better) return;
     g.bodies = bodies;
     g.links = links;
-    return true;
 }
 
 }  // namespace
@@ -431,8 +432,8 @@ bool step(Group& g, double h, const StepOptions& options) {
     // Where the last attempt had no solution with friction, one of these is looked for once, not three times.
     const bool again = !std::exchange(g.smooth, false);
     bool solved = solve_with(g, h, options);
-    if (options.stabilise)
-        solved = solved ? drop_stabilisation(g, h, options) : again && solve_with(g, h, options);
+    if (options.stabilise && solved) drop_stabilisation(g, h, options);
+    if (options.stabilise && !solved && again) solved = solve_with(g, h, options);
     if (solved) {
         g.solved = h;
         return true;
