@@ -347,9 +347,15 @@ class Newton {
     std::vector<std::size_t> of_body_, first_;
 };
 
-// Whether balls that lock each other are driven by a friction that is only nearly right.
+// Whether contacts push more than `times` what drives the group makes over h.
+bool pushes(const Group& g, double h, double times) {
+    const double most = times * drive_of(g) * h;
+    return std::any_of(g.links.begin(), g.links.end(), [most](const Link& link) { return link.J > most; });
+}
+
+// Whether balls that hardly can move are driven by a friction that is only nearly right.
 bool is_driven(const Group& g, double h) {
-    if (!locks(g, h)) return false;
+    if (!pushes(g, h, 1.0)) return false;
     double before = 0.0, after = 0.0;
     for (const Body& b : g.bodies) {
         before += dot(b.v, b.v) + 0.4 * dot(b.s, b.s);
@@ -411,8 +417,7 @@ double slip_ended(const Group& g, const Link& link) {
 }
 
 bool locks(const Group& g, double h) {
-    const double most = kLocked * drive_of(g) * h;
-    return std::any_of(g.links.begin(), g.links.end(), [most](const Link& link) { return link.J > most; });
+    return pushes(g, h, kLocked);
 }
 
 bool step(Group& g, double h, const StepOptions& options) {
