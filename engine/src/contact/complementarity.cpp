@@ -17,6 +17,8 @@ constexpr double kSlowRow = 0.25, kSlowestRow = 0.9999;  // [-] extrapolated rat
 // [-] Softness, relative to the mobility, with which a solution is approached, and most rounds.
 constexpr double kApproachSoftness = 1e-4, kLeastSoftness = 1e-8;
 constexpr int kMostRounds = 40;
+// [-] Exchanges of a matrix that may have no solution: where there is one, three are usual.
+constexpr std::size_t kFewExchanges = 16;
 constexpr double kSumUlp = 4.0;  // [ulp of a row's terms] a smaller residual is the rounding of their sum
 }  // namespace
 
@@ -176,7 +178,7 @@ void Complementarity::find_wrong(const std::vector<double>& w) {
 }
 
 bool Complementarity::solve(bool thorough) {
-    if (exchange(20 + 2 * size) || (thorough && approach())) return true;
+    if (exchange(thorough ? 20 + 2 * size : kFewExchanges) || (thorough && approach())) return true;
     std::fill(z.begin(), z.end(), 0.0);
     return false;
 }
@@ -203,7 +205,7 @@ bool Complementarity::approach() {
             entries[diagonal[c]].value = own[c] + soft;
             q[c] = wanted[c] - soft * before[c];
         }
-        if (!exchange(found ? 20 + 2 * size : 200 + 20 * size)) {
+        if (!exchange(found ? kFewExchanges : 200 + 20 * size)) {
             z = before;  // as near as rounding lets it come
             if (least || !found) break;
             least = true;
