@@ -37,7 +37,7 @@ constexpr double kSlopeLeft = 0.25;
 // contacts that hold each other's slip.
 constexpr double kFrictionAccuracy = 1e-9;
 constexpr int kLooser = 20;
-// [of what drives a group] Where a contact pushes more than that, balls lock each other, and a friction that is nearly right would drive them.
+// [of what drives a group] Where a contact pushes more than that, balls lock each other.
 constexpr double kLocked = 10.0;
 // [of the accelerations that drive a group] Larger forces show that a wedge cannot be stabilised.
 constexpr double kLargestStabilised = 1e3;
@@ -116,9 +116,7 @@ double drive_of(const Group& g) {
 
 // Takes over from a solution what the next one starts from. @return whether it differs
 bool update(Group& g, double h, const StepOptions& options, int times) {
-    const double looser = static_cast<double>(1 << std::min(times, kLooser)),
-                 free = kLocked * drive_of(g) * h;
-    const double mu = ball_friction(g.around.balls, 0.0);
+    const double accuracy = kFrictionAccuracy * static_cast<double>(1 << std::min(times, kLooser));
     bool changed = false;
     for (Link& link : g.links) {
         if (options.stabilise && !link.open && !link.walled) {
@@ -128,9 +126,8 @@ bool update(Group& g, double h, const StepOptions& options, int times) {
         }
         if (link.j < 0 || link.open || !options.friction) continue;
         const double f = link.J > 0.0 ? vertical_friction(g, link) : friction_at_start(g, link);
-        const double accuracy = link.J > free ? std::max(1.0, looser * free / link.J) : looser;
-        changed =
-            changed || (link.J > 0.0 && std::abs(f - link.friction_z) > accuracy * kFrictionAccuracy * mu);
+        changed = changed || (link.J > 0.0 &&
+                              std::abs(f - link.friction_z) > accuracy * ball_friction(g.around.balls, 0.0));
         // The next contact of the balls already feels it.
         const Vec2 change = (f - link.friction_z) * link.J * link.n;
         for (const int k : {link.i, link.j}) {
