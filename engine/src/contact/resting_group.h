@@ -1,5 +1,5 @@
-// One solution of one group of resting contacts (resting.h): what impulses do (resting_response.cpp), the step over an interval
-// (resting_step.cpp), and how long an interval may be (resting_interval.cpp). resting.cpp defines the order.
+// One solution of one group of resting contacts (resting.h): what impulses do (resting_response.cpp), which impulses end an interval without closing contacts
+// (resting_newton.cpp), the step over it (resting_step.cpp), and how long an interval may be (resting_interval.cpp). resting.cpp defines the order.
 //
 // Everything is evaluated at the end of the interval h (an implicit step, after J. J. Moreau's time-stepping for unilateral
 // contacts with friction). For each ball, per mass, with v its velocity, s = R (w_y, -w_x) the velocity with which it would roll,
@@ -119,6 +119,12 @@ Vec2 contact_slip(const Group& g, const Link& link, bool at_end);
 /// @param stops     whether the derivatives of a ball that hardly moves are those at rest
 void respond(Group& g, double h, bool friction, bool stops = false);
 
+// resting_newton.cpp
+/// Solves for the impulses of the contacts that are not open, by Newton's method, from those that are there. @return whether there is a solution
+bool solve_newton(Group& g, double h, const StepOptions& options);
+/// [m/s] Slip of two balls that their friction ends within the interval.
+double slip_ended(const Group& g, const Link& link);
+
 // resting_step.cpp
 /// Solves the step over h [s]; without friction for 0, an instant. @return whether there is a solution; without one the closest state is left
 bool step(Group& g, double h, const StepOptions& options = {});
@@ -130,8 +136,6 @@ bool strike(Group& g);
 double rate_rounding(const Group& g);
 /// [m/s] Friction between balls as it would be with the slip at the start.
 double friction_at_start(const Group& g, const Link& link);
-/// [m/s] Slip of two balls that their friction ends within the interval.
-double slip_ended(const Group& g, const Link& link);
 
 // resting_interval.cpp
 /// Chooses the interval, solves it and writes the segments.

@@ -1,111 +1,25 @@
 // The implicit step of a group of resting contacts over an interval (resting_group.h).
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 #include <vector>
 
-#include "contact/complementarity.h"
 #include "contact/resting_group.h"
 
 namespace carom::resting {
 
 namespace {
 
-// [-] Most Newton steps of one solution; a few are usual, each is exact as soon as every ball's kind of motion is right.
-constexpr int kNewtonSteps = 40;
-// [-] Until this step, what a change of the load does to the friction of the cloth is part of the linear problem: fewer steps, but where balls lock
-// each other no solution.
-constexpr int kLoadSteps = 12;
-// [-] From this step on, each second one takes balls for stopped that hardly move: on the way to rest, Newton's method only halves their speed again
-// and again.
-constexpr int kStopsFrom = 5;
-// [ulp of the speeds and impulses] Smaller rates of a gap are zero.
-constexpr double kRateUlp = 32.0;
-// [-] A gap whose normal turns further than this is not looked at in detail: the interval is shortened anyway.
-constexpr double kLongestTurn = 0.1;
-// [m] Overlap that the turning of a normal may cause within an interval.
-constexpr double kOverlapLeft = 4e-15;
-// [m] A deeper overlap does not grow any more.
-constexpr double kDeep = 2e-13;
-// [m] Smaller changes of a gap are not looked at.
-constexpr double kNoGap = 4e-15;
-// [-] Most trials of a line search, and the share of its first slope that may be left.
-constexpr int kSearches = 8;
-constexpr double kSlopeLeft = 0.25;
-// [of its coefficient] Accuracy of the friction between balls. It is halved in each step, up to 2^20 times, for
-// contacts that hold each other's slip.
-constexpr double kFrictionAccuracy = 1e-9;
-constexpr int kLooser = 20;
 // [of what drives a group] Where a contact pushes more than that, balls lock each other.
 constexpr double kLocked = 10.0;
 // [of the accelerations that drive a group] Larger forces show that a wedge cannot be stabilised.
 constexpr double kLargestStabilised = 1e3;
 // [-] They are a wedge's own where it has them without being stabilised, but for this factor.
 constexpr double kOwnForce = 2.0;
-
-// What must not become negative: the rate of a gap at the end, with the turning of its normal.
-double wanted_rate(const Group& g, const Link& link, double h, const StepOptions& options) {
-    return end_rate(g, link) + (options.stabilise ? h * link.turning : 0.0);
-}
-
-// How much one of impulse between two balls changes their upward slip.
-double ease_of(const Group& g, const Link& link) {
-    const auto ease = [](const Body& b) {
-        return b.mode == Mode::kSliding ? 2.5 : (b.mode == Mode::kRolling ? 5.0 / 7.0 : 0.0);
-    };
-    return ease(g.bodies[link.i]) + ease(g.bodies[link.j]);
-}
-
-// The friction between two balls opposes their slip at the end; the upward slip without it, X, and the impulse's effect on it give
-// f = -X / (effect + |slip| / mu), in which |slip| follows in a few turns.
-double vertical_friction(const Group& g, const Link& link) {
-    // What holds two balls at rest may have any size.
-    if (g.bodies[link.i].mode == Mode::kResting && g.bodies[link.j].mode == Mode::kResting)
-        return link.friction_z;
-    const Vec2 slip = contact_slip(g, link, true);
-    const double effect = ease_of(g, link) * link.J;
-    const double without = slip.x() - effect * link.friction_z;
-    double size = length(slip), f = 0.0;
-    for (int turn = 0; turn < 30; ++turn) {
-        const double mu = ball_friction(g.around.balls, size);
-        const double whole = effect + (mu > 0.0 ? size / mu : 0.0);
-        if (mu == 0.0 || !(whole > 0.0)) return 0.0;
-        f = -without / whole;
-        const double next = length(Vec2(without + effect * f, slip.y()));
-        if (std::abs(next - size) <= 1e-12 * size) break;
-        size = next;
-    }
-    const double most = ball_friction(g.around.balls, size);
-    return std::clamp(f, -most, most);
-}
-
-// [m/s^2] What must be added to the acceleration of a gap along its first normal: with the tangential velocity v and acceleration a and
-// the distance D, the gap opens by 1/2 (v^2 t^2 + v a t^3 + 1/4 a^2 t^4) / D as the normal turns, and its rate ends
-// with 0 for (v^2 + 3/2 v a h + 1/2 a^2 h^2) / D. Where the gap would become negative meanwhile, it opens instead. Overlaps end within
-// the interval.
-double turning_of(const Link& link, const Across& t, double h) {
-    const double time = std::max(h, kRecoveryTime);
-    const double recovery = link.gap < -kOverlapDepth ? 2.0 * link.gap / (time * time) : 0.0;
-    if (t.distance == 0.0) return recovery;
-    const double c = t.v * t.v / t.distance, k = t.v * t.a / t.distance, kk = t.a * t.a / t.distance;
-    // What rounds to no gap would only stop balls at rest from leaning on each other.
-    if (h * h * (c + h * (std::abs(k) + kk * h)) <= kNoGap) return recovery;
-    const double taylor = c + h * (1.5 * k + 0.5 * kk * h);
-    // The distance along the first normal is somewhat shorter by then.
-    const double level = taylor / std::max(0.5, 1.0 - 0.5 * taylor * h * h / t.distance);
-    double least = c;
-    bool free = std::abs(level) * h * h < kLongestTurn * t.distance;
-    for (const double share : {0.25, 0.5, 0.75, 1.0}) {
-        const double x = share * h, n = -0.5 * level * x * x, across = x * (t.v + 0.5 * x * t.a),
-                     D = t.distance;
-        const double change = (n * (2.0 * D + n) + across * across) / (D + length(Vec2(D + n, across)));
-        free = free && std::max(0.0, link.gap) + change >= -kOverlapLeft;
-        least = std::min(least, c + x * (k + 0.25 * kk * x));
-    }
-    if (k < 0.0 && -2.0 * k < kk * h) least = c - k * k / kk;
-    return (free ? level : std::min(level, least)) + recovery;
-}
+// [ulp of the speeds and impulses] Smaller rates of a gap are zero.
+constexpr double kRateUlp = 32.0;
 
 // [m/s^2] The accelerations that drive a group.
 double drive_of(const Group& g) {
@@ -113,236 +27,6 @@ double drive_of(const Group& g) {
     for (const Link& link : g.links) drive = std::max(drive, std::abs(link.turning));
     return drive;
 }
-
-// Takes over from a solution what the next one starts from. @return whether it differs
-bool update(Group& g, double h, const StepOptions& options, int times) {
-    const double accuracy = kFrictionAccuracy * static_cast<double>(1 << std::min(times, kLooser));
-    bool changed = false;
-    for (Link& link : g.links) {
-        if (options.stabilise && !link.open && !link.walled) {
-            const double wanted = turning_of(link, across(g, link, h), h);
-            changed = changed || std::abs(wanted - link.turning) * h * h > kNoGap;
-            link.turning = wanted;
-        }
-        if (link.j < 0 || link.open || !options.friction) continue;
-        const double f = link.J > 0.0 ? vertical_friction(g, link) : friction_at_start(g, link);
-        changed = changed || (link.J > 0.0 &&
-                              std::abs(f - link.friction_z) > accuracy * ball_friction(g.around.balls, 0.0));
-        // The next contact of the balls already feels it.
-        const Vec2 change = (f - link.friction_z) * link.J * link.n;
-        for (const int k : {link.i, link.j}) {
-            Body& b = g.bodies[k];
-            if (b.mode == Mode::kSliding) b.s_end -= 2.5 * change;
-            if (b.mode == Mode::kRolling) b.s_end -= (5.0 / 7.0) * change;
-        }
-        link.friction_z = f;
-    }
-    return changed;
-}
-
-/// Frictions between balls follow from a solution and change the next one. Two changes in turn tell where that leads to (D. G. Anderson,
-/// "Iterative procedures for nonlinear integral equations", J. ACM 12, 1965, with one step back): balls that hold each other's spin come
-/// to it by a few percent of the way in each step.
-class Extrapolation {
-  public:
-    void note(const Group& g) {
-        before_.clear();
-        for (const Link& link : g.links) before_.push_back(link.friction_z);
-    }
-    void forget() { last_.clear(); }
-    /// @param g  with the frictions that follow from those that were noted
-    void extrapolate(Group& g) {
-        const bool known = !last_.empty();
-        now_.clear();
-        change_.resize(g.links.size());
-        double both = 0.0, square = 0.0;
-        for (std::size_t c = 0; c < g.links.size(); ++c) {
-            const Link& link = g.links[c];
-            const double change = link.J * (link.friction_z - before_[c]), more = change - change_[c];
-            both += change * more;
-            square += more * more;
-            change_[c] = change;
-            now_.push_back(link.friction_z);
-        }
-        if (known && square > 0.0) {
-            const double back = std::clamp(both / square, -kFarthest, 1.0),
-                         most = ball_friction(g.around.balls, 0.0);
-            for (std::size_t c = 0; c < g.links.size(); ++c) {
-                Link& link = g.links[c];
-                if (link.j >= 0 && link.J > 0.0)
-                    link.friction_z = std::clamp(now_[c] - back * (now_[c] - last_[c]), -most, most);
-            }
-        }
-        last_.swap(now_);
-    }
-
-  private:
-    static constexpr double kFarthest = 50.0;  // [changes]
-    std::vector<double> before_, now_, last_;  // frictions
-    std::vector<double> change_;               // of the vertical impulses
-};
-
-/// The impulses of the contacts that do not open, by Newton's method on J >= 0, rate >= 0, J rate = 0. That is piecewise smooth and, but
-/// for the friction between balls, monotone.
-class Newton {
-  public:
-    Newton(Group& g, double h, const StepOptions& options)
-        : g_(g), h_(h), options_(options), problem_(g.problem) {
-        for (std::size_t c = 0; c < g.links.size(); ++c) {
-            if (g.links[c].open)
-                g.links[c].J = 0.0;
-            else
-                active_.push_back(c);
-        }
-        problem_.resize(active_.size());
-        before_.resize(active_.size());
-        rates_.resize(active_.size());
-        list_contacts();
-    }
-
-    /// @return whether there is a solution
-    bool run() {
-        for (int newton = 0;; ++newton) {
-            const bool stops = newton >= kStopsFrom && newton % 2 == 1;
-            respond(g_, h_, options_.friction, stops);
-            // What a solution takes from the one before: friction between balls, turning of normals.
-            frictions_.note(g_);
-            const bool changed = update(g_, h_, options_, newton);
-            if (changed) {
-                frictions_.extrapolate(g_);
-                respond(g_, h_, options_.friction, stops);
-            } else {
-                frictions_.forget();
-            }
-            bool harmless = !changed;
-            if (is_solved(harmless) && !changed) return true;
-            if (newton >= kStopsFrom && harmless) return true;
-            if (newton == kNewtonSteps) return false;
-            if (!solve(newton < kLoadSteps ? 1.0 : 0.0)) return harmless;
-            search();
-        }
-    }
-
-  private:
-    void list_contacts() {
-        first_.assign(g_.bodies.size() + 1, 0);
-        const auto each = [this](auto&& take) {
-            for (std::size_t k = active_.size(); k-- > 0;) {
-                const Link& link = g_.links[active_[k]];
-                take(k, link.i);
-                if (link.j >= 0) take(k, link.j);
-            }
-        };
-        each([this](std::size_t, int body) { ++first_[body]; });
-        for (std::size_t b = 1; b < first_.size(); ++b) first_[b] += first_[b - 1];
-        of_body_.resize(first_.back());
-        each([this](std::size_t k, int body) { of_body_[--first_[body]] = k; });
-    }
-
-    double rate(std::size_t k) const { return wanted_rate(g_, g_.links[active_[k]], h_, options_); }
-
-    // Notes the rates. Where balls go over from rest to rolling and back, a share of kRestCompliance is left: harmless where no gap notices it.
-    bool is_solved(bool& harmless) {
-        const double rounding = rate_rounding(g_),
-                     unnoticed = kOverlapGrowth / std::max(h_, kShortestInterval);
-        bool solved = true;
-        for (std::size_t k = 0; k < active_.size(); ++k) {
-            const double now = rates_[k] = rate(k);
-            const Link& link = g_.links[active_[k]];
-            const double wrong = link.J > 0.0 ? std::abs(now) : -now;
-            solved = solved && wrong <= rounding;
-            harmless =
-                harmless && (wrong <= rounding || (wrong <= unnoticed && !(now < 0.0 && link.gap < -kDeep)));
-        }
-        return solved;
-    }
-
-    // With friction there may be none, and no use in looking for it long.
-    bool solve(double lifts) {
-        linearise(lifts);
-        if (problem_.solve(!options_.friction)) return true;
-        if (lifts == 0.0) return false;
-        linearise(0.0);
-        return problem_.solve(!options_.friction);
-    }
-
-    // rate + A (J - J now) for the present kinds of motion.
-    void linearise(double lifts) {
-        problem_.q = rates_;
-        problem_.clear();
-        for (std::size_t k = 0; k < active_.size(); ++k) {
-            const Link& column = g_.links[active_[k]];
-            problem_.z[k] = column.J;
-            problem_.begin_column();
-            const Body& bi = g_.bodies[column.i];
-            const Vec2 dvi =
-                -(bi.by_push * column.n) - column.friction_z * (bi.by_couple * column.n - lifts * bi.by_lift);
-            double own = -dot(column.n, dvi);
-            add(k, column.i, dvi);
-            if (column.j >= 0) {
-                const Body& bj = g_.bodies[column.j];
-                const Vec2 dvj = bj.by_push * column.n -
-                                 column.friction_z * (bj.by_couple * column.n + lifts * bj.by_lift);
-                own += dot(column.n, dvj);
-                add(k, column.j, dvj);
-            }
-            problem_.add(k, own);
-        }
-        before_ = problem_.z;
-        problem_.multiply_add(-1.0, before_, problem_.q);
-    }
-
-    // What the change dv of a ball's velocity changes in the rates of its contacts, but for number k.
-    void add(std::size_t k, int body, const Vec2& dv) {
-        for (std::size_t n = first_[body]; n < first_[body + 1]; ++n) {
-            const std::size_t r = of_body_[n];
-            if (r == k) continue;
-            const Link& row = g_.links[active_[r]];
-            problem_.add(r, row.i == body ? -dot(row.n, dv) : dot(row.n, dv));
-        }
-    }
-
-    // Without friction between balls the rates are the gradient of a convex function of the impulses: its least value on the way to the
-    // solution of the linear problem is taken, so that two kinds of motion do not alternate.
-    void search() {
-        const double first = slope();
-        double low = 0.0, at_low = first, high = 1.0;
-        go(1.0);
-        double at_high = slope();
-        for (int turn = 0; turn < kSearches && at_high > kSlopeLeft * std::abs(first) && at_low < 0.0;
-             ++turn) {
-            const double share = std::clamp(low + (high - low) * at_low / (at_low - at_high),
-                                            low + 0.1 * (high - low), high - 0.1 * (high - low));
-            go(share);
-            const double here = slope();
-            if (std::abs(here) <= kSlopeLeft * std::abs(first)) break;
-            (here > 0.0 ? high : low) = share;
-            (here > 0.0 ? at_high : at_low) = here;
-        }
-    }
-
-    void go(double share) {
-        for (std::size_t k = 0; k < active_.size(); ++k)
-            g_.links[active_[k]].J = before_[k] + share * (problem_.z[k] - before_[k]);
-        respond(g_, h_, options_.friction);
-    }
-
-    double slope() const {
-        double sum = 0.0;
-        for (std::size_t k = 0; k < active_.size(); ++k) sum += rate(k) * (problem_.z[k] - before_[k]);
-        return sum;
-    }
-
-    Group& g_;
-    const double h_;
-    const StepOptions options_;
-    std::vector<std::size_t> active_;  // links
-    Complementarity& problem_;
-    Extrapolation frictions_;
-    std::vector<double> before_, rates_;  // impulses and rates before the step, as active_
-    // The contacts of each ball, as places in active_, and where those of a ball begin.
-    std::vector<std::size_t> of_body_, first_;
-};
 
 // Whether contacts push more than `times` what drives the group makes over h.
 bool pushes(const Group& g, double h, double times) {
@@ -353,7 +37,7 @@ bool pushes(const Group& g, double h, double times) {
 // Whether balls that hardly can move are driven by a friction that is only nearly right.
 bool is_driven(const Group& g, double h) {
     if (!pushes(g, h, 1.0)) return false;
-    double before = 0.0, after = 0.0;
+    double before = 0.0, after = 0.0;  // twice the energy per mass
     for (const Body& b : g.bodies) {
         before += dot(b.v, b.v) + 0.4 * dot(b.s, b.s);
         after += dot(b.v_end, b.v_end) + 0.4 * dot(b.s_end, b.s_end);
@@ -366,7 +50,7 @@ bool solve_with(Group& g, double h, const StepOptions& options) {
         // Not from what a step with friction has left: balls between two walls keep any impulse.
         for (Link& link : g.links) link.friction_z = link.J = 0.0;
     }
-    return Newton(g, h, options).run() && !(options.friction && is_driven(g, h));
+    return solve_newton(g, h, options) && !(options.friction && is_driven(g, h));
 }
 
 // Two opposing fixed normals cannot both be stabilised: the forces are then huge and mean nothing. Nor may those be left that a wedge keeps. But
@@ -407,10 +91,6 @@ double friction_at_start(const Group& g, const Link& link) {
     const Vec2 slip = contact_slip(g, link, false);
     const double size = length(slip);
     return size > 0.0 ? -ball_friction(g.around.balls, size) * slip.x() / size : 0.0;
-}
-
-double slip_ended(const Group& g, const Link& link) {
-    return ease_of(g, link) * ball_friction(g.around.balls, length(contact_slip(g, link, false))) * link.J;
 }
 
 bool locks(const Group& g, double h) {
