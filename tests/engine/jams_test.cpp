@@ -98,8 +98,8 @@ TEST(Jams, FrictionWithoutASolutionSetsNoInterval) {
     settles_within(*family_scene("row_between_walls", 6852), 2500);
 }
 
-// Balls lock each other: over an interval friction has no solution, at an instant it has. It was left out for less than 1e-4 s at a time, and the runs did
-// not end in 2.5 s.
+// Balls lock each other: over an interval friction has no solution, at an instant it has. It was left out for less than 1e-4 s at a time, and
+// the runs did not end in 2.5 s.
 TEST(Jams, BallsThatLockStopAtAnInstant) {
     settles_within(*family_scene("rings/extreme", 507), 4000);
     EXPECT_LE(segments_of(run_verified(*family_scene("rack_in_box/extreme", 406))), 6000u);

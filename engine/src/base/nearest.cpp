@@ -8,8 +8,8 @@
 namespace carom {
 namespace {
 
-constexpr std::size_t kLongestWord =
-    40;  // [bytes] no name is longer, and the work stays small whatever a file says
+// [bytes] No name is longer, and the work stays small whatever a file says.
+constexpr std::size_t kLongestWord = 40;
 constexpr std::size_t kTooFar = 1000;  // [edits]
 
 char small(char c) {

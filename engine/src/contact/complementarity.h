@@ -25,7 +25,7 @@ struct Complementarity {
         entries.clear();
         first.clear();
     }
-    /// The next column of A: begin_column(), then its entries, each row once. What is left out is zero, as between contacts without a
+    /// The next column of A: begin_column(), then its entries, each row once, that of the diagonal among them. What is left out is zero, as between contacts without a
     /// common ball.
     void begin_column() { first.push_back(entries.size()); }
     void add(std::size_t row, double value) { entries.push_back({row, value}); }
@@ -38,7 +38,8 @@ struct Complementarity {
     /// increased by kContactSoftness of itself, so that redundant contacts (a ball in three of them) share their
     /// load evenly and the solution is unique; iterative refinement removes this effect again, down to rounding.
     /// It begins with the rows in which z is positive or A z + q negative.
-    /// @param thorough  whether to go on where the pivots do not end: for matrices without negative eigenvalues, in which rounding decides
+    /// @param thorough  whether to go on where the pivots do not end: for matrices without negative eigenvalues, in which rounding decides; others
+    ///                  may have no solution, and are given up soon
     /// @return false if no solution was found (A may have none); z is then 0
     bool solve(bool thorough = true);
 

@@ -1,5 +1,6 @@
-// One solution of one group of resting contacts (resting.h): what impulses do (resting_response.cpp), which impulses end an interval without closing contacts
-// (resting_newton.cpp), the step over it (resting_step.cpp), and how long an interval may be (resting_interval.cpp). resting.cpp defines the order.
+// One solution of one group of resting contacts (resting.h): what impulses do (resting_response.cpp), which impulses end an interval
+// without closing contacts (resting_newton.cpp), the step over it, and what counts as a solution (resting_step.cpp), and how long an
+// interval may be (resting_interval.cpp). resting.cpp defines the order.
 //
 // Everything is evaluated at the end of the interval h (an implicit step, after J. J. Moreau's time-stepping for unilateral
 // contacts with friction). For each ball, per mass, with v its velocity, s = R (w_y, -w_x) the velocity with which it would roll,

@@ -19,7 +19,7 @@ constexpr double kLongestInterval = 1e6;
 constexpr double kPlaceError = 2e-8;
 // [s] What friction stops at once rests after this time at the latest: with the error of places alone it could creep for days.
 constexpr double kStopsWithin = 0.01;
-// [s] Longest interval without the friction between balls, where that leaves no solution.
+// [s] Longest interval without the friction between balls, where that leaves no solution and anything accelerates.
 constexpr double kSmooth = 0.01;
 // [-] Where an interval may go on for this share of itself after a stop, it is not made to end there exactly.
 constexpr double kSoon = 1e-2;

@@ -19,6 +19,10 @@ class Skipped {
 
     std::optional<Violation> run() {
         const Scene& scene = plan_.scene;
+        // A run after which nothing more happens leaves its last segments as they are for ever.
+        const bool for_ever =
+            record_.stopped == StopReason::kAtRest || record_.stopped == StopReason::kEndless;
+        last_ = for_ever ? kNever : record_.duration;
         const bool check_cushions = plan_.geometry.cushions.empty() && plan_.geometry.noses.empty() &&
                                     !(scene.table.cushions.empty() && scene.table.jaws.empty());
         const bool check_pockets = plan_.geometry.pockets.empty() && !scene.table.pockets.empty();
@@ -28,10 +32,6 @@ class Skipped {
                 ball_ = &record_.tracks[i].id;
                 R_ = record_.size(static_cast<int>(i)).R;
                 start_ = segments[k].start;
-                // A run after which nothing more happens leaves its last segments as they are for ever.
-                const bool for_ever =
-                    record_.stopped == StopReason::kAtRest || record_.stopped == StopReason::kEndless;
-                last_ = for_ever ? kNever : record_.duration;
                 const double end = end_of(segments, k);
                 if (is_gone(segments[k].state) || end < start_) continue;
                 check_frictions(segments[k], end > start_);
@@ -124,7 +124,8 @@ class Skipped {
     const Plan& plan_;
     double R_ = 0.0;  // of that ball
     const std::string* ball_ = nullptr;
-    double start_ = 0.0, last_ = 0.0;  // [s] of its segment; of the last one
+    double start_ = 0.0;  // [s] of its segment
+    double last_ = 0.0;   // [s] when the last segments end
     std::optional<Violation> found_;
 };
 

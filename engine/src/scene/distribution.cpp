@@ -68,8 +68,7 @@ Distribution parse_distribution(std::string_view text, const toml::node* own) {
         if (list.size() == 1 && (own == nullptr || !own->is_number()))
             fail(
                 "normal(sd) is around the number in the scene, and there is none; write the number there, or "
-                "use "
-                "normal(mean,sd)");
+                "use normal(mean,sd)");
         const double mean = list.size() == 1 ? *own->value<double>() : number(name, list, 0);
         const double deviation = number(name, list, list.size() - 1);
         if (!(deviation >= 0.0)) fail("the standard deviation of normal must be at least 0");
