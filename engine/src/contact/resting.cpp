@@ -207,7 +207,7 @@ double resting_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
 
 void solve_resting(RestingGroup& group, const RestingSurroundings& around, const MotionParams& motion,
                    double now) {
-    resting::Group g{group, around, motion, now, {}, {}, 0.0, false, 0.0, {}, {}, {}};
+    resting::Group g{group, around, motion, now, {}, {}, 0.0, false, 0.0, 0.0, {}, {}, {}};
     resting::solve(g);
 }
 

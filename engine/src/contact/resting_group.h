@@ -89,7 +89,9 @@ struct Group {
     std::vector<Link> links;   ///< as group.contacts
     double solved = 0.0;       ///< [s] interval for which the bodies and links hold a solution; 0: for none
     bool smooth = false;  ///< the solution is without friction between balls, because with it there is none
-    double noise = 0.0;   ///< [m/s] rounding of the group's speeds in a few sums of eight terms
+    double cut =
+        0.0;  ///< [s] how long the interval should be whose solution was given up for that; 0: none was
+    double noise = 0.0;  ///< [m/s] rounding of the group's speeds in a few sums of eight terms
     // Memory of solve_interval() and step().
     std::vector<Body> bodies_before;
     std::vector<Link> links_before;
@@ -100,6 +102,7 @@ struct Group {
 struct StepOptions {
     bool friction = true;   ///< the vertical friction between balls
     bool stabilise = true;  ///< Link::turning
+    bool may_cut = false;   ///< whether an interval that turns out too long is solved no further (Group::cut)
 };
 
 /// Relative motion perpendicular to the normal at the start (velocity, acceleration), and Link::distance.
@@ -128,7 +131,7 @@ double slip_ended(const Group& g, const Link& link);
 
 // resting_step.cpp
 /// Solves the step over h [s]; without friction for 0, an instant. @return whether there is a solution; without one the closest state is left
-bool step(Group& g, double h, const StepOptions& options = {});
+bool step(Group& g, double h, StepOptions options = {});
 /// Whether an impulse of the solution over h is more than what drives the group makes: balls lock each other.
 bool locks(const Group& g, double h);
 /// Solves for the impulses that leave no contact closing. @return whether there is a solution
@@ -139,6 +142,8 @@ double rate_rounding(const Group& g);
 double friction_at_start(const Group& g, const Link& link);
 
 // resting_interval.cpp
+/// [s] How long a solution over h holds.
+double accurate_interval(const Group& g, double h);
 /// Chooses the interval, solves it and writes the segments.
 void solve_interval(Group& g);
 

@@ -20,9 +20,11 @@ constexpr double kPlaceError = 2e-8;
 // [s] What friction stops at once rests after this time at the latest: with the error of places alone it could creep for days.
 constexpr double kStopsWithin = 0.01;
 // [s] Longest interval without the friction between balls, where that leaves no solution and anything accelerates.
-constexpr double kSmooth = 0.01;
+constexpr double kSmooth = 0.03;
 // [-] Where an interval may go on for this share of itself after a stop, it is not made to end there exactly.
 constexpr double kSoon = 1e-2;
+// [m] Smaller position errors by the direction at the end of an interval are left.
+constexpr double kUnguided = 1e-9;
 // [rad] Up to this, a direction that turns is that of the middle of the interval.
 constexpr double kTurnOfMiddle = 0.5;
 // [rad] Largest rotation of a normal within an interval.
@@ -38,6 +40,8 @@ constexpr double kClockTicks = 8.0;
 // [-] Most attempts at an interval, and at a longer one, which ends when something has gone; it is tried if that is nearly so.
 constexpr int kAttempts = 60, kLonger = 6;
 constexpr double kNearly = 1e-2;
+// [-] Most attempts in a row that are left before they are solved: where there is no solution, Newton's method tells nothing about the interval.
+constexpr int kCuts = 2;
 // [-] First attempt, as a multiple of the group's last interval: what limited that one mostly limits this one.
 constexpr double kGrowth = 4.0;
 // [-] Shortest next attempt, as a share of the last.
@@ -128,7 +132,7 @@ double friction_interval(const Group& g, const Body& b, double h) {
     return allowed_interval(h, m.strength * turn * h * h / 12.0, kPlaceError, 3);
 }
 
-double link_interval(const Group& g, const Link& link, double h) {
+double link_interval(const Group& g, const Link& link, double h, double rounding) {
     if (link.open) return kNever;
     double interval = kNever;
     const Body& b = g.bodies[link.i];
@@ -150,7 +154,7 @@ double link_interval(const Group& g, const Link& link, double h) {
         return interval;
     }
     // Neither the rounding of the rates nor a closing speed that could not be removed may add up to an overlap.
-    const double closing = rate_rounding(g) + std::max(0.0, -rate);
+    const double closing = rounding + std::max(0.0, -rate);
     interval = std::min(interval, allowed_interval(h, closing * h, kOverlapGrowth, 2));
     const double force = link.J / h;
     if (rate > 0.0) interval = std::min(interval, 2.0 * kGapLeft / rate);
@@ -184,8 +188,9 @@ double first_attempt(const Group& g) {
 }
 
 // Friction has the direction of the middle of the interval, for second order.
-bool guide(Group& g) {
+bool guide(Group& g, double h) {
     bool any = false;
+    double wrong = 0.0;  // S w h^2 / 3: the position error by the direction of the end
     for (Body& b : g.bodies) {
         b.guided = false;
         const Moving m = moving(g, b);
@@ -196,8 +201,11 @@ bool guide(Group& g) {
         const Vec2 middle = m.start / length(m.start) + m.end / length(m.end);
         b.guide = middle / length(middle);
         b.guided = any = true;
+        wrong = std::max(wrong, m.strength * turn * h * h / 3.0);
     }
-    return any;
+    if (wrong > kUnguided) return any;
+    for (Body& b : g.bodies) b.guided = false;
+    return false;
 }
 
 // Whether what was guided still goes the way that its friction opposes.
@@ -211,7 +219,7 @@ void guide_friction(Group& g, double h) {
     g.bodies_before = g.bodies;
     g.links_before = g.links;
     const bool smooth = g.smooth;
-    if (!guide(g)) return;
+    if (!guide(g, h)) return;
     const bool solved = step(g, h, {.friction = !smooth}) && !g.smooth && keeps_direction(g);
     g.smooth = smooth;
     if (solved) return;
@@ -262,16 +270,19 @@ bool accelerates(const Group& g) {
 }
 
 // The step over h. Where friction leaves no solution (Painleve), balls lock each other, and may stop each other at an instant; where that has no
-// solution either, friction is left out over kSmooth at most. @return whether there is a solution
-bool attempt_at(Group& g, double& h, double shortest) {
+// solution either, friction is left out over kSmooth at most, and over the longest of the attempts that were cut for friction's sake.
+// @return whether there is a solution
+bool attempt_at(Group& g, double& h, double shortest, double longest, bool may_cut) {
+    g.cut = 0.0;
     if (!g.smooth) {
-        const bool solved = step(g, h);
-        if (!g.smooth || h <= shortest) return solved;
+        const bool solved = step(g, h, {.may_cut = may_cut && h > shortest});
+        if (g.cut > 0.0) return false;
+        if (!g.smooth || longest <= shortest) return solved;
         if (step(g, shortest) && !g.smooth && locks(g, shortest)) {
             h = shortest;
             return true;
         }
-        h = std::min(h, kSmooth);
+        h = std::min(longest, kSmooth);
     }
     const bool solved = step(g, h, {.friction = false});
     g.smooth = true;
@@ -280,22 +291,38 @@ bool attempt_at(Group& g, double& h, double shortest) {
 
 }  // namespace
 
+double accurate_interval(const Group& g, double h) {
+    double accurate = kNever;
+    for (const Body& b : g.bodies) accurate = std::min(accurate, friction_interval(g, b, h));
+    const double rounding = rate_rounding(g);
+    for (const Link& link : g.links) accurate = std::min(accurate, link_interval(g, link, h, rounding));
+    return accurate;
+}
+
 void solve_interval(Group& g) {
     for (Body& b : g.bodies) b.guided = false;
     const double shortest =
         std::max(kShortestInterval, kClockTicks * std::numeric_limits<double>::epsilon() * g.now);
     double h = std::max(shortest, std::min(first_attempt(g), kGrowth * g.group.last));
-    int longer = 0;
+    double longest = h;
+    int longer = 0, cuts = 0;
     double gone_before = 0.0;  // something has gone before this time, but not before the last interval
     for (int attempt = 1;; ++attempt) {
-        const bool solved = attempt_at(g, h, shortest);
-        double accurate = solved ? kNever : 0.25 * h, gone = kNever, later = kNever;
+        if (cuts == 0) longest = h;
+        const bool solved = attempt_at(g, h, shortest, longest, cuts < kCuts && attempt < kAttempts);
+        if (g.cut > 0.0) {
+            ++cuts;
+            gone_before = 0.0;
+            h = std::max({shortest, g.cut, kShorter * h});
+            continue;
+        }
+        cuts = 0;
+        double accurate = accurate_interval(g, h), gone = kNever, later = kNever;
+        if (!solved) accurate = std::min(accurate, 0.25 * h);
         for (const Body& b : g.bodies) {
             gone = std::min(gone, gone_fast(g, b, h));
-            accurate = std::min(accurate, friction_interval(g, b, h));
             later = std::min(later, gone_later(g, b, h));
         }
-        for (const Link& link : g.links) accurate = std::min(accurate, link_interval(g, link, h));
         if (attempt == kAttempts) break;  // the bodies hold the solution of this h
         if (std::min(accurate, gone) < h * (1.0 - kMet) && h > shortest) {
             gone_before = gone <= accurate ? h : 0.0;

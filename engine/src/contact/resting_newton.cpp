@@ -19,12 +19,12 @@ constexpr int kLoadSteps = 12;
 // [-] From this step on, each second one takes balls for stopped that hardly move: on the way to rest, Newton's method only halves their speed again
 // and again.
 constexpr int kStopsFrom = 5;
+// [of the interval] Where a step of Newton's method says that its solution will hold for less, the interval is solved no further.
+constexpr double kTooLong = 0.95;
 // [-] A gap whose normal turns further than this is not looked at in detail: the interval is shortened anyway.
 constexpr double kLongestTurn = 0.1;
 // [m] Overlap that the turning of a normal may cause within an interval.
 constexpr double kOverlapLeft = 4e-15;
-// [m] A deeper overlap does not grow any more.
-constexpr double kDeep = 2e-13;
 // [m] Smaller changes of a gap are not looked at.
 constexpr double kNoGap = 4e-15;
 // [-] Most trials of a line search, and the share of its first slope that may be left.
@@ -49,7 +49,7 @@ double wanted_rate(const Group& g, const Link& link, double h, const StepOptions
 }
 
 // The friction between two balls opposes their slip at the end; the upward slip without it, X, and the impulse's effect on it give
-// f = -X / (effect + |slip| / mu), in which |slip| follows in a few turns.
+// f = -X / (effect + |slip| / mu), in which |slip| follows in a few turns of the secant method.
 double vertical_friction(const Group& g, const Link& link) {
     // What holds two balls at rest may have any size.
     if (g.bodies[link.i].mode == Mode::kResting && g.bodies[link.j].mode == Mode::kResting)
@@ -57,15 +57,18 @@ double vertical_friction(const Group& g, const Link& link) {
     const Vec2 slip = contact_slip(g, link, true);
     const double effect = ease_of(g, link) * link.J;
     const double without = slip.x() - effect * link.friction_z;
-    double size = length(slip), f = 0.0;
+    double size = length(slip), f = 0.0, size_before = 0.0, change_before = 0.0;
     for (int turn = 0; turn < 30; ++turn) {
         const double mu = ball_friction(g.around.balls, size);
         const double whole = effect + (mu > 0.0 ? size / mu : 0.0);
         if (mu == 0.0 || !(whole > 0.0)) return 0.0;
         f = -without / whole;
-        const double next = length(Vec2(without + effect * f, slip.y()));
-        if (std::abs(next - size) <= 1e-12 * size) break;
-        size = next;
+        const double next = length(Vec2(without + effect * f, slip.y())), change = next - size;
+        if (std::abs(change) <= 1e-12 * size) break;
+        const double secant = size - change * (size - size_before) / (change - change_before);
+        size_before = size;
+        change_before = change;
+        size = turn > 0 && secant > 0.0 ? secant : next;
     }
     const double most = ball_friction(g.around.balls, size);
     return std::clamp(f, -most, most);
@@ -184,7 +187,7 @@ class Newton {
         list_contacts();
     }
 
-    /// @return whether there is a solution
+    /// @return whether there is a solution; with Group::cut, it was looked for no further
     bool run() {
         for (int newton = 0;; ++newton) {
             const bool stops = newton >= kStopsFrom && newton % 2 == 1;
@@ -204,10 +207,17 @@ class Newton {
             if (newton == kNewtonSteps) return false;
             if (!solve(newton < kLoadSteps ? 1.0 : 0.0)) return harmless;
             search();
+            if (options_.may_cut && newton > 0 && is_too_long()) return false;
         }
     }
 
   private:
+    bool is_too_long() {
+        const double holds = accurate_interval(g_, h_);
+        if (holds < kTooLong * h_) g_.cut = holds;
+        return g_.cut > 0.0;
+    }
+
     void list_contacts() {
         first_.assign(g_.bodies.size() + 1, 0);
         const auto each = [this](auto&& take) {
@@ -235,8 +245,7 @@ class Newton {
             const Link& link = g_.links[active_[k]];
             const double wrong = link.J > 0.0 ? std::abs(now) : -now;
             solved = solved && wrong <= rounding;
-            harmless =
-                harmless && (wrong <= rounding || (wrong <= unnoticed && !(now < 0.0 && link.gap < -kDeep)));
+            harmless = harmless && wrong <= std::max(rounding, unnoticed);
         }
         return solved;
     }

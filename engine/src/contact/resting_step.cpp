@@ -18,6 +18,8 @@ constexpr double kLocked = 10.0;
 constexpr double kLargestStabilised = 1e3;
 // [-] They are a wedge's own where it has them without being stabilised, but for this factor.
 constexpr double kOwnForce = 2.0;
+// [of the energy] Less work is rounding.
+constexpr double kWorkRounding = 1e-12;
 // [ulp of the speeds and impulses] Smaller rates of a gap are zero.
 constexpr double kRateUlp = 32.0;
 
@@ -34,15 +36,16 @@ bool pushes(const Group& g, double h, double times) {
     return std::any_of(g.links.begin(), g.links.end(), [most](const Link& link) { return link.J > most; });
 }
 
-// Whether balls that hardly can move are driven by a friction that is only nearly right.
+// Whether balls that hardly can move are driven by a friction that is only nearly right: it does work at the end of the interval, where
+// only normals that turn may.
 bool is_driven(const Group& g, double h) {
     if (!pushes(g, h, 1.0)) return false;
-    double before = 0.0, after = 0.0;  // twice the energy per mass
+    double energy = 0.0, power = 0.0;  // twice that of the start, and what the impulses would add at the speeds of the end, per mass
     for (const Body& b : g.bodies) {
-        before += dot(b.v, b.v) + 0.4 * dot(b.s, b.s);
-        after += dot(b.v_end, b.v_end) + 0.4 * dot(b.s_end, b.s_end);
+        energy += dot(b.v, b.v) + 0.4 * dot(b.s, b.s);
+        power += dot(b.v_end, b.v_end - b.v) + 0.4 * dot(b.s_end, b.s_end - b.s);
     }
-    return after > before;
+    return power > kWorkRounding * energy;
 }
 
 bool solve_with(Group& g, double h, const StepOptions& options) {
@@ -97,7 +100,7 @@ bool locks(const Group& g, double h) {
     return pushes(g, h, kLocked);
 }
 
-bool step(Group& g, double h, const StepOptions& options) {
+bool step(Group& g, double h, StepOptions options) {
     // An interval of another length is nearly solved already: with impulses that are as much shorter, but where balls lock each other.
     const double share = !(g.solved > 0.0) ? 0.0 : locks(g, g.solved) ? 1.0 : h / g.solved;
     for (Link& link : g.links) {
@@ -114,6 +117,11 @@ bool step(Group& g, double h, const StepOptions& options) {
     // Where the last attempt had no solution with friction, one of these is looked for once, not three times.
     const bool again = !std::exchange(g.smooth, false);
     bool solved = solve_with(g, h, options);
+    if (g.cut > 0.0) {
+        g.solved = h;
+        return false;
+    }
+    options.may_cut = false;
     if (options.stabilise && solved) drop_stabilisation(g, h, options);
     if (options.stabilise && !solved && again) solved = solve_with(g, h, options);
     if (solved) {

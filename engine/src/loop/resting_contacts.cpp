@@ -15,13 +15,14 @@ namespace carom {
 
 namespace {
 
-// [-] A contact that has bounced this often within kEventCapSpan becomes a resting contact. A row of 15 elastic balls,
-// resolved pair by pair, needs 30 bounces; the last bounces before a contact rests are about 100.
-constexpr int kMostBounces = 200;
-// [bounces] What a resting contact counts for that began and ended within that time: no row of impacts has one.
-constexpr int kHoldCounts = 20;
-// [bounces] What a cluster counts for that begins with this contact: it resolves all bounces of its balls at once, so that even a second one is rare.
-constexpr int kClusterCounts = 10;
+// [s] A contact that bounces again and again within this time chatters: a twentieth of the duration of one contact of two balls.
+constexpr double kChatterSpan = 1e-5;
+// [-] So many bounces are as many as take all but this share of a speed, within limits: a row of 15 elastic balls, resolved pair by pair, needs 30.
+constexpr double kSpeedLeft = 1e-3;
+constexpr int kFewestBounces = 20, kMostBounces = 200;
+// [bounces] What a resting contact counts for that began and ended within that time, and a cluster that begins with this contact: it resolves all
+// bounces of its balls at once. No row of impacts has one, and even a second cluster is rare.
+constexpr int kManyAtOnce = 20;
 // [balls] Room for those of one impact; a larger cluster takes more.
 constexpr std::size_t kMostStruck = 32;
 
@@ -55,6 +56,13 @@ bool lies(MotionState state) {
     return !flies(state) && !is_gone(state) && state != MotionState::kFalling;
 }
 
+int most_bounces(double restitution) {
+    if (!(restitution > 0.0)) return kFewestBounces;
+    if (!(restitution < 1.0)) return kMostBounces;
+    const double bounces = std::log(kSpeedLeft) / std::log(restitution);
+    return static_cast<int>(std::clamp<double>(bounces, kFewestBounces, kMostBounces));
+}
+
 bool touches(const RestingContact& c, int ball) {
     return c.contact.ball == ball || c.contact.partner() == ball;
 }
@@ -77,8 +85,8 @@ bool RestingContacts::find(const Contact& contact) const {
 //  - the rebound would be shorter than the Hertz contact time (holds()): as it is pressed together or, where a ball is in a resting
 //    contact already, as friction alone could press it. The bounces within a group lose a share of their speed each and come ten times for
 //    every power of ten down to rounding; their limit is the resting contact, which the group's solution then keeps or opens. Or if
-//  - it has bounced kMostBounces times within kEventCapSpan (Zeno behaviour, as in a wedge with a plastic side): the
-//    limit of such a sequence is the resting contact.
+//  - it has chattered (Zeno behaviour, as in a wedge with a plastic side, or where an impact goes back and forth through balls that rest on
+//    each other between two rails): the limit of such a sequence is the resting contact.
 bool RestingContacts::try_begin(const Approach& a, double restitution) {
     const Contact& c = a.contact;
     const int partner = c.partner();
@@ -116,17 +124,17 @@ void RestingContacts::start(int ball) {
 
 // Determined from the log, so that a resumed run decides in the same way.
 bool RestingContacts::chatters(const Contact& contact) const {
+    const int most = most_bounces(contact.with == With::kBall ? plan_.balls.e_b : plan_.balls.e_c);
     int bounces = 0;
     const std::vector<Event>& events = log_.events();
     for (std::size_t k = events.size(); k-- > 0;) {
         const Event& e = events[k];
-        if (e.time < balls_.now() - kEventCapSpan) break;
+        if (e.time < balls_.now() - kChatterSpan) break;
         const EventPhase phase = kind(e.type).phase;
         if (phase != EventPhase::kImpact && phase != EventPhase::kHold) continue;
         if (!contact_of(e).same(contact)) continue;
-        bounces += phase == EventPhase::kHold ? kHoldCounts
-                                              : (e.type == EventType::kBallCluster ? kClusterCounts : 1);
-        if (bounces >= kMostBounces) return true;
+        bounces += phase == EventPhase::kHold || e.type == EventType::kBallCluster ? kManyAtOnce : 1;
+        if (bounces >= most) return true;
     }
     return false;
 }
@@ -172,8 +180,8 @@ bool RestingContacts::goes_on(RestingContact& c) const {
     refresh_normal(c);
     const Vec2 vi = planar(si != nullptr ? si->segment.v : balls_.velocity(i));
     const Vec2 vj = j < 0 ? Vec2(Vec2::Zero()) : planar(sj != nullptr ? sj->segment.v : balls_.velocity(j));
-    const double rate = std::abs(dot(c.n, vj - vi)), e = j >= 0 ? plan_.balls.e_b : plan_.balls.e_c;
-    return holds(rate, 2.0 * balls_.motion(i).slide, e);
+    const double rate = dot(c.n, vj - vi), e = j >= 0 ? plan_.balls.e_b : plan_.balls.e_c;
+    return holds(std::abs(rate), 2.0 * balls_.motion(i).slide, e) || (rate < 0.0 && chatters(c.contact));
 }
 
 void RestingContacts::go_on() {
