@@ -83,14 +83,16 @@ HertzLaw random_law(reference::Generator& rng) {
 TEST(ContactPhase, EveryInstructionSetIsThePlainProgram) {
     reference::Generator rng(
         9);  // a seed at which an open contact between those that overlap would shorten a step
-    std::set<std::size_t> sizes;
+    std::set<std::size_t> sizes, stages;
     for (int k = 0; k < 300; ++k) {
         const Cluster start = random_cluster(rng);
-        const HertzLaw law = random_law(rng);
+        HertzLaw law = random_law(rng);
+        if (k % 3 == 0) law.mu_b *= 5.0;
         sizes.insert(start.contacts.size());
         if (start.balls() == 0) continue;
         Plain plain(start, law);
         const long steps = plain.run(1.0 / 16.0);
+        stages.insert(plain.stages.begin(), plain.stages.end());
         for (const Isa isa : {Isa::kScalar, Isa::kV3, Isa::kV4}) {
             if (!available(isa)) continue;
             Cluster c = start;
@@ -101,6 +103,7 @@ TEST(ContactPhase, EveryInstructionSetIsThePlainProgram) {
     EXPECT_LE(*sizes.begin(), 2u);
     EXPECT_GE(*sizes.rbegin(), 40u);
     EXPECT_GE(sizes.size(), 25u) << "all ways to fill the last register";
+    EXPECT_EQ(stages, (std::set<std::size_t>{4, 6, 8}));
 }
 
 // Two rows of a rack and the cue ball, with spin: slips that turn into stick.

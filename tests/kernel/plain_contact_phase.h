@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <set>
 #include <vector>
 
 #include "carom/kernel/contact_phase.h"
@@ -88,6 +89,7 @@ class Plain {
 
   public:
     std::vector<double> y;
+    std::set<std::size_t> stages;  // of the steps with friction
 
   private:
     struct Slope {
@@ -338,19 +340,33 @@ class Plain {
                                             k[0].limit[static_cast<std::size_t>(start_[c].j)]);
         }
         if (has_friction()) longest = std::min(longest, next_);
-        double h = 4.8 / 3.5 < longest * -least ? 4.8 / 3.5 / -least : longest;
-        // The classical method where nothing is stiff, else Simpson's weights at 0, 1/4, 1/2, 1.
+        // The classical method where nothing is stiff, else Simpson's weights at 0, a node below 1/2 that counts nothing, 1/2, 1.
         const bool stiff = has_friction();
-        const std::array<double, 4> node = {0.0, stiff ? 0.25 : 0.5, 0.5, 1.0},
-                                    weight = {1.0 / 6.0, stiff ? 0.0 : 1.0 / 3.0,
+        const std::array<double, 4> weight = {1.0 / 6.0, stiff ? 0.0 : 1.0 / 3.0,
                                               stiff ? 2.0 / 3.0 : 1.0 / 3.0, 1.0 / 6.0};
+        double h = longest;
         for (;; h *= 0.5) {
-            for (std::size_t stage = 1; stage < 4; ++stage) {
-                std::vector<double> at = y, d = now;
-                for (std::size_t n = 0; n < at.size(); ++n) at[n] += h * node[stage] * k[stage - 1].y[n];
-                for (std::size_t c = 0; c < d.size(); ++c) d[c] += h * node[stage] * k[stage - 1].d[c];
-                k[stage] = slope_at(at, d, h * node[stage]);
+            // Four, six or eight stages.
+            std::vector<double> inner = {stiff ? 0.25 : 0.5};
+            if (stiff) {
+                double reach = 4.8 / 3.5;
+                if (1.5 * (4.8 / 3.5) < h * -least)
+                    reach = 12.2 / 3.5, inner = {0.03309011, 0.09856416, 0.25};
+                if (8.0 / 6.0 * (12.2 / 3.5) < h * -least)
+                    reach = 24.0 / 3.5, inner = {0.01115974, 0.02860386, 0.05848906, 0.1168041, 0.25};
+                if (reach < h * -least) h = reach / -least;
+                stages.insert(inner.size() + 3);
             }
+            const auto slope_after = [&](const Slope& before, double node) {
+                std::vector<double> at = y, d = now;
+                for (std::size_t n = 0; n < at.size(); ++n) at[n] += h * node * before.y[n];
+                for (std::size_t c = 0; c < d.size(); ++c) d[c] += h * node * before.d[c];
+                return slope_at(at, d, h * node);
+            };
+            k[1] = k[0];
+            for (const double node : inner) k[1] = slope_after(k[1], node);
+            k[2] = slope_after(k[1], 0.5);
+            k[3] = slope_after(k[2], 1.0);
             if (!stiff) break;
             double error = 0.0;
             for (std::size_t n = 0; n < y.size(); ++n)

@@ -183,6 +183,10 @@ CAROM_INLINE void shift(double* to, const double* from, const double* slope, dou
     }
 }
 
+CAROM_INLINE void clear(double* slope, int count) {
+    for (int n = 0; n < count; n += 4) store(slope + n, broadcast<4>(0.0));
+}
+
 CAROM_INLINE double largest_lane(const Four& v) {
     double each[4];
     store(each, v);
@@ -225,8 +229,8 @@ CAROM_INLINE double finish(const Work& w, const RungeKutta& method, double h) {
     return h / 6.0 * largest_lane(most);
 }
 
-// The longest stable step, at most `longest`.
-CAROM_INLINE double stable_step(const Work& w, const double* dy, double longest) {
+// The largest sum of friction over slip of both balls of a contact that overlaps.
+CAROM_INLINE double stiffest(const Work& w, const double* dy) {
     const double* stiffness = dy + kStiffness;
     const Four none = broadcast<4>(0.0);
     Four most = none;
@@ -236,8 +240,7 @@ CAROM_INLINE double stable_step(const Work& w, const double* dy, double longest)
                                stiffness[i[2]] + stiffness[j[2]], stiffness[i[3]] + stiffness[j[3]]);
         most = larger(select(none < load<4>(w.d + c), -both, none), most);
     }
-    const double worst = largest_lane(most);
-    return kStableShare < longest * worst ? kStableShare / worst : longest;
+    return largest_lane(most);
 }
 
 // The square of the fastest contact's speed (slowness()); of what opens, only what overlaps counts.
@@ -254,36 +257,45 @@ CAROM_INLINE double fastest_squared(const Work& w, const Law<kFalls>& law) {
     return largest_lane(most);
 }
 
+// The slopes of the stages of a step of length h, after that of the state.
+template <bool kFalls>
+CAROM_INLINE void stages(Work& w, const Law<kFalls>& law, const RungeKutta& method, double h) {
+    const int count = kRow * w.rows;
+    for (int n = 0; n < method.stages(); ++n) {
+        const int from = method.slope(n), to = method.slope(n + 1);
+        const double time = h * method.node[n];
+        shift(w.y_stage, w.y, w.dy[from], time, count);
+        shift(w.d_stage, w.d, w.rate[from], time, w.lanes);
+        if (from == to) clear(w.dy[to], count);
+        forces<true>(w, law, w.y_stage, w.d_stage, time, w.dy[to], w.rate[to]);
+    }
+}
+
 // One Runge-Kutta step; returns its length. At entry rate[0] belongs to the state. `longest` is its limit; the error, which friction
 // makes, sets that of the next step into `next`; without friction `next` is not read.
 template <bool kFalls>
 CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double shortest, double longest, double& next) {
-    const RungeKutta& method = law.friction ? kStabilised : kClassical;
-    const int count = kRow * w.rows;
     forces<false>(w, law, w.y, w.d, 0.0, w.dy[0], nullptr);
-    double h = law.friction ? stable_step(w, w.dy[0], smallest(longest, next)) : longest;
+    const double most = law.friction ? stiffest(w, w.dy[0]) : 0.0;
+    Plan plan = law.friction ? plan_step(most, smallest(longest, next)) : Plan{&kClassical, longest};
     for (;;) {
-        for (int k = 1; k < kStages; ++k) {
-            const double time = h * method.node[k];
-            shift(w.y_stage, w.y, w.dy[k - 1], time, count);
-            shift(w.d_stage, w.d, w.rate[k - 1], time, w.lanes);
-            forces<true>(w, law, w.y_stage, w.d_stage, time, w.dy[k], w.rate[k]);
-        }
+        stages(w, law, *plan.method, plan.h);
         if (!law.friction) {
-            finish<false>(w, method, h);
+            finish<false>(w, *plan.method, plan.h);
             break;
         }
-        const double error = finish<true>(w, method, h);
-        next = step_after(next, h, error);
-        if (!(error > kStepError && h > shortest)) break;
-        h *= 0.5;
+        const double error = finish<true>(w, *plan.method, plan.h);
+        next = step_after(next, plan.h, error);
+        if (!(error > kStepError && plan.h > shortest)) break;
+        plan = plan_step(most, 0.5 * plan.h);
     }
-    for (int n = 0; n < count; n += 4) store(w.dy[0] + n, broadcast<4>(0.0));
+    const double h = plan.h;
+    clear(w.dy[0], kRow * w.rows);
     double* const before = w.y;
     w.y = w.y_stage;
     w.y_stage = before;
     if (law.cloth) drag(w, law, w.y);
-    advance(w, method, h);
+    advance(w, *plan.method, h);
     return h;
 }
 

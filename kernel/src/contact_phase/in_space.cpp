@@ -150,6 +150,15 @@ class InSpace {
         }
     }
 
+    // The slopes of the stages of a step of length h, after that of the state.
+    void stages(const RungeKutta& method, double h) {
+        for (int n = 0; n < method.stages(); ++n) {
+            const double time = h * method.node[n], *from = slope_[method.slope(n)];
+            for (int k = 0; k < size_; ++k) stage_[k] = y_[k] + time * from[k];
+            slopes(stage_, slope_[method.slope(n + 1)]);
+        }
+    }
+
     // One Runge-Kutta step; returns its length.
     double step(double longest) {
         for (int c = 0; c < phase_.contacts; ++c) {
@@ -164,22 +173,17 @@ class InSpace {
                 most = largest(most, stiffness_[phase_.contact[c].i] + stiffness_[phase_.contact[c].j]);
         }
         const bool friction = has_friction(law_);
-        const RungeKutta& method = friction ? kStabilised : kClassical;
-        const double limit = friction ? smallest(longest, next_) : longest * slowness(fastest_squared());
-        double h = kStableShare < limit * most ? kStableShare / most : limit;
+        Plan plan = friction ? plan_step(most, smallest(longest, next_))
+                             : Plan{&kClassical, longest * slowness(fastest_squared())};
         for (;;) {
-            for (int k = 1; k < kStages; ++k) {
-                const double time = h * method.node[k];
-                for (int n = 0; n < size_; ++n) stage_[n] = y_[n] + time * slope_[k - 1][n];
-                slopes(stage_, slope_[k]);
-            }
+            stages(*plan.method, plan.h);
             if (!friction) break;
-            const double error = difference(h);
-            next_ = step_after(next_, h, error);
-            if (!(error > kStepError && h > kShortest * longest)) break;
-            h *= 0.5;
+            const double error = difference(plan.h);
+            next_ = step_after(next_, plan.h, error);
+            if (!(error > kStepError && plan.h > kShortest * longest)) break;
+            plan = plan_step(most, 0.5 * plan.h);
         }
-        const double* w = method.weight;
+        const double h = plan.h, *w = plan.method->weight;
         for (int n = 0; n < size_; ++n)
             y_[n] += h * ((w[0] * slope_[0][n] + w[1] * slope_[1][n]) +
                           (w[2] * slope_[2][n] + w[3] * slope_[3][n]));
