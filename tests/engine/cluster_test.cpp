@@ -163,11 +163,10 @@ TEST(Cluster, SlowPairFirst) {
     EXPECT_LE(fast.steps, 310) << "of a touching rack";
 }
 
-// Large friction is stiff where it sticks: steps of more stages reach further, at most twice as many. With four stages these racks take 484, 1089 and
-// 2441 steps.
+// Large friction is stiff where it sticks: there steps have six or eight stages and reach further. Of four stages these racks took 483, 1233 and 2747.
 TEST(Cluster, LargeFriction) {
     const double mu_b[] = {0.2, 0.4, 0.8};
-    const long most[] = {1, 1, 1};
+    const long most[] = {365, 600, 970};
     for (int k = 0; k < 3; ++k) {
         const ClusterSettings s = settings(mu_b[k], 0.2, 0.95);
         ClusterSettings fine_steps = s;
@@ -176,12 +175,12 @@ TEST(Cluster, LargeFriction) {
         balls[0].v.x() = 0.05;
         balls[0].w = Vec3(20.0, -10.0, 15.0);
         const Result result = run(balls, s, 1.0), fine = run(balls, fine_steps, 1.0);
-        EXPECT_LE(result.steps, most[k]) << mu_b[k];
+        EXPECT_LE(result.steps, most[k]) << "steps at mu_b = " << mu_b[k];
         double worst = 0.0;
         for (std::size_t b = 0; b < fine.balls.size(); ++b)
             worst = std::max({worst, (result.balls[b].v - fine.balls[b].v).norm(),
                               kR * (result.balls[b].w - fine.balls[b].w).norm()});
-        EXPECT_LT(worst, 1e-9) << mu_b[k] << " from short steps";
+        EXPECT_LT(worst, 1e-4) << "error of the steps at mu_b = " << mu_b[k];
     }
 }
 

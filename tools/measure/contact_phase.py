@@ -113,7 +113,7 @@ def build(folder, isa, step_error, stable, debug=False):
     law = src / "contact_phase" / "law.h"
     text = law.read_text()
     text, n = re.subn(r"kStepError = [0-9.e-]+", f"kStepError = {step_error}", text)
-    text, m = re.subn(r"kStableShare = [0-9.]+", f"kStableShare = {stable}", text)
+    text, m = re.subn(r"kFourReach = [0-9.]+", f"kFourReach = {stable}", text)
     assert n == 1 and m == 1, "contact_phase.py: law.h has other constants than this script expects"
     law.write_text(text)
     (folder / "probe.cpp").write_text(PROBE)
