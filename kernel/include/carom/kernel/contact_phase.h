@@ -49,7 +49,9 @@ constexpr std::size_t contact_phase_places(int contacts) noexcept {
 }
 
 /// Runge-Kutta steps until every contact is open and none would close again within look_ahead [L/V]. A step is `longest_step` [L/V] at most. Without
-/// friction it is the classical method; with friction one of order 3 that is stable where friction is stiff, with steps as short as its error asks for. Between two steps the cloth answers what pressed the balls. During a step normals turn at the speed of its start; after it, by the mean of both ends.
+/// friction it is the classical method; with friction one of order 3 that is stable where friction is stiff, of four, six or eight stages, with steps as
+/// short as its error asks for. Between two steps the cloth answers what pressed the balls. During a step normals turn at the speed of its start; after
+/// it, by the mean of both ends.
 /// While all contacts are open the balls fly on without a step; a contact that closes late in look_ahead turns less, at its end not at all.
 /// The order in which a ball's contacts are given is the order of its sums.
 /// @return the number of steps, or -1 if the contacts did not part within time_limit [L/V]
