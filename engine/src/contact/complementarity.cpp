@@ -178,7 +178,7 @@ void Complementarity::find_wrong(const std::vector<double>& w) {
 }
 
 bool Complementarity::solve(bool thorough) {
-    if (exchange(thorough ? 20 + 2 * size : kFewExchanges) || (thorough && approach())) return true;
+    if (exchange(kFewExchanges) || (thorough && approach())) return true;
     std::fill(z.begin(), z.end(), 0.0);
     return false;
 }

@@ -25,15 +25,18 @@ constexpr double kTooLong = 0.95;
 constexpr double kLongestTurn = 0.1;
 // [m] Overlap that the turning of a normal may cause within an interval.
 constexpr double kOverlapLeft = 4e-15;
+// [m] and [of the gap] A gap may be wrong by so much after an interval, if it opens or closes; one that opens under an impulse gains energy, of which so
+// much is rounding [of the group's].
+constexpr double kOpensUnnoticed = 1e-10, kGapUsed = 0.5, kEnergyUnnoticed = 1e-13;
 // [m] Smaller changes of a gap are not looked at.
 constexpr double kNoGap = 4e-15;
 // [-] Most trials of a line search, and the share of its first slope that may be left.
 constexpr int kSearches = 8;
 constexpr double kSlopeLeft = 0.25;
-// [of its coefficient] Accuracy of the friction between balls. It is halved in each step, up to 2^20 times, for
-// contacts that hold each other's slip.
-constexpr double kFrictionAccuracy = 1e-9;
-constexpr int kLooser = 20;
+// [of its coefficient] Accuracy of the friction between balls; [m] and [of the fastest speed] no less is looked at than what it changes in a place or a
+// speed within the interval. That doubles in each step, up to 2^10 times, for contacts that hold each other's slip.
+constexpr double kFrictionAccuracy = 1e-9, kFrictionPlace = 1e-11, kFrictionSpeed = 1e-6;
+constexpr int kLooser = 10;
 
 // How much one of impulse between two balls changes their upward slip.
 double ease_of(const Group& g, const Link& link) {
@@ -101,9 +104,14 @@ double turning_of(const Link& link, const Across& t, double h) {
     return (free ? level : std::min(level, least)) + recovery;
 }
 
-// Takes over from a solution what the next one starts from. @return whether it differs
+// Takes over from a solution what the next one starts from, but for frictions that are right already: so the impulses that belong to them stay right.
+// @return whether it differs
 bool update(Group& g, double h, const StepOptions& options, int times) {
-    const double accuracy = kFrictionAccuracy * static_cast<double>(1 << std::min(times, kLooser));
+    const double accuracy = kFrictionAccuracy * ball_friction(g.around.balls, 0.0);
+    double fastest = 0.0;
+    for (const Body& b : g.bodies) fastest = std::max(fastest, length(b.v_end));
+    const double left = static_cast<double>(1 << std::min(times, kLooser)) *
+                        std::min(kFrictionPlace / std::max(h, kShortestInterval), kFrictionSpeed * fastest);
     bool changed = false;
     for (Link& link : g.links) {
         if (options.stabilise && !link.open && !link.walled) {
@@ -113,8 +121,9 @@ bool update(Group& g, double h, const StepOptions& options, int times) {
         }
         if (link.j < 0 || link.open || !options.friction) continue;
         const double f = link.J > 0.0 ? vertical_friction(g, link) : friction_at_start(g, link);
-        changed = changed || (link.J > 0.0 &&
-                              std::abs(f - link.friction_z) > accuracy * ball_friction(g.around.balls, 0.0));
+        const double wrong = std::abs(f - link.friction_z);
+        if (link.J > 0.0 && (wrong <= accuracy || wrong * link.J <= left)) continue;
+        changed = changed || link.J > 0.0;
         // The next contact of the balls already feels it.
         const Vec2 change = (f - link.friction_z) * link.J * link.n;
         for (const int k : {link.i, link.j}) {
@@ -235,17 +244,26 @@ class Newton {
 
     double rate(std::size_t k) const { return wanted_rate(g_, g_.links[active_[k]], h_, options_); }
 
+    // [m] How much a gap may be wrong by after the interval, more than a touch that has none may be.
+    double room_of(const Link& link, double rate, double energy) const {
+        if (h_ == 0.0) return 0.0;
+        if (rate > 0.0) return link.J * rate <= kEnergyUnnoticed * energy ? kOpensUnnoticed : 0.0;
+        return kGapUsed * std::max(0.0, link.gap);
+    }
+
     // Notes the rates. Where balls go over from rest to rolling and back, a share of kRestCompliance is left: harmless where no gap notices it.
     bool is_solved(bool& harmless) {
-        const double rounding = rate_rounding(g_),
-                     unnoticed = kOverlapGrowth / std::max(h_, kShortestInterval);
+        const double rounding = rate_rounding(g_), time = std::max(h_, kShortestInterval);
+        double energy = 0.0;
+        for (const Body& b : g_.bodies) energy += dot(b.v, b.v) + 0.4 * dot(b.s, b.s);
         bool solved = true;
         for (std::size_t k = 0; k < active_.size(); ++k) {
             const double now = rates_[k] = rate(k);
             const Link& link = g_.links[active_[k]];
             const double wrong = link.J > 0.0 ? std::abs(now) : -now;
             solved = solved && wrong <= rounding;
-            harmless = harmless && wrong <= std::max(rounding, unnoticed);
+            harmless = harmless &&
+                       wrong <= std::max(rounding, (kOverlapGrowth + room_of(link, now, energy)) / time);
         }
         return solved;
     }

@@ -37,10 +37,10 @@ bool pushes(const Group& g, double h, double times) {
 }
 
 // Whether balls that hardly can move are driven by a friction that is only nearly right: it does work at the end of the interval, where
-// only normals that turn may.
+// only normals that turn may. Twice the energy of the start, and what the impulses would add at the speeds of the end, per mass.
 bool is_driven(const Group& g, double h) {
     if (!pushes(g, h, 1.0)) return false;
-    double energy = 0.0, power = 0.0;  // twice that of the start, and what the impulses would add at the speeds of the end, per mass
+    double energy = 0.0, power = 0.0;
     for (const Body& b : g.bodies) {
         energy += dot(b.v, b.v) + 0.4 * dot(b.s, b.s);
         power += dot(b.v_end, b.v_end - b.v) + 0.4 * dot(b.s_end, b.s_end - b.s);
@@ -123,7 +123,8 @@ bool step(Group& g, double h, StepOptions options) {
     }
     options.may_cut = false;
     if (options.stabilise && solved) drop_stabilisation(g, h, options);
-    if (options.stabilise && !solved && again) solved = solve_with(g, h, options);
+    // Without friction the second try would be the first one again.
+    if (options.stabilise && !solved && again && options.friction) solved = solve_with(g, h, options);
     if (solved) {
         g.solved = h;
         return true;
