@@ -262,8 +262,8 @@ class Newton {
             const Link& link = g_.links[active_[k]];
             const double wrong = link.J > 0.0 ? std::abs(now) : -now;
             solved = solved && wrong <= rounding;
-            harmless = harmless &&
-                       wrong <= std::max(rounding, (kOverlapGrowth + room_of(link, now, energy)) / time);
+            harmless =
+                harmless && wrong <= std::max(rounding, (kOverlapGrowth + room_of(link, now, energy)) / time);
         }
         return solved;
     }
