@@ -121,6 +121,18 @@ TEST(Jams, IntervalsWithoutASolutionAreNotCut) {
     EXPECT_LE(segments_of(run_verified(*family_scene("row_between_walls/wide", 4939))), 2500u);
 }
 
+// Without friction between balls, steps that were to include it had no solution 6900 times (6323 of tray/wide, 2.3 s), and intervals were short (27 258 and
+// 11 794 segments).
+TEST(Jams, BallsWithoutFrictionAreSolvedWithoutIt) {
+    EXPECT_LE(segments_of(run_verified(*family_scene("tray/wide", 6323))), 20000u);
+    EXPECT_LE(segments_of(run_verified(*family_scene("rack_in_box/extreme", 9))), 3000u);
+}
+
+// In a full tray most contacts have a gap of their own, and rates that it had room for had no solution (72 025 segments, 3.4 s).
+TEST(Jams, GapsHaveRoomForARate) {
+    EXPECT_LE(segments_of(run_verified(*family_scene("tray/wide", 6575))), 50000u);
+}
+
 // Attempts at an interval that were used up left the solution of a longer one.
 TEST(Jams, UsedUpAttemptsKeepTheirSolution) {
     EXPECT_EQ(what_breaks(*family_scene("gas_of_spins/extreme", 5150)), "");
