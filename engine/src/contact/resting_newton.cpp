@@ -21,6 +21,8 @@ constexpr int kLoadSteps = 12;
 constexpr int kStopsFrom = 5;
 // [of the interval] Where a step of Newton's method says that its solution will hold for less, the interval is solved no further.
 constexpr double kTooLong = 0.95;
+// [of the wrong rates] A step that leaves more of them makes no headway.
+constexpr double kStandsStill = 0.9;
 // [-] A gap whose normal turns further than this is not looked at in detail: the interval is shortened anyway.
 constexpr double kLongestTurn = 0.1;
 // [m] Overlap that the turning of a normal may cause within an interval.
@@ -36,7 +38,7 @@ constexpr double kSlopeLeft = 0.25;
 // [of its coefficient] Accuracy of the friction between balls; [m] and [of the fastest speed] no less is looked at than what it changes in a place or a
 // speed within the interval. That doubles in each step, up to 2^10 times, for contacts that hold each other's slip.
 constexpr double kFrictionAccuracy = 1e-9, kFrictionPlace = 1e-11, kFrictionSpeed = 1e-6;
-constexpr int kLooser = 10;
+constexpr int kLooser = 20, kLooserPlace = 10;
 
 // How much one of impulse between two balls changes their upward slip.
 double ease_of(const Group& g, const Link& link) {
@@ -107,10 +109,11 @@ double turning_of(const Link& link, const Across& t, double h) {
 // Takes over from a solution what the next one starts from, but for frictions that are right already: so the impulses that belong to them stay right.
 // @return whether it differs
 bool update(Group& g, double h, const StepOptions& options, int times) {
-    const double accuracy = kFrictionAccuracy * ball_friction(g.around.balls, 0.0);
+    const double accuracy = kFrictionAccuracy * static_cast<double>(1 << std::min(times, kLooser)) *
+                            ball_friction(g.around.balls, 0.0);
     double fastest = 0.0;
     for (const Body& b : g.bodies) fastest = std::max(fastest, length(b.v_end));
-    const double left = static_cast<double>(1 << std::min(times, kLooser)) *
+    const double left = static_cast<double>(1 << std::min(times, kLooserPlace)) *
                         std::min(kFrictionPlace / std::max(h, kShortestInterval), kFrictionSpeed * fastest);
     bool changed = false;
     for (Link& link : g.links) {
@@ -213,7 +216,8 @@ class Newton {
             bool harmless = !changed;
             if (is_solved(harmless) && !changed) return true;
             if (newton >= kStopsFrom && harmless) return true;
-            if (newton == kNewtonSteps) return false;
+            if (newton == kNewtonSteps || (newton > kStopsFrom && !changed && stands_still())) return false;
+            worst_before_ = worst_;
             if (!solve(newton < kLoadSteps ? 1.0 : 0.0)) return harmless;
             search();
             if (options_.may_cut && newton > 0 && is_too_long()) return false;
@@ -221,6 +225,13 @@ class Newton {
     }
 
   private:
+    // Whether a whole step of the same linear problem has left the rates as wrong as they were: rounding decides.
+    bool stands_still() const {
+        bool same = whole_ && worst_ > kStandsStill * worst_before_ && modes_.size() == g_.bodies.size();
+        for (std::size_t b = 0; b < modes_.size(); ++b) same = same && modes_[b] == g_.bodies[b].mode;
+        return same;
+    }
+
     bool is_too_long() {
         const double holds = accurate_interval(g_, h_);
         if (holds < kTooLong * h_) g_.cut = holds;
@@ -257,11 +268,13 @@ class Newton {
         double energy = 0.0;
         for (const Body& b : g_.bodies) energy += dot(b.v, b.v) + 0.4 * dot(b.s, b.s);
         bool solved = true;
+        worst_ = 0.0;
         for (std::size_t k = 0; k < active_.size(); ++k) {
             const double now = rates_[k] = rate(k);
             const Link& link = g_.links[active_[k]];
             const double wrong = link.J > 0.0 ? std::abs(now) : -now;
             solved = solved && wrong <= rounding;
+            worst_ = std::max(worst_, wrong);
             harmless =
                 harmless && wrong <= std::max(rounding, (kOverlapGrowth + room_of(link, now, energy)) / time);
         }
@@ -279,6 +292,8 @@ class Newton {
 
     // rate + A (J - J now) for the present kinds of motion.
     void linearise(double lifts) {
+        modes_.clear();
+        for (const Body& b : g_.bodies) modes_.push_back(b.mode);
         problem_.q = rates_;
         problem_.clear();
         for (std::size_t k = 0; k < active_.size(); ++k) {
@@ -319,12 +334,14 @@ class Newton {
         const double first = slope();
         double low = 0.0, at_low = first, high = 1.0;
         go(1.0);
+        whole_ = true;
         double at_high = slope();
         for (int turn = 0; turn < kSearches && at_high > kSlopeLeft * std::abs(first) && at_low < 0.0;
              ++turn) {
             const double share = std::clamp(low + (high - low) * at_low / (at_low - at_high),
                                             low + 0.1 * (high - low), high - 0.1 * (high - low));
             go(share);
+            whole_ = false;
             const double here = slope();
             if (std::abs(here) <= kSlopeLeft * std::abs(first)) break;
             (here > 0.0 ? high : low) = share;
@@ -350,7 +367,10 @@ class Newton {
     std::vector<std::size_t> active_;  // links
     Complementarity& problem_;
     Extrapolation frictions_;
-    std::vector<double> before_, rates_;  // impulses and rates before the step, as active_
+    std::vector<Mode> modes_;                  // at the last linear problem
+    bool whole_ = false;                       // whether its solution was taken
+    double worst_ = 0.0, worst_before_ = 0.0;  // [m/s] largest wrong rate, now and before the last step
+    std::vector<double> before_, rates_;       // impulses and rates before the step, as active_
     // The contacts of each ball, as places in active_, and where those of a ball begin.
     std::vector<std::size_t> of_body_, first_;
 };
