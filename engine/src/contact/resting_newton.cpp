@@ -35,8 +35,8 @@ constexpr double kNoGap = 4e-15;
 // [-] Most trials of a line search, and the share of its first slope that may be left.
 constexpr int kSearches = 8;
 constexpr double kSlopeLeft = 0.25;
-// [of its coefficient] Accuracy of the friction between balls; [m] and [of the fastest speed] no less is looked at than what it changes in a place or a
-// speed within the interval. That doubles in each step, up to 2^10 times, for contacts that hold each other's slip.
+// [of its coefficient] Accuracy of the friction between balls; and [m] what it may be wrong by in a place, if that is no more than so much in a speed [of
+// the fastest]. The first two double in each step, so many times at most, for contacts that hold each other's slip.
 constexpr double kFrictionAccuracy = 1e-9, kFrictionPlace = 1e-11, kFrictionSpeed = 1e-6;
 constexpr int kLooser = 20, kLooserPlace = 10;
 
@@ -113,8 +113,8 @@ bool update(Group& g, double h, const StepOptions& options, int times) {
                             ball_friction(g.around.balls, 0.0);
     double fastest = 0.0;
     for (const Body& b : g.bodies) fastest = std::max(fastest, length(b.v_end));
-    const double left = static_cast<double>(1 << std::min(times, kLooserPlace)) *
-                        std::min(kFrictionPlace / std::max(h, kShortestInterval), kFrictionSpeed * fastest);
+    const double place = kFrictionPlace * static_cast<double>(1 << std::min(times, kLooserPlace)),
+                 left = std::min(place / std::max(h, kShortestInterval), kFrictionSpeed * fastest);
     bool changed = false;
     for (Link& link : g.links) {
         if (options.stabilise && !link.open && !link.walled) {
