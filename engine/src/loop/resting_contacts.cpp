@@ -56,11 +56,12 @@ bool lies(MotionState state) {
     return !flies(state) && !is_gone(state) && state != MotionState::kFalling;
 }
 
+// By products: a logarithm has other bits with another library.
 int most_bounces(double restitution) {
-    if (!(restitution > 0.0)) return kFewestBounces;
-    if (!(restitution < 1.0)) return kMostBounces;
-    const double bounces = std::log(kSpeedLeft) / std::log(restitution);
-    return static_cast<int>(std::clamp<double>(bounces, kFewestBounces, kMostBounces));
+    int bounces = 0;
+    for (double left = restitution; left >= kSpeedLeft && bounces < kMostBounces; left *= restitution)
+        ++bounces;
+    return std::max(kFewestBounces, bounces);
 }
 
 bool touches(const RestingContact& c, int ball) {
