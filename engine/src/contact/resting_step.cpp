@@ -115,7 +115,7 @@ bool step(Group& g, double h, StepOptions options) {
     }
     g.solved = 0.0;
     // Where the last attempt had no solution with friction, one of these is looked for once, not three times.
-    const bool again = !std::exchange(g.smooth, false);
+    const bool again = !std::exchange(g.smooth, false) || !options.friction;
     bool solved = solve_with(g, h, options);
     if (g.cut > 0.0) {
         g.solved = h;
