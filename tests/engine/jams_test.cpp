@@ -121,8 +121,8 @@ TEST(Jams, IntervalsWithoutASolutionAreNotCut) {
     EXPECT_LE(segments_of(run_verified(*family_scene("row_between_walls/wide", 4939))), 2500u);
 }
 
-// Without friction between balls, steps that were to include it had no solution 6900 times (6323 of tray/wide, 2.3 s), and intervals were short (27 258 and
-// 11 794 segments).
+// Without friction between balls, steps that were to include it had no solution 6900 times (6323 of tray/wide, 2.3 s), and intervals were short
+// (27 258 and 11 794 segments).
 TEST(Jams, BallsWithoutFrictionAreSolvedWithoutIt) {
     EXPECT_LE(segments_of(run_verified(*family_scene("tray/wide", 6323))), 20000u);
     EXPECT_LE(segments_of(run_verified(*family_scene("rack_in_box/extreme", 9))), 3000u);
@@ -133,8 +133,8 @@ TEST(Jams, GapsHaveRoomForARate) {
     EXPECT_LE(segments_of(run_verified(*family_scene("tray/wide", 6575))), 50000u);
 }
 
-// In flat wedges impulses of 37 m/s take out 4 mm/s, and rounding leaves 2e-8 m/s of that: as no solution it was not taken at all, and balls went into each
-// other by 9.9e-9 m.
+// In flat wedges impulses of 37 m/s take out 4 mm/s, and rounding leaves 2e-8 m/s of that: as no solution it was not taken at all, and balls
+// went into each other by 9.9e-9 m.
 TEST(Jams, ClosingSpeedsAreTakenOutAsFarAsRoundingLetsThem) {
     EXPECT_EQ(what_breaks(*family_scene("rack_in_box/extreme", 24815)), "");
 }

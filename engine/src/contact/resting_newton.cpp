@@ -27,16 +27,16 @@ constexpr double kStandsStill = 0.9;
 constexpr double kLongestTurn = 0.1;
 // [m] Overlap that the turning of a normal may cause within an interval.
 constexpr double kOverlapLeft = 4e-15;
-// [m] and [of the gap] A gap may be wrong by so much after an interval, if it opens or closes; one that opens under an impulse gains energy, of which so
-// much is rounding [of the group's].
+// [m] and [of the gap] A gap may be wrong by so much after an interval, if it opens or closes; one that opens under an impulse gains energy, of
+// which so much is rounding [of the group's].
 constexpr double kOpensUnnoticed = 1e-10, kGapUsed = 0.5, kEnergyUnnoticed = 1e-13;
 // [m] Smaller changes of a gap are not looked at.
 constexpr double kNoGap = 4e-15;
 // [-] Most trials of a line search, and the share of its first slope that may be left.
 constexpr int kSearches = 8;
 constexpr double kSlopeLeft = 0.25;
-// [of its coefficient] Accuracy of the friction between balls; and [m] what it may be wrong by in a place, if that is no more than so much in a speed [of
-// the fastest]. The first two double in each step, so many times at most, for contacts that hold each other's slip.
+// [of its coefficient] Accuracy of the friction between balls; and [m] what it may be wrong by in a place, if that is no more than so much in a
+// speed [of the fastest]. The first two double in each step, so many times at most, for contacts that hold each other's slip.
 constexpr double kFrictionAccuracy = 1e-9, kFrictionPlace = 1e-11, kFrictionSpeed = 1e-6;
 constexpr int kLooser = 20, kLooserPlace = 10;
 
