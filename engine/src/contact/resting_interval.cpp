@@ -40,8 +40,6 @@ constexpr double kClockTicks = 8.0;
 // [-] Most attempts at an interval, and at a longer one, which ends when something has gone; it is tried if that is nearly so.
 constexpr int kAttempts = 60, kLonger = 6;
 constexpr double kNearly = 1e-2;
-// [-] Most attempts in a row that are left before they are solved: where there is no solution, Newton's method tells nothing about the interval.
-constexpr int kCuts = 2;
 // [-] First attempt, as a multiple of the group's last interval: what limited that one mostly limits this one.
 constexpr double kGrowth = 4.0;
 // [-] Shortest next attempt, as a share of the last.
@@ -307,18 +305,18 @@ void solve_interval(Group& g) {
         std::max(kShortestInterval, kClockTicks * std::numeric_limits<double>::epsilon() * g.now);
     double h = std::max(shortest, std::min(first_attempt(g), kGrowth * g.group.last));
     double longest = h;
-    int longer = 0, cuts = 0;
+    int longer = 0;
+    bool cut = false;
     double gone_before = 0.0;  // something has gone before this time, but not before the last interval
     for (int attempt = 1;; ++attempt) {
-        if (cuts == 0) longest = h;
-        const bool solved = attempt_at(g, h, shortest, longest, cuts < kCuts && attempt < kAttempts);
-        if (g.cut > 0.0) {
-            ++cuts;
+        if (!cut) longest = h;
+        const bool solved = attempt_at(g, h, shortest, longest, attempt < kAttempts);
+        cut = g.cut > 0.0;
+        if (cut) {
             gone_before = 0.0;
             h = std::max({shortest, g.cut, kShorter * h});
             continue;
         }
-        cuts = 0;
         double accurate = accurate_interval(g, h), gone = kNever, later = kNever;
         if (!solved) accurate = std::min(accurate, 0.25 * h);
         for (const Body& b : g.bodies) {
