@@ -62,8 +62,8 @@ namespace effects {
 
 namespace {
 
-// [m/s] A ball whose centre and surface are slower is at rest. A thousand impacts at one instant, each of which halves a speed, led to numbers by which
-// friction cannot be divided.
+// [m/s] A ball whose centre and surface are slower, without its vertical spin, neither slides nor rolls. A thousand impacts at one instant, each of
+// which halves a speed, led to numbers by which friction cannot be divided.
 constexpr double kStill = 1e-250;
 
 }  // namespace
@@ -80,8 +80,9 @@ Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, con
     const Vec2 u = cloth_slip(s.v, s.w, p.R);
     const double slip = length(u), speed = length(planar(s.v));
     const double spin = std::sqrt(w.x() * w.x() + w.y() * w.y() + w.z() * w.z());
-    if (const double motion = speed + p.R * spin; motion > 0.0 && motion < kStill)
-        return start_segment(t, r, Vec3::Zero(), Vec3::Zero(), p);
+    if (speed < kStill && (speed > 0.0 || w.x() != 0.0 || w.y() != 0.0) &&
+        speed + p.R * length(planar(w)) < kStill)
+        return start_segment(t, r, Vec3::Zero(), {0.0, 0.0, w.z()}, p);
     if (slip > kRollingUlp * kEpsilon * (speed + p.R * spin)) {
         s.state = MotionState::kSliding;
         if (p.sliding) effects::sliding_friction(s, u, slip, p);
