@@ -133,6 +133,17 @@ TEST(Jams, GapsHaveRoomForARate) {
     EXPECT_LE(segments_of(run_verified(*family_scene("tray/wide", 6575))), 50000u);
 }
 
+// A gap is used once: the turning of the normal had closed nearly all of it, and a rate that was left another half (an overlap of 1e-11 m).
+TEST(Jams, GapsAreUsedOnce) {
+    EXPECT_EQ(what_breaks(*family_scene("frozen_rail_row/extreme", 32051)), "");
+}
+
+// Where balls lock each other, rates that close contacts by 4e-14 m in 1e-5 s were left every time, and summed to 1e-12 m and more.
+TEST(Jams, OverlapsLeaveNoRoomForMore) {
+    EXPECT_EQ(what_breaks(*family_scene("rack_in_box/wide", 30694)), "");
+    EXPECT_EQ(what_breaks(*family_scene("rack_in_box/extreme", 27547)), "");
+}
+
 // In flat wedges impulses of 37 m/s take out 4 mm/s, and rounding leaves 2e-8 m/s of that: as no solution it was not taken at all, and balls
 // went into each other by 9.9e-9 m.
 TEST(Jams, ClosingSpeedsAreTakenOutAsFarAsRoundingLetsThem) {

@@ -27,8 +27,8 @@ constexpr double kStandsStill = 0.9;
 constexpr double kLongestTurn = 0.1;
 // [m] Overlap that the turning of a normal may cause within an interval.
 constexpr double kOverlapLeft = 4e-15;
-// [m] and [of the gap] A gap may be wrong by so much after an interval, if it opens or closes; one that opens under an impulse gains energy, of
-// which so much is rounding [of the group's].
+// [m] and [of the gap] A gap may be wrong by so much after an interval, if it opens or closes, and its normal may turn by the rest of it; an overlap
+// takes as much from what is harmless. A gap that opens under an impulse gains energy, of which so much is rounding [of the group's].
 constexpr double kOpensUnnoticed = 1e-10, kGapUsed = 0.5, kEnergyUnnoticed = 1e-13;
 // [m] Smaller changes of a gap are not looked at.
 constexpr double kNoGap = 4e-15;
@@ -99,7 +99,7 @@ double turning_of(const Link& link, const Across& t, double h) {
         const double x = share * h, n = -0.5 * level * x * x, across = x * (t.v + 0.5 * x * t.a),
                      D = t.distance;
         const double change = (n * (2.0 * D + n) + across * across) / (D + length(Vec2(D + n, across)));
-        free = free && std::max(0.0, link.gap) + change >= -kOverlapLeft;
+        free = free && (1.0 - kGapUsed) * std::max(0.0, link.gap) + change >= -kOverlapLeft;
         least = std::min(least, c + x * (k + 0.25 * kk * x));
     }
     if (k < 0.0 && -2.0 * k < kk * h) least = c - k * k / kk;
@@ -259,7 +259,7 @@ class Newton {
     double room_of(const Link& link, double rate, double energy) const {
         if (h_ == 0.0) return 0.0;
         if (rate > 0.0) return link.J * rate <= kEnergyUnnoticed * energy ? kOpensUnnoticed : 0.0;
-        return kGapUsed * std::max(0.0, link.gap);
+        return std::max(-kOverlapGrowth, kGapUsed * link.gap);
     }
 
     // Notes the rates. Where balls go over from rest to rolling and back, a share of kRestCompliance is left: harmless where no gap notices it.
