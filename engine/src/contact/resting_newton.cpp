@@ -28,8 +28,8 @@ constexpr double kLongestTurn = 0.1;
 // [m] Overlap that the turning of a normal may cause within an interval.
 constexpr double kOverlapLeft = 4e-15;
 // [m] and [of the gap] A gap may be wrong by so much after an interval, if it opens or closes, and its normal may turn by the rest of it; an overlap
-// takes as much from what is harmless. A gap that opens under an impulse gains energy, of which so much is rounding [of the group's].
-constexpr double kOpensUnnoticed = 1e-10, kGapUsed = 0.5, kEnergyUnnoticed = 1e-13;
+// counts against what is harmless. A gap that opens under an impulse gains energy, of which so much is rounding [of the group's].
+constexpr double kOpensUnnoticed = 1e-10, kGapUsed = 0.1, kEnergyUnnoticed = 1e-13;
 // [m] Smaller changes of a gap are not looked at.
 constexpr double kNoGap = 4e-15;
 // [-] Most trials of a line search, and the share of its first slope that may be left.
@@ -259,7 +259,7 @@ class Newton {
     double room_of(const Link& link, double rate, double energy) const {
         if (h_ == 0.0) return 0.0;
         if (rate > 0.0) return link.J * rate <= kEnergyUnnoticed * energy ? kOpensUnnoticed : 0.0;
-        return std::max(-kOverlapGrowth, kGapUsed * link.gap);
+        return link.gap > 0.0 ? kGapUsed * link.gap : std::max(-kOverlapGrowth, link.gap);
     }
 
     // Notes the rates. Where balls go over from rest to rolling and back, a share of kRestCompliance is left: harmless where no gap notices it.
