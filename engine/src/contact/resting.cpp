@@ -85,29 +85,37 @@ Link link_of(const Group& g, const RestingContact& c) {
     return link;
 }
 
-// What the rounding of impulses that are a million times the speeds, in a flat wedge, would add to the energy.
-void keep_energy(Group& g) {
+// What slips that count as zero, and the rounding of impulses a million times the speeds, in a flat wedge, would add to the energy is taken from
+// all motions alike, so that rates and slips of zero stay zero.
+// @return whether that is something
+bool keep_energy(Group& g) {
     double before = 0.0, after = 0.0;
     for (const Body& b : g.bodies) {
-        before += dot(b.v, b.v);
-        after += dot(b.v_end, b.v_end);
+        before += dot(b.v, b.v) + 0.4 * dot(b.s, b.s);
+        after += dot(b.v_end, b.v_end) + 0.4 * dot(b.s_end, b.s_end);
     }
-    if (!(after > before)) return;
-    for (Body& b : g.bodies) b.v_end *= std::sqrt(before / after);
+    if (!(after > before)) return false;
+    const double share = std::sqrt(before / after);
+    for (Body& b : g.bodies) {
+        b.v_end *= share;
+        b.s_end *= share;
+    }
+    return true;
 }
 
 // Takes the velocities after impulses at an instant as the present ones.
 void accept(Group& g) {
-    keep_energy(g);
     const double gone = std::max(g.noise, 3.5 * g.motion.slide * kSlipNoise);
+    for (Body& b : g.bodies)
+        if (b.impulses > 0.0 && !(length(b.slip_end()) > gone)) b.s_end = b.v_end;
+    const bool all = keep_energy(g);
     for (std::size_t k = 0; k < g.bodies.size(); ++k) {
         const Body& b = g.bodies[k];
         RestingBall& ball = g.group.balls[k];
-        if (!(b.impulses > 0.0)) continue;
-        const Vec2& s = length(b.slip_end()) > gone ? b.s_end : b.v_end;
+        if (!all && !(b.impulses > 0.0)) continue;
         ball.v = Vec3(b.v_end.x(), b.v_end.y(), 0.0);
-        ball.w.x() = -s.y() / g.motion.R;
-        ball.w.y() = s.x() / g.motion.R;
+        ball.w.x() = -b.s_end.y() / g.motion.R;
+        ball.w.y() = b.s_end.x() / g.motion.R;
         read(g, k);
     }
 }
