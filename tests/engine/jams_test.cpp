@@ -144,6 +144,11 @@ TEST(Jams, OverlapsLeaveNoRoomForMore) {
     EXPECT_EQ(what_breaks(*family_scene("rack_in_box/extreme", 27547)), "");
 }
 
+// Impacts at one instant took all but a thousandth of a speed each, to 4e-163 m/s: a million rounds without an event after 6e-163 s.
+TEST(Jams, SpeedsWhoseSquaresAreNoneAreRest) {
+    EXPECT_EQ(what_breaks(*family_scene("row_between_walls/wide", 45875)), "");
+}
+
 // Slips of 4e-12 m/s that a capture leaves count as zero: the ball's spin followed its speed, and the energy rose by 1e-10 of itself.
 TEST(Jams, SlipsThatCountAsZeroAddNoEnergy) {
     EXPECT_EQ(what_breaks(*family_scene("frozen_rail_row", 40578)), "");

@@ -62,9 +62,9 @@ namespace effects {
 
 namespace {
 
-// [m/s] A ball whose centre and surface are slower, without its vertical spin, neither slides nor rolls. A thousand impacts at one instant, each of
-// which halves a speed, led to numbers by which friction cannot be divided.
-constexpr double kStill = 1e-250;
+// [m/s] A ball whose centre and surface are slower, without its vertical spin, neither slides nor rolls. Impacts at one instant may each take half of a
+// speed or more, down to numbers whose squares are none, and by which friction cannot be divided.
+constexpr double kStill = 1e-100;
 
 }  // namespace
 
