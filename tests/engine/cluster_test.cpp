@@ -349,7 +349,7 @@ TEST(Cluster, AContactHasALengthAtEverySpeed) {
 }
 
 TEST(Cluster, BallsThatHardlyMoveComeToRest) {
-    // Scene files refuse speeds below 1e-60 m/s; balls may come to have them.
+    // Scene files refuse speeds below 1e-60 m/s; balls may come to have them. Below 1e-100 m/s they are at rest.
     for (const double speed : {1e-60, 5e-77, 1e-80, 1e-100, 1e-150}) {
         Scene scene = parse_scene(
             "[[ball]]\n[[ball]]\nid = \"b1\"\nposition = [0.15715, 0.5]\n"
@@ -358,7 +358,7 @@ TEST(Cluster, BallsThatHardlyMoveComeToRest) {
         scene.ball[1].velocity = Vec3(speed, speed, 0.0);
         const Record record = run_verified(scene);
         EXPECT_EQ(record.stopped, StopReason::kAtRest) << speed;
-        EXPECT_EQ(count(record, EventType::kBallBall), 1) << speed;
+        EXPECT_EQ(count(record, EventType::kBallBall), speed < 1e-100 ? 0 : 1) << speed;
     }
 }
 
