@@ -129,6 +129,8 @@ class Release(unittest.TestCase):
         git("config", "user.name", "somebody")
         git("config", "user.email", "somebody@example.org")
         (self.root / ".gitignore").write_text("/build/\n")
+        # Right after a release nothing stands there.
+        self.change("CHANGELOG.md", r"(?s)## \[Unreleased\]\n.*?(?=\n## |\Z)", "## [Unreleased]\n\n### Added\n\n* Something.\n")
         git("add", "--all")
         git("commit", "--quiet", "-m", "start")
         start = git("rev-parse", "HEAD")
