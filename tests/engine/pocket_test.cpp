@@ -184,6 +184,33 @@ TEST(Pocket, ARunThatStopsInTheFallGoesOnTheSame) {
     EXPECT_GT(stopped, 0);
 }
 
+// Hard shots into all pockets, on the cloth and above it: they rattled through between a jaw's end and the pocket, or flew over its side, and went on
+// behind the rails as on cloth (one of 400 random matches).
+TEST(Pocket, NoBallComesOutBehindTheRails) {
+    int pocketed = 0, out = 0;
+    for (std::uint64_t seed = 0; seed < 4000; ++seed) {
+        Generator rng(seed);
+        Scene scene = parse_scene("[[ball]]\n", "rails.toml");
+        const Table& table = scene.table;
+        const Vec2 pocket = table.pockets[seed % table.pockets.size()].center;
+        const Vec2 from(rng.uniform(0.1, table.width - 0.1), rng.uniform(0.1, table.length - 0.1));
+        const Vec2 aim = pocket + Vec2(rng.uniform(-0.06, 0.06), rng.uniform(-0.06, 0.06)) - from;
+        const Vec2 v = aim / length(aim) * rng.uniform(1.0, 12.0);
+        scene.ball[0].position = {from.x(), from.y(), kRadius};
+        scene.ball[0].velocity = {v.x(), v.y(), seed % 2 == 0 ? 0.0 : rng.uniform(0.2, 3.0)};
+        for (double& w : scene.ball[0].spin) w = rng.uniform(-100.0, 100.0);
+        const Record r = run(scene);
+        const Segment& last = r.tracks[0].segments.back();
+        pocketed += r.tracks[0].pocket >= 0;
+        out += last.state == MotionState::kOut;
+        if (r.tracks[0].pocket >= 0 || last.state == MotionState::kOut) continue;
+        const Rectangle bed(-kRadius, -kRadius, table.width + kRadius, table.length + kRadius);
+        EXPECT_TRUE(is_inside(bed, planar(last.r))) << seed << ": " << last.r.transpose();
+    }
+    EXPECT_GT(pocketed, 500);
+    EXPECT_GT(out, 100);
+}
+
 // Crowds that push each other into a corner and out of it.
 TEST(Pocket, CrowdsKeepTheLaws) {
     int edges = 0, back = 0;
@@ -212,7 +239,7 @@ TEST(Pocket, CrowdsKeepTheLaws) {
         back += count(r, EventType::kBallEdge) - count(r, EventType::kBallPocket);
     }
     EXPECT_GT(edges, 500);
-    EXPECT_GT(back, 20);
+    EXPECT_GT(back, 10);
 }
 
 TEST(PocketEdge, TimeToTheFarEdge) {

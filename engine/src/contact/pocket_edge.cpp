@@ -30,13 +30,13 @@ double time_to_edge(const Vec2& r, const Vec2& v, const Vec2& center, double rad
     return std::max(0.0, along > 0.0 ? inside / (along + root) : (root - along) / speed2);
 }
 
-bool is_bed(const Table& table, const Pocket& pocket, const Vec2& here) {
+bool is_bed(const Table& table, const Pocket& pocket, const Vec2& here, double R) {
     if (table.bed) return is_inside(*table.bed, here);
-    const Vec2 c = pocket.center, size(table.width, table.length);
-    const Vec2 from = c - table.corner, to = table.corner + size - c;
-    const bool within = from.x() >= 0.0 && from.y() >= 0.0 && to.x() >= 0.0 && to.y() >= 0.0;
-    const bool endless = !(table.width > 0.0 && table.length > 0.0);
-    return within || endless || dot(here - c, Vec2(table.corner + 0.5 * size - c)) > 0.0;
+    if (!(table.width > 0.0 && table.length > 0.0)) return true;  // it has no end
+    const Vec2 c = pocket.center, low = table.corner, high = low + Vec2(table.width, table.length);
+    if (is_inside(Rectangle(low.x(), low.y(), high.x(), high.y()), c)) return true;
+    const Rectangle between_jaws(low.x() - R, low.y() - R, high.x() + R, high.y() + R);
+    return is_inside(between_jaws, here) && dot(here - c, Vec2(0.5 * (low + high) - c)) > 0.0;
 }
 
 std::optional<double> climbs(double v_n, double sunk, double R, double gravity) {

@@ -118,7 +118,7 @@ class Detector : private Borrowed<DetectorMemory> {
     Flight flight(int ball, double from) const;
     double time_to_flight(int a, int b, double from) const;
     void search_table_in_air(int ball);
-    double time_over_pocket(int pocket, const Path& path) const;
+    double time_over_pocket(int pocket, const Path& path, double R) const;
     bool over_pocket(const Vec2& here) const;
 
     /// The duration from one time to another, rounded up.

@@ -30,13 +30,13 @@ double Detector::time_to_flight(int a, int b, double from) const {
 }
 
 // [s] Time until a ball that flies over a pocket leaves its circle where there is no cloth.
-double Detector::time_over_pocket(int index, const Path& path) const {
+double Detector::time_over_pocket(int index, const Path& path, double R) const {
     const Pocket& pocket = plan_.geometry.pockets[index];
     const double enters = time_to_pocket(path, pocket.center, pocket.radius);
     if (enters == kNever) return kNever;
     const double leaves =
         enters + time_to_edge(path.r + enters * path.v, path.v, pocket.center, pocket.radius);
-    const bool back = is_bed(plan_.scene.table, pocket, path.r + leaves * path.v);
+    const bool back = is_bed(plan_.scene.table, pocket, path.r + leaves * path.v, R);
     return back || leaves > path.horizon ? kNever : leaves;
 }
 
@@ -78,7 +78,7 @@ void Detector::search_table_in_air(int ball) {
             const double over = n.radius > 0.0 ? time_to_circle(p, n.center, n.radius) : kNever;
             if (over < kNever && (ends || table.bed)) take_first({start + over, out}, first);
         } else {
-            t = time_over_pocket(contact.other, p);
+            t = time_over_pocket(contact.other, p, R);
         }
         if (t < kNever) take_first({start + t, contact}, first);
     }

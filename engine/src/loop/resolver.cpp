@@ -272,7 +272,7 @@ void Resolver::leave_pocket(const Contact& contact) {
     const double v_n = dot(n, planar(v)), falls = fall_speed(s, balls_.now() - s.start, motion.gravity);
     const auto away =
         climbs(v_n, falls * falls / (2.0 * motion.gravity * motion.R), motion.R, motion.gravity);
-    if (!away || !is_bed(plan_.scene.table, pocket, planar(r))) {
+    if (!away || !is_bed(plan_.scene.table, pocket, planar(r), motion.R)) {
         log_.fall(ball, contact.other);
         return;
     }
