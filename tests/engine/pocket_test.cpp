@@ -185,7 +185,7 @@ TEST(Pocket, ARunThatStopsInTheFallGoesOnTheSame) {
 }
 
 // Hard shots into all pockets, on the cloth and above it: they rattled through between a jaw's end and the pocket, or flew over its side, and went on
-// behind the rails as on cloth (one of 400 random matches).
+// behind the rails as on cloth (one of some 500 random matches).
 TEST(Pocket, NoBallComesOutBehindTheRails) {
     int pocketed = 0, out = 0;
     for (std::uint64_t seed = 0; seed < 4000; ++seed) {
