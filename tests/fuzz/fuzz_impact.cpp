@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "impact_line.h"
+#include "commands/impact/impact_line.h"
 
 namespace {
 

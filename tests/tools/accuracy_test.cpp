@@ -11,10 +11,10 @@
 
 #include "accuracy/box2d_shot.h"
 #include "accuracy/kernel.h"
-#include "accuracy/scene.h"
 #include "bench/kernel.h"
 #include "bench/shot.h"
 #include "carom/engine/simulate.h"
+#include "commands/accuracy/scene.h"
 #include "reference/random_impacts.h"
 #include "support/engine_cases.h"
 

@@ -10,7 +10,7 @@
 #include "carom/engine/scene.h"
 #include "carom/engine/simulate.h"
 #include "carom/kernel/isa.h"
-#include "compare/difference.h"
+#include "commands/compare/difference.h"
 #include "compare/picture.h"
 #include "report/plot.h"
 

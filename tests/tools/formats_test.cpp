@@ -1,6 +1,6 @@
 // What docs/ says about file formats is what the program says of itself. Where a test here fails, renew the pages with
 // tools/measure/renew_formats.py.
-#include "formats.h"
+#include "commands/describe/formats.h"
 
 #include <gtest/gtest.h>
 

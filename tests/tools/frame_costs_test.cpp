@@ -1,12 +1,12 @@
 // Every event belongs to exactly one frame, and the sums lose nothing.
-#include "margin/frame_costs.h"
+#include "base/frame_costs.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "bench/clock.h"
+#include "base/clock.h"
 #include "carom/render/sequence.h"
 #include "reference/random_impacts.h"
 

@@ -1,5 +1,5 @@
 // carom impact, line by line: right answers for right lines, an error and no crash for all others.
-#include "impact_line.h"
+#include "commands/impact/impact_line.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The bookkeeping of carom margin, on costs that are given.
-#include "margin/margin.h"
+#include "commands/margin/margin.h"
 
 #include <vector>
 

@@ -1,15 +1,15 @@
-// The program: the list of its commands, and what becomes of an error.
-#include <exception>
-#include <new>
+// The program carom: the list of its commands.
+#include <fmt/core.h>
+
 #include <string>
 
-#include "carom/engine/scene.h"
-#include "console.h"
-#include "options.h"
+#include "base/console.h"
+#include "base/options.h"
+#include "base/setup.h"
 
 namespace carom::tools {
 
-// A command is one file, which adds itself to the table of options; those that measure stand in folders.
+// Each command is a folder of commands/, which adds itself to the table of options.
 void add_simulate(Options& program);
 void add_render(Options& program);
 void add_view(Options& program);
@@ -18,17 +18,24 @@ void add_compare(Options& program);
 void add_margin(Options& program);
 void add_accuracy(Options& program);
 void add_sweep(Options& program);
-void add_validate(Options& program);
 void add_check(Options& program);
 void add_impact(Options& program);
-void add_bench_kernel(Options& bench);
-void add_bench_render(Options& bench);
-void add_bench_shot(Options& bench);
 void add_describe(Options& program);
 
 namespace {
 
+/// Commands that moved to the laboratory. @throws UsageError naming the new one
+void refuse_moved(int argc, char** argv) {
+    std::string command = argc > 1 ? argv[1] : "";
+    if (command == "accuracy" && argc > 2 && std::string(argv[2]) == "kernel") command += " kernel";
+    if (command != "bench" && command != "validate" && command != "accuracy kernel") return;
+    throw UsageError(fmt::format(
+        "{0} is part of carom-lab now: build carom's sources with -DCAROM_BUILD_LAB=ON and run carom-lab {0}",
+        command));
+}
+
 int run(int argc, char** argv) {
+    refuse_moved(argc, argv);
     Options program("carom", "carom, a billiards table simulator");
     program.version = CAROM_VERSION;
     program.option("-V,--version", {}, "", "Display program version information and exit");
@@ -47,40 +54,10 @@ int run(int argc, char** argv) {
     add_margin(program);
     add_accuracy(program);
     add_sweep(program);
-    add_validate(program);
     add_check(program);
     add_impact(program);
-    Options& bench = program.command("bench", "Ratios measured side by side in one run");
-    add_bench_kernel(bench);
-    add_bench_render(bench);
-    add_bench_shot(bench);
     add_describe(program);
     return run_command_line(program, argc, argv);
-}
-
-/// Runs, and turns what was thrown into a message and an exit status.
-int guarded(int argc, char** argv) {
-    try {
-        const int status = run(argc, argv);
-        flush_output();
-        return status;
-    } catch (const Interrupted&) {
-        return interrupted_status();
-    } catch (const OutputClosed&) {
-        return kFailed;
-    } catch (const UsageError& error) {
-        message(error.what());
-        return kBadUsage;
-    } catch (const SceneError& error) {
-        message(error.what());
-        return kBadUsage;
-    } catch (const std::bad_alloc&) {
-        message("out of memory");
-        return kFailed;
-    } catch (const std::exception& error) {
-        message(error.what());
-        return kFailed;
-    }
 }
 
 }  // namespace
@@ -88,5 +65,5 @@ int guarded(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     carom::tools::prepare_process(argc, argv, CAROM_VERSION);
-    return carom::tools::guarded(argc, argv);
+    return carom::tools::guarded(carom::tools::run, argc, argv);
 }

@@ -1,8 +1,7 @@
-# Writes the scripts and the style of pages into one C++ file: cmake -DOUTPUT=page_files.cpp -P embed.cmake
-set(folder ${CMAKE_CURRENT_LIST_DIR})
-set(text "// Made by tools/carom/page/embed.cmake from the files beside it.\n#include \"page/page.h\"\n\n")
-string(APPEND text "namespace carom::tools {\n\nconst std::vector<PageFile>& page_files() {\n    static const std::vector<PageFile> files = {\n")
-file(GLOB sources ${folder}/*.js ${folder}/*.css)
+# Writes scripts and styles into a C++ file: cmake -DFOLDER=... -DFUNCTION=page_files -DOUTPUT=page_files.cpp -P embed.cmake
+set(text "// Made by tools/carom/page/embed.cmake.\n#include \"page/page.h\"\n\n")
+string(APPEND text "namespace carom::tools {\n\nconst std::vector<PageFile>& ${FUNCTION}() {\n    static const std::vector<PageFile> files = {\n")
+file(GLOB sources ${FOLDER}/*.js ${FOLDER}/*.css)
 foreach(path IN LISTS sources)
   get_filename_component(name ${path} NAME)
   file(READ ${path} source)

@@ -5,17 +5,24 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
-#include "console.h"
+#include "base/machine.h"
 
 namespace carom::tools {
 namespace {
 
+/// The files of this library, and those that another one has added.
+std::vector<PageFile>& known_files() {
+    static std::vector<PageFile> files = page_files();
+    return files;
+}
+
 const PageFile& page_file(std::string_view name) {
-    const std::vector<PageFile>& files = page_files();
+    const std::vector<PageFile>& files = known_files();
     const auto found =
         std::find_if(files.begin(), files.end(), [&name](const PageFile& file) { return file.name == name; });
     if (found == files.end()) throw std::logic_error("no page file is called " + std::string(name));
@@ -68,6 +75,10 @@ std::string inlined(const std::string& json) {
 
 }  // namespace
 
+void add_page_files(const std::vector<PageFile>& more) {
+    known_files().insert(known_files().end(), more.begin(), more.end());
+}
+
 std::string page_html(const std::string& title, const std::vector<std::string>& scripts,
                       const std::vector<PageData>& data) {
     const PageFile& style = page_file("style.css");
@@ -92,9 +103,12 @@ std::string page_html(const std::string& title, const std::vector<std::string>& 
     return html + "</body>\n</html>\n";
 }
 
-void check_page_path(const std::string& option, const std::string& path) {
-    if (!path.empty() && !path.ends_with(".html") && !path.ends_with(".htm"))
-        throw UsageError(option + " " + path + ": a page is an HTML file; give it a name that ends in .html");
+nlohmann::ordered_json page_json(const std::string& title, const std::string& lead,
+                                 const std::string& command, const std::string& version) {
+    return {{"title", title},
+            {"lead", lead},
+            {"command", command},
+            {"machine", fmt::format("carom {} on {}", version, processor())}};
 }
 
 }  // namespace carom::tools

@@ -2,29 +2,33 @@
 // hashes, and may load nothing.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 namespace carom::tools {
 
-/// A file of tools/carom/page, which the build puts into the program.
+/// A script or a style sheet, which the build puts into the program.
 struct PageFile {
     const char* name;
     const char* text;
     const char* sha256;  ///< of the text, in hexadecimal digits
 };
 const std::vector<PageFile>& page_files();
+/// Adds files that another library brings: those of the laboratory.
+void add_page_files(const std::vector<PageFile>& more);
 
 /// What the scripts of a page read: JSON in an element with this id.
 struct PageData {
     std::string id, json;
 };
 
-/// The whole file. @param scripts  names of files of tools/carom/page, in their order
+/// The whole file. @param scripts  names of page files, in their order
 std::string page_html(const std::string& title, const std::vector<std::string>& scripts,
                       const std::vector<PageData>& data);
 
-/// Checks the argument of -o or --html before any work is done. @throws UsageError
-void check_page_path(const std::string& option, const std::string& path);
+/// What every page says about itself: its title, a line below that, the command that made it, program and machine.
+nlohmann::ordered_json page_json(const std::string& title, const std::string& lead,
+                                 const std::string& command, const std::string& version);
 
 }  // namespace carom::tools

@@ -5,8 +5,8 @@
 
 #include <iterator>
 
+#include "base/console.h"
 #include "base/output_file.h"
-#include "console.h"
 
 namespace carom::tools {
 namespace {

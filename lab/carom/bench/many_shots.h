@@ -1,0 +1,51 @@
+// Batches of carom-lab bench shot: shots with random numbers, one after the other, as a search or a learner plays them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "carom/engine/batch.h"
+#include "reference/random_impacts.h"
+
+namespace carom::tools {
+
+/// One kind of batch. Shot after shot draws its numbers, sets, checks, plans and plays them, and reads the outcome.
+class ManyShots {
+  public:
+    /// @param name  of many_names() @throws std::invalid_argument for an unknown one
+    ManyShots(const std::string& name, kernel::Isa isa);
+
+    /// The next `shots` shots of an endless sequence, the same in every run. @throws std::runtime_error if one has no result
+    void play(std::size_t shots);
+    /// Starts the sequence again.
+    void rewind();
+
+    /// Shots in a round of the benchmark: a few milliseconds.
+    std::size_t shots_a_round() const { return shots_a_round_; }
+    /// Of a shot, mean since rewind().
+    double events() const { return static_cast<double>(events_) / static_cast<double>(shots_); }
+    double clusters() const { return static_cast<double>(clusters_) / static_cast<double>(shots_); }
+    /// Balls pocketed since rewind(); it makes sure that outcomes are read.
+    long pocketed() const { return pocketed_; }
+
+  private:
+    struct Number {
+        SceneNumber number;
+        double low, high;
+    };
+    std::string name_;
+    Simulator simulator_;
+    reference::Generator random_;
+    std::vector<Number> numbers_;
+    std::size_t shots_a_round_;
+    std::size_t shots_ = 0;
+    std::int64_t events_ = 0, clusters_ = 0;
+    long pocketed_ = 0;
+};
+
+/// Names of the batches, in the order of the table.
+std::vector<std::string> many_names();
+
+}  // namespace carom::tools

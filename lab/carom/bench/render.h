@@ -1,0 +1,31 @@
+// What frames cost: the rows of `carom-lab bench render`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "carom/engine/record.h"
+#include "carom/render/backend.h"
+
+namespace carom::tools {
+
+struct RenderBenchRow {
+    std::string name;  ///< "720p", "1080p", "1080p follow", "2160p"
+    /// Medians over the frames after the first, one frame at a time: CPU time of the whole process, so that
+    /// the driver's threads count too, except write_ms, which is wall time.
+    double draw_ms = 0.0, readback_ms = 0.0, encode_ms = 0.0, write_ms = 0.0;
+    /// 95th percentile of draw + read back: a frame in which most balls move
+    double slow_ms = 0.0;
+    /// Median share of the picture that is encoded anew, 0..1
+    double encoded_share = 0.0;
+    /// CPU time of a process of its own from the first call until it has one picture, without shaders that Mesa kept from an earlier process:
+    /// the OpenGL library, shaders, and the table once
+    double setup_ms = 0.0;
+    double fps = 0.0;  ///< frames a second from the first to the last, in files, with a thread per core
+};
+
+/// Draws `frames` frames spread over the shot for every row; files go to a temporary folder. SIGINT ends it.
+/// @throws RenderError
+std::vector<RenderBenchRow> bench_render(const Record& record, int frames, render::Backend backend);
+
+}  // namespace carom::tools

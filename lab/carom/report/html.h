@@ -1,0 +1,30 @@
+// Reports as pages: charts that can be read by hovering, tables that sort, and what they come from.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "base/options.h"
+#include "report/table.h"
+
+namespace carom::tools {
+
+/// What page/table.js shows: the columns that have a key. Rows that lack values keep their note.
+nlohmann::ordered_json sorted_table_json(const std::string& title, const Table& table);
+
+/// Adds --html.
+void add_html(Options& command, std::string& html);
+
+struct Report {
+    std::string title, lead;
+    /// Sentences.
+    std::vector<std::string> notes;
+    /// JSON of chart_json() and sorted_table_json().
+    std::vector<std::string> charts, tables;
+};
+
+/// Written under a temporary name and renamed; nothing if the path is empty. @throws std::runtime_error naming the file
+void write_html_report(const Report& report, const std::string& path);
+
+}  // namespace carom::tools

@@ -1,0 +1,144 @@
+// Validation cases: shots of real tables, what was measured of them, and what carom is claimed to make of each number.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "carom/engine/vec.h"
+
+namespace carom::tools {
+
+/// What is measured of one ball; of a share, of many shots.
+enum class Quantity : std::uint8_t {
+    kSpeed,
+    kSpeedRatio,
+    kVelocityX,
+    kVelocityY,
+    kDirection,
+    kDeceleration,
+    kPlace,
+    kWay,
+    kTime,
+    kShare
+};
+struct QuantityInfo {
+    const char* name;  ///< in case files
+    const char* unit;
+    const char* meaning;
+};
+inline constexpr QuantityInfo kQuantities[] = {
+    {"speed", "m/s", "speed"},
+    {"speed_ratio", "", "speed over that before the first impact"},
+    {"velocity_x", "m/s", "velocity along x"},
+    {"velocity_y", "m/s", "velocity along y"},
+    {"direction", "deg", "direction, 0 is +x and 90 is +y"},
+    {"deceleration", "m/s2", "deceleration"},
+    {"place", "m", "distance from the measured place"},
+    {"way", "m", "distance from the start"},
+    {"time", "s", "time since the start"},
+    {"share", "", "share of the shots"},
+};
+inline const QuantityInfo& info(Quantity quantity) {
+    return kQuantities[static_cast<std::size_t>(quantity)];
+}
+
+/// When it is measured.
+enum class Instant : std::uint8_t { kStart, kHit, kCushion, kRolled, kRest };
+/// In case files, and for people: right after the ball's first impact with another ball, right after that with a cushion,
+/// when it rolls (again) after its first impact, and when all is at rest.
+inline constexpr const char* kInstants[] = {"start", "hit", "cushion", "rolled", "rest"};
+
+/// One measured number.
+struct Measured {
+    Quantity quantity = Quantity::kSpeed;
+    Instant when = Instant::kStart;
+    double after = 0.0;  ///< [s] later than that
+    std::string ball = "cue";
+    double value = 0.0;        ///< in the unit of the quantity; 0 for a place
+    double uncertainty = 0.0;  ///< the same; what the number is known to, the unknown of the shot included
+    Vec2 place = Vec2::Zero();
+    // Of a share: a shot counts if one of these balls (empty: any but the cue ball) falls into one of these pockets (empty:
+    // any) and, if asked for, the cue ball into none.
+    std::vector<std::string> balls, pockets;
+    bool cue_stays = false;
+    std::string note;
+};
+
+/// One way to play the template: what stands for {name} in it, and what was measured then.
+struct ValidationShot {
+    std::string name;
+    std::string group;  ///< shots that one curve joins
+    std::vector<std::pair<std::string, std::string>> values;
+    std::vector<Measured> measured;
+};
+
+/// What a variant is claimed to compute for one number: nothing, it is within the uncertainty; or the value itself.
+using Claim = std::optional<double>;
+
+/// Preset and models under which all shots of a case are played.
+struct Variant {
+    std::string name;              ///< short, for tables and figures; default: the preset
+    std::string preset;            ///< of the balls
+    std::string keys;              ///< more lines of [balls]
+    std::string physics;           ///< lines of [physics]
+    bool free_of_fit = false;      ///< no parameter was fitted to these measurements
+    std::vector<Claim> claims;     ///< one a number, in the order of the shots
+    std::string own_keys() const;  ///< keys and physics on one line
+};
+
+/// Which model a case is about, for the reports.
+enum class About : std::uint8_t { kCushion, kBallBall, kClusters, kCloth, kCue };
+inline constexpr const char* kAbout[] = {"cushion", "ball_ball", "clusters", "cloth", "cue"};
+
+/// How far to trust the numbers.
+inline constexpr const char* kTrust[] = {"measured", "published", "second hand", "forum"};
+
+/// The figure of a case: the first number of each shot over one of the template's values, or over the shots. Shots that begin with
+/// another quantity than the first one are not in it.
+struct CasePlot {
+    std::string x;        ///< a value of the template; empty: the shots side by side
+    std::string over;     ///< a value by which the quantity is divided; empty: none
+    std::string x_title;  ///< with the unit
+    std::string y_title;
+};
+
+/// Seeded shots instead of one, for shares.
+struct CaseSweep {
+    int count = 0;
+    std::uint64_t seed = 1;
+    std::vector<std::string> vary;  ///< rules of a Variation
+};
+
+struct ValidationCase {
+    std::string file, id, title, source, trust, note;
+    About about = About::kCushion;
+    std::string scene;  ///< the template
+    std::optional<CaseSweep> sweep;
+    std::optional<CasePlot> plot;
+    std::vector<ValidationShot> shots;
+    std::vector<Variant> variants;
+};
+
+/// A file of lab/data/validation. The build puts them into the program, so that an installed one has them, too.
+struct CaseFile {
+    std::string_view name, text;
+};
+const std::vector<CaseFile>& case_files();
+
+/// @throws SceneError that names the place in the file
+ValidationCase read_case(const CaseFile& file);
+
+/// The case of this id, or all where it is empty, in their order. @throws UsageError that lists the cases
+std::vector<ValidationCase> chosen_cases(const std::string& id);
+
+/// A template with its {name}s replaced by the shot's values, {preset}, {keys} and {physics} by those of the variant.
+/// @throws SceneError for a name that has no value
+std::string filled_in(const ValidationCase& of, const ValidationShot& shot, const Variant& variant,
+                      const std::string& text);
+
+}  // namespace carom::tools

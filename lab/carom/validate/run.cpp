@@ -1,0 +1,149 @@
+// Runs validation cases.
+#include "validate/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/console.h"
+#include "base/setup.h"
+#include "carom/engine/cushion.h"
+#include "carom/engine/plan.h"
+#include "carom/engine/record.h"
+#include "carom/engine/simulate.h"
+#include "carom/engine/variation.h"
+#include "validate/measure.h"
+
+namespace carom::tools {
+namespace {
+
+constexpr double kClaimBand = 0.25;  ///< of the uncertainty
+constexpr double kShareBand = 3.0;   ///< standard deviations
+constexpr double kNinetyFive =
+    1.96;  ///< standard deviations to each side that hold 95 % of a normal distribution
+
+double share_deviation(double share, int count) {
+    return std::sqrt(share * (1.0 - share) / count);
+}
+
+std::string model_of(const ValidationCase& of, const Scene& scene) {
+    switch (of.about) {
+        case About::kCushion:
+            return name(scene.physics.cushion);
+        case About::kBallBall:
+            return name(scene.physics.ball_ball);
+        case About::kClusters:
+            return names_of(ClusterModel())[static_cast<std::size_t>(scene.physics.clusters)];
+        case About::kCloth:
+        case About::kCue:
+            break;
+    }
+    return kAbout[static_cast<std::size_t>(of.about)];
+}
+
+/// The model and the computed numbers of one shot under one variant.
+struct Computed {
+    std::string model;
+    std::vector<double> numbers;
+};
+
+Computed play(const ValidationCase& of, const ValidationShot& shot, const std::string& text,
+              kernel::Isa isa) {
+    const Plan plan = make_plan(parse_scene(text, of.file), isa);
+    const Record record = simulate(plan, interruptible());
+    Computed out{model_of(of, plan.scene), {}};
+    for (const Measured& m : shot.measured) out.numbers.push_back(measure(record, m));
+    return out;
+}
+
+Computed play_sweep(const ValidationCase& of, const ValidationShot& shot, const Variant& variant,
+                    const std::string& text, kernel::Isa isa, const std::function<void()>& progress) {
+    std::vector<std::string> rules;
+    for (const std::string& rule : of.sweep->vary) rules.push_back(filled_in(of, shot, variant, rule));
+    const Variation variation = Variation::from_text(text, of.file, rules, of.sweep->seed);
+    Computed out{model_of(of, variation.base()), std::vector<double>(shot.measured.size(), 0.0)};
+    for (int i = 0; i < of.sweep->count; ++i) {
+        const VariedShot varied = variation.shot(static_cast<std::uint64_t>(i));
+        if (!varied.scene) throw std::runtime_error(fmt::format("shot {} of the sweep: {}", i, varied.error));
+        const Record record = simulate(make_plan(*varied.scene, isa), interruptible());
+        for (std::size_t k = 0; k < shot.measured.size(); ++k)
+            out.numbers[k] += counts(record, shot.measured[k]) ? 1.0 / of.sweep->count : 0.0;
+        progress();
+    }
+    return out;
+}
+
+Computed computed(const ValidationCase& of, const ValidationShot& shot, const Variant& variant,
+                  kernel::Isa isa, const std::function<void()>& progress) {
+    const std::string text = filled_in(of, shot, variant, of.scene);
+    try {
+        if (of.sweep) return play_sweep(of, shot, variant, text, isa, progress);
+        Computed out = play(of, shot, text, isa);
+        progress();
+        return out;
+    } catch (const SceneError& error) {
+        throw std::runtime_error(
+            fmt::format("{}, {}, {}: {}\n{}", of.id, variant.name, shot.name, error.what(), text));
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(fmt::format("{}, {}, {}: {}", of.id, variant.name, shot.name, error.what()));
+    }
+}
+
+}  // namespace
+
+double ValidationRow::deviation() const {
+    return (computed - measured->value) / uncertainty;
+}
+
+bool ValidationRow::within() const {
+    return std::abs(computed - measured->value) <= uncertainty;
+}
+
+bool ValidationRow::as_claimed() const {
+    if (!claim) return within();
+    const double off = std::abs(computed - *claim);
+    if (measured->quantity == Quantity::kShare) {
+        const int count = of->sweep->count;
+        return off <= kShareBand * share_deviation(*claim, count) + 1.0 / count;
+    }
+    return !within() && off <= kClaimBand * uncertainty;
+}
+
+long runs_of(const ValidationCase& of) {
+    return static_cast<long>(of.shots.size() * of.variants.size()) * (of.sweep ? of.sweep->count : 1);
+}
+
+std::vector<ValidationRow> run_case(const ValidationCase& of, kernel::Isa isa,
+                                    const std::function<void(long)>& progress) {
+    long runs = 0;
+    const auto step = [&] {
+        throw_if_interrupted();
+        progress(++runs);
+    };
+    std::vector<ValidationRow> rows;
+    std::size_t first = 0;  // number of the shot's first number in the claims
+    for (const ValidationShot& shot : of.shots) {
+        std::vector<Computed> all;
+        for (const Variant& variant : of.variants) all.push_back(computed(of, shot, variant, isa, step));
+        for (std::size_t k = 0; k < shot.measured.size(); ++k)
+            for (std::size_t v = 0; v < of.variants.size(); ++v) {
+                const Measured& m = shot.measured[k];
+                const double value = all[v].numbers[k];
+                const double sampled = of.sweep ? kNinetyFive * share_deviation(value, of.sweep->count) : 0.0;
+                rows.push_back({&of, &shot, &of.variants[v], &m, all[v].model,
+                                of.variants[v].claims.at(first + k), value,
+                                std::hypot(m.uncertainty, sampled)});
+            }
+        first += shot.measured.size();
+    }
+    return rows;
+}
+
+}  // namespace carom::tools

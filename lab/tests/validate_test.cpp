@@ -1,0 +1,272 @@
+// Validation cases: their files, what is read in a record, and that every number is as its case claims, a miss included.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "base/console.h"
+#include "carom/engine/simulate.h"
+#include "support/pages.h"
+#include "validate/case.h"
+#include "validate/measure.h"
+#include "validate/report.h"
+#include "validate/run.h"
+
+namespace carom::tools {
+namespace {
+
+std::vector<std::string> all_files() {
+    std::vector<std::string> names;
+    for (const CaseFile& file : case_files()) names.emplace_back(file.name);
+    return names;
+}
+
+CaseFile file_of(const std::string& name) {
+    for (const CaseFile& file : case_files())
+        if (file.name == name) return file;
+    throw std::runtime_error(name);
+}
+
+/// All that is known of a row, to see what to write into its case where a claim no longer holds.
+std::string told(const ValidationRow& row) {
+    return fmt::format("{}: {}, {} under {}: computed {:.4g}, measured {:.4g} +- {:.2g}, claimed {}",
+                       row.of->file, row.shot->name, info(row.measured->quantity).name, row.variant->name,
+                       row.computed, row.measured->value, row.uncertainty,
+                       row.claim ? fmt::format("{:.4g}", *row.claim) : "within");
+}
+
+class Validation : public testing::TestWithParam<std::string> {};
+
+// A model that gets better or worse has to say so in the case: what is claimed is neither a wish nor out of date.
+TEST_P(Validation, IsAsClaimed) {
+    const ValidationCase of = read_case(file_of(GetParam()));
+    long runs = 0;
+    const std::vector<ValidationRow> rows =
+        run_case(of, kernel::Isa::kScalar, [&](long done) { runs = done; });
+    EXPECT_EQ(runs, runs_of(of));
+    std::size_t numbers = 0;
+    for (const ValidationShot& shot : of.shots) numbers += shot.measured.size();
+    EXPECT_EQ(rows.size(), numbers * of.variants.size());
+    for (const ValidationRow& row : rows) EXPECT_TRUE(row.as_claimed()) << told(row);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Validation, testing::ValuesIn(all_files()),
+                         [](const auto& param) { return param.param.substr(0, param.param.find('.')); });
+
+TEST(ValidationCases, AreThoseOfTheFolderInTheirOrder) {
+    std::vector<std::string> ids;
+    for (const CaseFile& file : case_files()) {
+        EXPECT_EQ(file.text, test::read_source("tests/data/validation/" + std::string(file.name)));
+        ids.push_back(read_case(file).id);
+    }
+    std::vector<std::string> expected;
+    for (int i = 1; i <= 20; ++i) expected.push_back(fmt::format("V{}", i));
+    expected.emplace_back("B1");
+    EXPECT_EQ(ids, expected);
+}
+
+// The game's preset, and the coefficients of before there were measured ones, are beside each other in every case.
+TEST(ValidationCases, HaveThePresetOfTheGameAndTheClassicOne) {
+    for (const ValidationCase& of : chosen_cases("")) {
+        std::set<std::string> plain;
+        for (const Variant& variant : of.variants)
+            if (variant.own_keys().empty()) plain.insert(variant.preset);
+        ASSERT_EQ(plain.size(), 2u) << of.file;
+        EXPECT_EQ(*plain.rbegin(), *plain.begin() + "_classic") << of.file;
+    }
+}
+
+TEST(ValidationCases, AnUnknownOneIsNamedBesideTheKnown) {
+    EXPECT_EQ(chosen_cases("V17").at(0).id, "V17");
+    try {
+        chosen_cases("V99");
+        ADD_FAILURE();
+    } catch (const UsageError& error) {
+        EXPECT_NE(std::string(error.what()).find("there is no case V99; the cases are V1, V2, V3, "),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
+/// A case in which one text is replaced by another.
+std::string edited(const std::string& from, const std::string& to) {
+    std::string text = R"(id = "X"
+title = "t"
+source = "s"
+trust = "measured"
+about = "cloth"
+scene = "[[ball]]"
+[[shot]]
+name = "a"
+measured = [{ quantity = "speed", when = "start", value = 1.0, uncertainty = 0.1 }]
+[[variant]]
+preset = "pool"
+free_of_fit = true
+claims = ["within"]
+)";
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+}
+
+TEST(ValidationCases, AWrongFileIsAnErrorAtItsPlace) {
+    const struct {
+        const char *from, *to, *message;
+    } kCases[] = {
+        {"id = \"X\"", "id = 1", "x.toml:1:6: id has a value of another kind"},
+        {"id = \"X\"", "", "title"},
+        {"title", "titel", "x.toml:2:9: unknown key titel; the keys here are id, title, "},
+        {"measured\"\n", "heard\"\n", "heard is none of measured, published, second hand, forum"},
+        {"\"speed\"", "\"heat\"", "heat is none of speed, speed_ratio, "},
+        {"\"start\"", "\"noon\"", "noon is none of start, hit, "},
+        {"0.1 }", "0 }", "uncertainty has to be greater than 0"},
+        {"value = 1.0, ", "", "value is missing"},
+        {"[\"within\"]", "[\"good\"]", "x.toml:13:11: a claim is \"within\" or the value that is computed"},
+        {"[\"within\"]", "[1.0, 2.0]", "2 claims for 1 numbers"},
+        {"[\"within\"]", "[]", "claims has to be a list that is not empty"},
+        {"quantity = \"speed\", when = \"start\"", "quantity = \"share\"", "a share needs [sweep]"},
+        {"quantity = \"speed\"", "quantity = \"place\", place = [1.0]", "place is [x, y]"},
+        {"title = ", "title ", "x.toml:2:"},
+    };
+    EXPECT_EQ(read_case({"x.toml", edited("title = \"t\"", "title = \"u\"")}).title, "u");
+    for (const auto& c : kCases) {
+        const std::string text = edited(c.from, c.to);
+        try {
+            read_case({"x.toml", text});
+            // Without its id the case is whole but for that.
+            ADD_FAILURE() << c.message;
+        } catch (const SceneError& error) {
+            if (std::string(c.message) == "title")
+                EXPECT_NE(std::string(error.what()).find("id is missing"), std::string::npos) << error.what();
+            else
+                EXPECT_NE(std::string(error.what()).find(c.message), std::string::npos) << error.what();
+        }
+    }
+}
+
+TEST(ValidationCases, ATemplateNeedsAValueForEveryName) {
+    const ValidationCase of = read_case({"x.toml", edited("[[ball]]", "{preset} {v}")});
+    ValidationShot shot = of.shots.front();
+    EXPECT_THROW(filled_in(of, shot, of.variants.front(), of.scene), SceneError);
+    shot.values.emplace_back("v", "2.5");
+    EXPECT_EQ(filled_in(of, shot, of.variants.front(), of.scene), "pool 2.5");
+}
+
+// Every quantity at every instant, on a shot whose numbers are known: a ball slides, rolls, meets a smooth cushion, slides and rolls.
+TEST(ValidationMeasure, ReadsWhatItSays) {
+    const Record record = simulate(make_plan(
+        parse_scene(
+            "[table]\n[[table.cushion]]\nfrom = [0, -9]\nto = [0, 9]\n[balls]\nmu_s = 0.2\nmu_r = 0.01\n"
+            "e_c = 0.5\n[physics]\ncushion = \"smooth\"\ngravity = 10\n"
+            "[[ball]]\nposition = [2.028575, 0]\nvelocity = [-1.4, 0]\n",
+            "m.toml"),
+        kernel::Isa::kScalar));
+    const auto at = [&record](Quantity quantity, Instant when, double after = 0.0) {
+        Measured m;
+        m.quantity = quantity;
+        m.when = when;
+        m.after = after;
+        m.place = {2.028575, 1.0};
+        return measure(record, m);
+    };
+    // Slides for 2 v/(7 mu_s g) = 0.2 s over 12 v^2/(49 mu_s g) = 0.24 m, rolls at 1 m/s and loses 2 mu_r g x on the way to
+    // the cushion; behind it half of the speed, and the spin of before.
+    const double in = std::sqrt(1.0 - 0.2 * 1.76), out = 0.5 * in, rolls = out - 2.0 / 7.0 * (out + in);
+    EXPECT_NEAR(at(Quantity::kSpeed, Instant::kStart), 1.4, 1e-12);
+    EXPECT_NEAR(at(Quantity::kVelocityX, Instant::kStart, 0.1), -1.2, 1e-12);
+    EXPECT_NEAR(at(Quantity::kDeceleration, Instant::kStart), 2.0, 1e-12);
+    EXPECT_NEAR(at(Quantity::kDeceleration, Instant::kStart, 0.3), 0.1, 1e-12);
+    EXPECT_NEAR(at(Quantity::kWay, Instant::kStart, 0.2), 0.24, 1e-12);
+    EXPECT_NEAR(at(Quantity::kPlace, Instant::kStart), 1.0, 1e-12);
+    EXPECT_NEAR(at(Quantity::kDirection, Instant::kStart), 180.0, 1e-12);
+    EXPECT_NEAR(at(Quantity::kSpeed, Instant::kCushion), out, 1e-12);
+    EXPECT_NEAR(at(Quantity::kSpeedRatio, Instant::kCushion), 0.5, 1e-12);
+    EXPECT_NEAR(at(Quantity::kDirection, Instant::kCushion), 0.0, 1e-9);
+    EXPECT_NEAR(at(Quantity::kTime, Instant::kCushion), 0.2 + (1.0 - in) / 0.1, 1e-9);
+    EXPECT_NEAR(at(Quantity::kVelocityX, Instant::kRolled), rolls, 1e-9);
+    EXPECT_NEAR(at(Quantity::kVelocityY, Instant::kRolled), 0.0, 1e-12);
+    EXPECT_EQ(at(Quantity::kSpeed, Instant::kRest), 0.0);
+    EXPECT_EQ(at(Quantity::kTime, Instant::kRest), record.duration);
+    EXPECT_THROW(at(Quantity::kSpeed, Instant::kHit), std::runtime_error);  // there is no other ball
+}
+
+TEST(ValidationMeasure, CountsPocketedBalls) {
+    // The 1 falls into p3 (foot left) and the cue ball follows it.
+    const std::string text =
+        "[balls]\ne_b = 0.5\n[[ball]]\nposition = [0.4, 2.14]\nvelocity = [-3, 3]\nspin = [-100, -100, 0]\n"
+        "[[ball]]\nid = \"1\"\nposition = [0.3, 2.24]\n";
+    const Record record = simulate(make_plan(parse_scene(text, "p.toml"), kernel::Isa::kScalar));
+    std::set<std::string> fallen;
+    for (const Event& e : record.events)
+        if (e.type == EventType::kBallPocket) fallen.insert(record.tracks[e.a].id + record.partner_id(e));
+    ASSERT_EQ(fallen, (std::set<std::string>{"1p3", "cuep3"}));
+    Measured share;
+    share.quantity = Quantity::kShare;
+    EXPECT_TRUE(counts(record, share));
+    share.balls = {"2"};
+    EXPECT_FALSE(counts(record, share));
+    share.balls = {"2", "1"};
+    EXPECT_TRUE(counts(record, share));
+    share.pockets = {"p4"};
+    EXPECT_FALSE(counts(record, share));
+    share.pockets = {"p4", "p3"};
+    EXPECT_TRUE(counts(record, share));
+    share.cue_stays = true;
+    EXPECT_FALSE(counts(record, share));
+}
+
+/// One row with a number of 10 +- 2.
+class ValidationClaims : public testing::Test {
+  protected:
+    ValidationClaims() {
+        measured_.value = 10.0;
+        measured_.uncertainty = 2.0;
+    }
+    bool holds(Claim claim, double computed) {
+        const ValidationRow row{&case_, nullptr, nullptr, &measured_, "", claim, computed, 2.0};
+        return row.as_claimed();
+    }
+
+    ValidationCase case_;
+    Measured measured_;
+};
+
+TEST_F(ValidationClaims, WithinIsWithinTheUncertainty) {
+    EXPECT_TRUE(holds({}, 8.1));
+    EXPECT_TRUE(holds({}, 11.9));
+    EXPECT_FALSE(holds({}, 12.1));
+}
+
+TEST_F(ValidationClaims, AMissIsAMissAndWhereItIsSaidToBe) {
+    EXPECT_TRUE(holds(13.0, 13.4));
+    EXPECT_FALSE(holds(13.0, 13.6));  // worse than claimed
+    EXPECT_FALSE(holds(13.0, 12.4));  // better
+    EXPECT_FALSE(holds(12.1, 11.9));  // near the claim, but no miss
+}
+
+TEST_F(ValidationClaims, AShareHasTheSpreadOfItsShots) {
+    measured_.quantity = Quantity::kShare;
+    case_.sweep = CaseSweep{100, 1, {}};
+    EXPECT_TRUE(holds(0.5, 0.64));
+    EXPECT_FALSE(holds(0.5, 0.68));
+    EXPECT_TRUE(holds(1.0, 0.995));
+    EXPECT_FALSE(holds(1.0, 0.97));
+}
+
+TEST_F(ValidationClaims, TheReportSaysWhatDoesNotHold) {
+    std::vector<ValidationCase> cases = chosen_cases("V20");
+    std::vector<ValidationRow> rows = run_case(cases[0], kernel::Isa::kScalar, [](long) {});
+    EXPECT_NE(validation_text(rows).find("all as claimed\n"), std::string::npos);
+    rows[0].claim = 3.75;
+    const std::string text = validation_text(rows);
+    EXPECT_NE(text.find("NOT AS CLAIMED (1.2 deg high)\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("; 1 not as claimed\n"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace carom::tools

@@ -1,0 +1,198 @@
+// The measurement behind `carom margin` and the chart of `carom view`.
+#include "base/margin.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "base/clock.h"
+#include "base/console.h"
+#include "base/rounds.h"
+#include "base/setup.h"
+#include "base/temporary_folder.h"
+
+namespace carom::tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double wall_ms() {
+    return std::chrono::duration<double, std::milli>(Clock::now().time_since_epoch()).count();
+}
+
+render::SequenceOptions draw_options(const Record& record, const FrameSettings& drawn, double fps) {
+    const RenderSettings& settings = record.render;
+    render::SequenceOptions options;
+    options.fps = fps;
+    options.jobs = 1;  // with one thread the parts of a frame cannot overlap
+    options.size = drawn.size.value_or(settings.size());
+    options.camera = settings.camera;
+    options.view.eye = settings.eye;
+    options.view.target = settings.target;
+    options.backend = render::backend_from_name(drawn.gl);
+    return options;
+}
+
+void draw(MarginRun& run, const FrameSettings& drawn, double fps, const std::string& title) {
+    const TemporaryFolder folder;
+    render::SequenceOptions options = draw_options(run.record, drawn, fps);
+    options.pattern = folder.file("%d.png");
+    FrameWalls walls(wall_ms);
+    ProgressLine line(title);
+    options.progress = [&](long done, long total) {
+        walls.frame_done();
+        throw_if_interrupted();
+        std::remove(render::frame_path(options.pattern, done - 1).c_str());
+        line.show_bar(done, total);
+        walls.next_starts();
+    };
+    options.table_progress = [](int, int) { throw_if_interrupted(); };
+    const std::vector<render::FrameTiming> timings = render::render_sequence(run.record, options);
+    run.frame_walls = walls.walls();
+    for (const render::FrameTiming& t : timings) {
+        run.stage[kDraw].push_back(t.draw_ms);
+        run.stage[kReadback].push_back(t.readback_ms);
+        run.stage[kEncode].push_back(t.encode_ms);
+        run.stage[kWrite].push_back(t.write_ms);
+        run.encoded_share.push_back(t.encoded_share);
+    }
+}
+
+/// The cost of a frame that is shown but not written to a file.
+double shown_ms(const Margin& margin, std::size_t frame) {
+    return margin.total[frame] - margin.stage[kEncode][frame] - margin.stage[kWrite][frame];
+}
+
+void widen(Range& range, double value, bool first) {
+    range.low = first ? value : std::min(range.low, value);
+    range.high = first ? value : std::max(range.high, value);
+}
+
+}  // namespace
+
+const char* name(MarginStage stage) {
+    constexpr const char* kNames[kMarginStages] = {"simulate", "detect",   "resolve", "kernel", "cluster",
+                                                   "draw",     "readback", "encode",  "write"};
+    return kNames[stage];
+}
+
+bool is_part_of_simulate(std::size_t stage) {
+    return stage > kSimulate && stage <= kCluster;
+}
+
+double MarginRun::total(std::size_t frame) const {
+    double ms = stage[kSimulate][frame];
+    for (std::size_t s = kDraw; s < kMarginStages; ++s)
+        if (frame < stage[s].size()) ms += stage[s][frame];
+    return ms;
+}
+
+void add_simulation(MarginRun& run, const FrameCost& frame) {
+    run.stage[kSimulate].push_back(frame.simulate_ms());
+    run.stage[kDetect].push_back(frame.detect_ms);
+    run.stage[kResolve].push_back(frame.resolve_ms);
+    run.stage[kKernel].push_back(frame.kernel_ms);
+    run.stage[kCluster].push_back(frame.cluster_ms);
+}
+
+MarginRun one_run(const Plan& plan, const FrameSettings* drawn, double fps, const std::string& title) {
+    MarginRun run;
+    SimulateOptions options = interruptible();
+    options.profile = true;
+    const double start = wall_ms();
+    run.record = simulate(plan, options);
+    run.simulate_wall_ms = wall_ms() - start;
+    const long frames = checked_frame_count(0.0, run.record.duration, fps);
+    run.frames = costs_by_frame(run.record, 0.0, fps, frames);
+    for (const FrameCost& frame : run.frames) add_simulation(run, frame);
+    if (drawn) draw(run, *drawn, fps, title);
+    throw_if_interrupted();
+    return run;
+}
+
+Accounting account(const MarginRun& run) {
+    Accounting sum;
+    sum.wall_ms = run.simulate_wall_ms;
+    for (const double ms : run.stage[kSimulate]) sum.parts_ms += ms;
+    for (const double ms : run.frame_walls) sum.wall_ms += ms;
+    for (std::size_t s = kDraw; s < kMarginStages; ++s)
+        for (std::size_t k = 1; k < run.stage[s].size(); ++k) sum.parts_ms += run.stage[s][k];
+    return sum;
+}
+
+Spread spread(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return {percentile(values, 50.0), percentile(values, 95.0), percentile(values, 99.0), values.back()};
+}
+
+Margin combine(const std::vector<MarginRun>& runs, double fps, bool rendered) {
+    Margin margin;
+    margin.fps = fps;
+    margin.budget_ms = 1000.0 / fps;
+    margin.rendered = rendered;
+    margin.runs = static_cast<int>(runs.size());
+    const std::size_t frames = runs.front().frames.size();
+    std::vector<double> spreads;
+    for (std::size_t k = 0; k < frames; ++k) {
+        for (std::size_t s = 0; s < kMarginStages; ++s) {
+            std::vector<double> samples;
+            for (const MarginRun& run : runs)
+                if (k < run.stage[s].size()) samples.push_back(run.stage[s][k]);
+            margin.stage[s].push_back(samples.empty() ? 0.0 : median(samples));
+        }
+        // What is encoded is the same in every run.
+        if (rendered && k < runs.front().encoded_share.size())
+            margin.encoded_share.push_back(runs.front().encoded_share[k]);
+        double ms = margin.stage[kSimulate][k];
+        for (std::size_t s = kDraw; s < kMarginStages; ++s) ms += margin.stage[s][k];
+        margin.total.push_back(ms);
+        if (ms > margin.budget_ms) ++margin.missed;
+        if (shown_ms(margin, k) > margin.budget_ms) ++margin.missed_shown;
+        if (ms > margin.total[margin.worst]) margin.worst = k;
+        Range range;
+        for (std::size_t r = 0; r < runs.size(); ++r) widen(range, runs[r].total(k), r == 0);
+        spreads.push_back(ms > 0.0 ? (range.high - range.low) / ms : 0.0);
+    }
+    margin.frame_spread = median(spreads);
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+        std::vector<double> totals;
+        for (std::size_t k = 0; k < frames; ++k) totals.push_back(runs[r].total(k));
+        const auto missed = std::count_if(totals.begin(), totals.end(),
+                                          [&margin](double ms) { return ms > margin.budget_ms; });
+        const Spread s = spread(totals);
+        widen(margin.p50_runs, s.p50, r == 0);
+        widen(margin.p99_runs, s.p99, r == 0);
+        widen(margin.missed_runs, static_cast<double>(missed), r == 0);
+        const Accounting part = account(runs[r]);
+        margin.accounting.wall_ms += part.wall_ms;
+        margin.accounting.parts_ms += part.parts_ms;
+    }
+    return margin;
+}
+
+TimingCost cost_of_timing(const Plan& plan) {
+    constexpr int kRounds = 9, kLooks = 1000;
+    TimingCost cost;
+    const auto samples = interleaved("margin, cost of timing:", 2, kRounds, [&plan](std::size_t i) {
+        SimulateOptions options;
+        options.profile = i == 1;
+        const double start = thread_ns();
+        const Record record = simulate(plan, options);
+        return (thread_ns() - start) * 1e-6;
+    });
+    cost.plain_ms = minimum(samples[0]);
+    cost.profiled_ms = minimum(samples[1]);
+    cost.clock_ns = INFINITY;
+    for (int round = 0; round < kRounds; ++round) {
+        const Clock::time_point start = Clock::now();
+        for (int i = 1; i < kLooks; ++i) static_cast<void>(Clock::now());
+        const double ns = std::chrono::duration<double, std::nano>(Clock::now() - start).count();
+        cost.clock_ns = std::min(cost.clock_ns, ns / kLooks);
+    }
+    return cost;
+}
+
+}  // namespace carom::tools

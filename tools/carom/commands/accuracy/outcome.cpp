@@ -1,0 +1,129 @@
+// The outcome of a shot, its difference from another run of the shot, and its gain.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/clock.h"
+#include "base/setup.h"
+#include "carom/engine/simulate.h"
+#include "commands/accuracy/scene.h"
+#include "reference/solver.h"
+
+namespace carom::tools {
+namespace {
+
+/// The ball that moves first: the struck one, else the first that has a velocity; -1 if none moves.
+int first_mover(const Record& record) {
+    for (std::size_t i = 0; i < record.tracks.size(); ++i) {
+        const Vec3 v = record.state_at(static_cast<int>(i), 0.0).velocity;
+        if (v.x() != 0.0 || v.y() != 0.0) return static_cast<int>(i);
+    }
+    return -1;
+}
+
+/// A ToleranceFunction in form: the power series of the tests, rounded to double.
+void by_power_series(const kernel::Ball& ball1, const kernel::Ball& ball2, const kernel::ImpactParams& params,
+                     double tolerance, kernel::ImpactResult& result) noexcept {
+    const reference::ImpactTruth truth = reference::reference_impact(ball1, ball2, params);
+    if (!truth.ok) {  // separating or bad: the kernel has the words for it
+        kernel::tolerance_function(kernel::Isa::kScalar)(ball1, ball2, params, tolerance, result);
+        if (result.status == kernel::ImpactStatus::kOk) result.status = kernel::ImpactStatus::kStepLimit;
+        return;
+    }
+    for (int k = 0; k < 3; ++k) {
+        result.v1[k] = static_cast<double>(truth.v1[k]);
+        result.w1[k] = static_cast<double>(truth.w1[k]);
+        result.v2[k] = static_cast<double>(truth.v2[k]);
+        result.w2[k] = static_cast<double>(truth.w2[k]);
+    }
+    result.steps = truth.steps;
+    result.status = kernel::ImpactStatus::kOk;
+    result.method = kernel::ToleranceMethod::kNone;
+}
+
+}  // namespace
+
+ShotContacts contacts_of(const Record& record) {
+    ShotContacts outcome;
+    const int mover = first_mover(record);
+    for (const Event& event : record.events) {
+        if (kind(event.type).phase != EventPhase::kImpact) continue;
+        const std::string a = record.tracks.at(event.a).id, b = record.partner_id(event);
+        outcome.contacts.push_back(fmt::format("{} {} {}", name(event.type), a, b));
+        const bool balls = balls_collide(event.type);
+        if (balls && outcome.first_contact.empty() && (event.a == mover || event.b == mover))
+            outcome.first_contact = event.a == mover ? b : a;
+    }
+    for (const BallTrack& track : record.tracks) outcome.pockets.push_back(track.pocket);
+    return outcome;
+}
+
+std::vector<Vec2> final_positions(const Record& record) {
+    std::vector<Vec2> list;
+    for (std::size_t i = 0; i < record.tracks.size(); ++i) {
+        const Vec3 r = record.state_at(static_cast<int>(i), record.duration).position;
+        list.emplace_back(r.x(), r.y());
+    }
+    return list;
+}
+
+FinalError final_error(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+    std::vector<double> apart;
+    for (std::size_t i = 0; i < a.size(); ++i) apart.push_back((a[i] - b[i]).norm());
+    if (apart.empty()) return {};
+    return {*std::max_element(apart.begin(), apart.end()), median(apart)};
+}
+
+double gain_of(const Plan& plan, const Record& record) {
+    const int mover = first_mover(record);
+    if (mover < 0) return 1.0;  // nothing moves: every ball stays as far off as it is put
+    const std::vector<Vec2> end = final_positions(record);
+    const auto ball = static_cast<std::size_t>(mover);
+    double gain = 0.0;
+    for (const int axis : {0, 1}) {
+        Plan twin = plan;
+        Vec3& position = twin.scene.ball[ball].position;
+        const double before = position[axis];
+        position[axis] = before + kTwinStep;
+        const double step = position[axis] - before;  // as far as a double can tell
+        if (step == 0.0) continue;
+        gain =
+            std::max(gain, final_error(final_positions(simulate(twin, interruptible())), end).largest / step);
+    }
+    return gain;
+}
+
+std::optional<double> deserved_tolerance(double gain, double target) {
+    const double most = target / (std::max(gain, 1.0) * kFlight);
+    for (const double tolerance :
+         {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, kernel::kTightestTolerance})
+        if (tolerance <= most) return tolerance;
+    return std::nullopt;
+}
+
+Plan with_tolerance(const Scene& scene, double tolerance) {
+    Scene copy = scene;
+    copy.physics.substeps.reset();
+    copy.physics.march = March::kSummed;
+    copy.physics.tolerance = tolerance;
+    return make_plan(copy, chosen_isa());
+}
+
+Plan with_substeps(const Scene& scene, int substeps, March march) {
+    Scene copy = scene;
+    copy.physics.substeps = substeps;
+    copy.physics.march = march;
+    return make_plan(copy, chosen_isa());
+}
+
+Plan with_power_series(const Scene& scene) {
+    Plan plan = with_tolerance(scene, kernel::kTightestTolerance);
+    plan.impact.by_tolerance = &by_power_series;
+    return plan;
+}
+
+}  // namespace carom::tools

@@ -1,0 +1,238 @@
+// carom accuracy SCENE: the measurement.
+#include "commands/accuracy/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/clock.h"
+#include "base/console.h"
+#include "base/options.h"
+#include "base/rounds.h"
+#include "base/setup.h"
+#include "carom/engine/ball_ball.h"
+#include "carom/engine/simulate.h"
+#include "report/table.h"
+
+namespace carom::tools {
+namespace {
+
+/// The converged runs must agree within this part of the target; otherwise differences from them are not called errors.
+constexpr double kAgreement = 0.1;
+
+/// One setting: how to run it once, and what it gave.
+struct SceneSubject {
+    SceneAccuracyRow row;
+    Plan plan;
+};
+
+std::vector<SceneSubject> subjects(const Scene& scene, const AccuracySceneArgs& args,
+                                   std::optional<double> recommended) {
+    std::vector<SceneSubject> list;
+    const auto add = [&list](const char* method, std::string setting, double value, Plan plan) {
+        SceneSubject& s = list.emplace_back(SceneSubject{{}, std::move(plan)});
+        s.row.method = method;
+        s.row.setting = std::move(setting);
+        s.row.value = value;
+    };
+    for (const int n : args.march) {
+        add("march", fmt::format("N={}", n), n, with_substeps(scene, n));
+        add("march published", fmt::format("N={}", n), n, with_substeps(scene, n, March::kPublished));
+    }
+    std::vector<double> tolerances = args.tolerances;
+    if (recommended && std::find(tolerances.begin(), tolerances.end(), *recommended) == tolerances.end())
+        tolerances.insert(std::find_if(tolerances.begin(), tolerances.end(),
+                                       [&](double tolerance) { return tolerance < *recommended; }),
+                          *recommended);
+    for (const double tolerance : tolerances)
+        add("tolerance", fmt::format("{:g}", tolerance), tolerance, with_tolerance(scene, tolerance));
+    return list;
+}
+
+/// Shares of kernel and cluster map in the profiled run that was disturbed least.
+void set_shares(SceneAccuracyRow& row, const Plan& plan) {
+    constexpr int kRuns = 3;
+    SimulateOptions options = interruptible();
+    options.profile = true;
+    double least = INFINITY;
+    for (int run = 0; run < kRuns; ++run) {
+        const Record record = simulate(plan, options);
+        double all = record.setup_detect_ns, kernel = 0.0, cluster = 0.0;
+        for (std::size_t i = 0; i < record.costs.size(); ++i) {
+            const EventCost& cost = record.costs[i];
+            all += cost.detect_ns + cost.resolve_ns;
+            (record.events[i].type == EventType::kBallCluster ? cluster : kernel) += cost.kernel_ns;
+        }
+        if (all >= least) continue;
+        least = all;
+        row.kernel_share = kernel / all;
+        row.cluster_share = cluster / all;
+    }
+}
+
+void compare(SceneAccuracyRow& row, const Record& record, const ShotContacts& truth,
+             const std::vector<Vec2>& end) {
+    const ShotContacts outcome = contacts_of(record);
+    row.order_same = outcome.contacts == truth.contacts;
+    row.first_same = outcome.first_contact == truth.first_contact;
+    row.pocketed_same = outcome.pockets == truth.pockets;
+    row.error = final_error(final_positions(record), end);
+}
+
+const SceneAccuracyRow* row_of(const SceneAccuracy& result, const char* method, double value) {
+    for (const SceneAccuracyRow& row : result.rows)
+        if (row.method == method && row.value == value) return &row;
+    return nullptr;
+}
+
+/// The march to compare with: N = 1000, as the paper has it, else the first one.
+const SceneAccuracyRow* compared_march(const SceneAccuracy& result) {
+    if (const SceneAccuracyRow* row = row_of(result, "march", 1000.0)) return row;
+    for (const SceneAccuracyRow& row : result.rows)
+        if (row.method == "march") return &row;
+    return nullptr;
+}
+
+/// The loosest tolerance that met the target, and with it every tighter one.
+std::optional<double> loosest_measured(const SceneAccuracy& result) {
+    std::vector<const SceneAccuracyRow*> rows;
+    for (const SceneAccuracyRow& row : result.rows)
+        if (row.method == "tolerance") rows.push_back(&row);
+    std::sort(rows.begin(), rows.end(), [](auto* a, auto* b) { return a->value < b->value; });
+    std::optional<double> loosest;
+    for (const SceneAccuracyRow* row : rows) {
+        if (!row->failed.empty() || row->error.largest > result.target) break;
+        loosest = row->value;
+    }
+    return loosest;
+}
+
+std::string metres(double x) {
+    return x >= 1e-3 ? fmt::format("{:.3g} m", x) : fmt::format("{:.1e} m", x);
+}
+
+std::string sentence_of(const SceneAccuracy& result) {
+    if (!result.converged)
+        return fmt::format(
+            "The two converged methods end {} apart (gain {:.1e}): nothing here can be called an error, and "
+            "no setting promises {}.",
+            metres(result.agreement), result.gain, metres(result.target));
+    if (!result.recommended)
+        return fmt::format(
+            "Double precision does not allow {}: the gain of this shot is {:.1e}, so it would need a "
+            "tolerance below {:g}; the two converged runs end {} apart.",
+            metres(result.target), result.gain, kernel::kTightestTolerance, metres(result.agreement));
+    const SceneAccuracyRow* row = row_of(result, "tolerance", *result.recommended);
+    std::string text;
+    if (row->failed.empty() && row->error.largest <= result.target) {
+        text = fmt::format("Tolerance {:g} suffices for {} (it is off by {}", *result.recommended,
+                           metres(result.target), metres(row->error.largest));
+        text += result.loosest && *result.loosest > *result.recommended
+                    ? fmt::format("; as it happens, {:g} is enough)", *result.loosest)
+                    : ")";
+    } else {
+        text = fmt::format("The gain asks for tolerance {:g}, but that is off by {}, more than {}",
+                           *result.recommended, metres(row->error.largest), metres(result.target));
+    }
+    if (const SceneAccuracyRow* march = compared_march(result)) {
+        if (march->failed.empty())
+            text += fmt::format("; {} would be off by {} and take {:.3g} times as long", march->setting,
+                                metres(march->error.largest), march->ns_min / row->ns_min);
+    }
+    return text + ".";
+}
+
+}  // namespace
+
+void set_times(SceneAccuracyRow& row, const std::vector<double>& samples) {
+    row.ns_min = minimum(samples);
+    row.ns_median = median(samples);
+    row.ns_max = *std::max_element(samples.begin(), samples.end());
+}
+
+SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs& args) {
+    SceneAccuracy result;
+    result.target = args.target;
+    const Plan tight = with_tolerance(scene, kernel::kTightestTolerance);
+    const Record truth = simulate_plan(tight, {});
+    const Record other = simulate_plan(with_power_series(scene), {});
+    const ShotContacts outcome = contacts_of(truth), other_outcome = contacts_of(other);
+    const std::vector<Vec2> end = final_positions(truth);
+    result.contacts = outcome.contacts.size();
+    for (const Event& event : truth.events) result.ball_hits += balls_collide(event.type) ? 1U : 0U;
+    result.agreement = final_error(final_positions(other), end).largest;
+    result.outcome_agrees =
+        outcome.contacts == other_outcome.contacts && outcome.pockets == other_outcome.pockets;
+    result.converged = result.outcome_agrees && result.agreement <= kAgreement * args.target;
+    result.gain = gain_of(tight, truth);
+    if (result.converged) result.recommended = deserved_tolerance(result.gain, args.target);
+
+    std::vector<SceneSubject> list = subjects(scene, args, result.recommended);
+    for (SceneSubject& s : list) {
+        throw_if_interrupted();
+        try {
+            compare(s.row, simulate(s.plan, interruptible()), outcome, end);
+            set_shares(s.row, s.plan);
+        } catch (const SimulationError& error) {
+            s.row.failed = error.what();
+            s.row.failed.resize(std::min(s.row.failed.size(), s.row.failed.find('\n')));
+        }
+    }
+    const auto samples = interleaved("accuracy, times:", list.size(), args.repeat, [&list](std::size_t i) {
+        if (!list[i].row.failed.empty()) return 0.0;
+        const double start = thread_ns();
+        const Record record = simulate(list[i].plan, interruptible());
+        return thread_ns() - start;
+    });
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        set_times(list[i].row, samples[i]);
+        result.rows.push_back(list[i].row);
+    }
+    if (result.converged) result.loosest = loosest_measured(result);
+    result.sentence = sentence_of(result);
+    return result;
+}
+
+void add_accuracy_options(Options& command, AccuracySceneArgs& args) {
+    command.argument("SCENE", args.scene, "Scene file (TOML)");
+    command.option("--target", &args.target, "M",
+                   "Final error allowed, in m: what the recommendation aims at");
+    command.option("--march", &args.march, "N,...", "Settings of the march to compare, N").in(1, 100000000);
+    command.option("--tolerance", &args.tolerances, "E,...", "Tolerances to compare")
+        .in(kernel::kTightestTolerance, kernel::kLoosestTolerance);
+    add_repeat(command, args.repeat, "Interleaved rounds; minimum, median and maximum are over them");
+    add_reports(command, args.csv, args.json);
+}
+
+Plan plan_for_accuracy(const AccuracySceneArgs& args) {
+    if (args.scene.empty()) throw UsageError("accuracy: a scene file is required; see --help");
+    if (!(args.target > 0.0 && std::isfinite(args.target)))
+        throw UsageError(fmt::format("--target {}: expected a number of metres greater than 0", args.target));
+    Plan plan = plan_scene(args.scene);
+    if (!plan.scene.physics.ball_ball->reads_tolerance)
+        throw UsageError(
+            fmt::format("{}: ball_ball = \"{}\" is one formula, without an accuracy to choose; set ball_ball "
+                        "= \"mathavan\"",
+                        args.scene, name(plan.scene.physics.ball_ball)));
+    return plan;
+}
+
+namespace {
+
+int run(const AccuracySceneArgs& args) {
+    const SceneAccuracy result = measure_scene_accuracy(plan_for_accuracy(args).scene, args);
+    write_report(args.csv, table_csv(scene_accuracy_table(result)));
+    print(args.json ? scene_accuracy_json(result) : scene_accuracy_text(result, args.scene));
+    return kOk;
+}
+
+}  // namespace
+
+void add_accuracy(Options& program) {
+    auto [command, args] = program.command<AccuracySceneArgs>(
+        "accuracy", "What accuracy costs in time, and the accuracy that a shot deserves", run);
+    add_accuracy_options(command, args);
+}
+
+}  // namespace carom::tools

@@ -1,0 +1,312 @@
+// carom describe: the program described for others to read, a man page, a page of the documents, and completions for bash and
+// zsh. They are written from the table of options that is parsed, so that they cannot differ from it.
+#include <fmt/format.h>
+
+#include <list>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/console.h"
+#include "base/options.h"
+#include "commands/describe/formats.h"
+
+namespace carom::tools {
+namespace {
+
+/// The rows of a command that are known by their place, or the others.
+std::vector<Option> rows_of(const Options& command, bool by_place) {
+    std::vector<Option> found;
+    for (const Option& row : command.rows)
+        if (row.by_place() == by_place) found.push_back(row);
+    return found;
+}
+
+/// The description of an option, with its default.
+std::string meaning(const Option& row) {
+    const std::string initial = row.default_text();
+    return initial.empty() ? row.text : row.text + " (default: " + initial + ")";
+}
+
+bool takes_file(const Option& row) {
+    // What is known by its place is a scene or a record, but for the cases of carom validate.
+    if (row.by_place()) return row.choices.empty() && row.names.front() != "CASE";
+    return row.value.find("FILE") != std::string::npos || row.value.find("PATTERN") != std::string::npos;
+}
+
+std::string joined(const std::vector<std::string>& words, const char* between) {
+    return fmt::format("{}", fmt::join(words, between));
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())
+        text.replace(at, from.size(), to);
+    return text;
+}
+
+/// "carom sweep SCENE --vary KEY=DISTRIBUTION": how a command is called, with what it cannot do without.
+std::string synopsis_of(const Options& command, const std::string& name) {
+    std::string synopsis = name;
+    for (const Option& row : rows_of(command, true)) {
+        const bool has_default = !row.default_text().empty() || row.text.find("(default:") != row.text.npos;
+        synopsis += has_default ? " [" + row.names.front() + "]" : " " + row.names.front();
+    }
+    for (const Option& row : rows_of(command, false))
+        if (row.required) synopsis += " " + row.names.back() + " " + row.value;
+    return synopsis;
+}
+
+constexpr const char* kIsaText =
+    "scalar, v3 or v4 forces the instruction set; all give the same bits. Left out, "
+    "every kernel runs on the one that was measured to be fastest on this processor, or on the widest one; "
+    "`carom check` shows it.";
+constexpr struct {
+    int status;
+    const char* meaning;
+} kStatuses[] = {{kOk, "done"},
+                 {kFailed, "failed while running"},
+                 {kBadUsage, "bad usage or bad scene"},
+                 {130, "interrupted"},
+                 {143, "terminated"}};
+
+// ---- man -------------------------------------------------------------------------------------------------
+
+/// Escapes text so that troff prints it unchanged.
+std::string roff(std::string text) {
+    text = replaced(replaced(std::move(text), "\\", "\\e"), "-", "\\-");
+    if (!text.empty() && (text[0] == '.' || text[0] == '\'')) text.insert(0, "\\&");
+    return replaced(std::move(text), "\n", "\n.br\n");
+}
+
+void man_command(std::string& out, const Options& command, const std::string& path) {
+    const std::string name = path + " " + command.name;
+    for (const Options& inner : command.commands) man_command(out, inner, name);
+    if (!command.run) return;
+    out += ".SS \"" + roff(synopsis_of(command, name)) + " [options]\"\n" + roff(command.text) + ".\n";
+    for (const bool by_place : {true, false}) {
+        for (const Option& row : rows_of(command, by_place)) {
+            if (row.names.back() == "--help") continue;
+            out += fmt::format(".TP\n\\fB{}\\fR", roff(joined(row.names, ", ")));
+            if (!row.value.empty()) out += fmt::format(" \\fI{}\\fR", roff(row.value));
+            out += fmt::format("\n{}\n", roff(meaning(row)));
+            if (!row.choices.empty()) out += ".br\nOne of " + roff(joined(row.choices, ", ")) + ".\n";
+        }
+    }
+    if (!command.footer.empty()) out += ".PP\n" + roff(command.footer) + "\n";
+}
+
+std::string man_page(const Options& program) {
+    std::string commands, statuses;
+    for (const Options& command : program.commands) man_command(commands, command, program.name);
+    for (const auto& [status, text] : kStatuses) statuses += fmt::format(".TP\n{}\n{}\n", status, text);
+    return ".TH CAROM 1 \"\" \"carom " + program.version +
+           "\" \"User Commands\"\n"
+           ".SH NAME\ncarom \\- event\\-based billiards simulator\n"
+           ".SH SYNOPSIS\n\\fBcarom\\fR \\fICOMMAND\\fR [options]\n"
+           ".SH DESCRIPTION\nReads a scene (TOML): a table, its balls, perhaps a shot. Simulates it from "
+           "event "
+           "to event, draws what happened without a display, and says what every frame cost.\n"
+           ".SH COMMANDS\n" +
+           commands + ".SH ENVIRONMENT\n.TP\n\\fBCAROM_ISA\\fR\n" + kIsaText + "\n.SH EXIT STATUS\n" +
+           statuses +
+           ".SH EXAMPLES\n.EX\ncarom simulate scenes/hello.toml\n"
+           "carom render scenes/eight_ball_break.toml \\-\\-to 2 \\-o frames/%05d.png\n.EE\n";
+}
+
+// ---- the page of the documents ---------------------------------------------------------------------------
+
+/// Escapes text so that Markdown prints it unchanged.
+std::string markdown(std::string text) {
+    for (const char* c : {"*", "_", "<"}) text = replaced(std::move(text), c, std::string("\\") + c);
+    return text;
+}
+
+std::string code_list(const std::vector<std::string>& words) {
+    return fmt::format("`{}`", fmt::join(words, "`, `"));
+}
+
+/// The description of an option; what the page says of all flags and files at its top is left out.
+std::string page_meaning(const Option& row) {
+    std::string text = meaning(row);
+    for (const char* known : {" (default: off)", " (default: not written)", " (default: not drawn)"})
+        text = replaced(std::move(text), known, "");
+    return markdown(text);
+}
+
+void page_command(std::string& out, const Options& command, const std::string& path) {
+    const std::string name = path + " " + command.name;
+    for (const Options& inner : command.commands) page_command(out, inner, name);
+    if (!command.run) return;
+    out +=
+        fmt::format("\n## {}\n\n`{}`\n\n{}.\n\n", name, synopsis_of(command, name), markdown(command.text));
+    for (const bool by_place : {true, false}) {
+        for (const Option& row : rows_of(command, by_place)) {
+            if (row.names.back() == "--help" || row.text == "Scene file (TOML)") continue;
+            out += fmt::format("* `{}{}{}`: {}", joined(row.names, ", "), row.value.empty() ? "" : " ",
+                               row.value, page_meaning(row));
+            if (!row.choices.empty()) out += fmt::format("; one of {}", code_list(row.choices));
+            if (row.range) out += fmt::format("; {:g} to {:g}", row.range->first, row.range->second);
+            if (!row.needs.empty()) out += fmt::format("; needs `{}`", row.needs);
+            if (!row.excludes.empty()) out += fmt::format("; not with `{}`", row.excludes);
+            out += "\n";
+        }
+    }
+    if (!command.footer.empty()) out += fmt::format("\n{}\n", markdown(command.footer));
+}
+
+std::string command_line_page(const Options& program) {
+    std::string commands, statuses;
+    for (const Options& command : program.commands) page_command(commands, command, program.name);
+    for (const auto& [status, text] : kStatuses)
+        statuses += fmt::format("{}{} {}", statuses.empty() ? "" : ", ", status, text);
+    return "# The command line\n\n"
+           "Every command with its options, as `--help` behind a command says them; `carom describe "
+           "command-line` "
+           "prints this page. SCENE is a scene file (TOML). A flag is off, and a file is not written, unless "
+           "it is "
+           "named.\n\n"
+           "* Exit status: " +
+           statuses + ".\n* `CAROM_ISA` in the environment: " + kIsaText + "\n" + commands;
+}
+
+// ---- bash ------------------------------------------------------------------------------------------------
+
+/// One case per command: the words that may follow, and what the value of an option may be.
+void bash_cases(std::string& out, const Options& command, const std::string& path) {
+    std::vector<std::string> words;
+    std::string values;
+    for (const Options& inner : command.commands) words.push_back(inner.name);
+    for (const Option& row : rows_of(command, false)) {
+        words.insert(words.end(), row.names.begin(), row.names.end());
+        if (row.value.empty()) continue;
+        const std::string action = !row.choices.empty() ? "words='" + joined(row.choices, " ") + "'"
+                                   : takes_file(row)    ? "files=1"
+                                                        : ":";
+        values += "            " + joined(row.names, "|") + ") " + action + " ;;\n";
+    }
+    bool any_file = false;
+    for (const Option& row : rows_of(command, true)) {
+        any_file = any_file || takes_file(row);
+        words.insert(words.end(), row.choices.begin(), row.choices.end());
+    }
+    out += "    '" + path + "')\n        case \"$before\" in\n" + values + "        *) words='" +
+           joined(words, " ") + "'" + (any_file ? " files=1" : "") + " ;;\n        esac ;;\n";
+    for (const Options& inner : command.commands)
+        bash_cases(out, inner, path.empty() ? inner.name : path + " " + inner.name);
+}
+
+std::string bash_completion(const Options& program) {
+    std::string groups;
+    for (const Options& command : program.commands)
+        if (!command.commands.empty()) groups += (groups.empty() ? "" : "|") + command.name;
+    std::string out =
+        "# Completion of carom for bash; made by: carom describe bash\n_carom() {\n"
+        "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
+        "    local command= words= files=\n"
+        "    if [ \"$COMP_CWORD\" -gt 1 ]; then\n"
+        "        command=${COMP_WORDS[1]}\n"
+        "        case \"$command\" in\n        " +
+        groups +
+        ") [ \"$COMP_CWORD\" -gt 2 ] && command=\"$command ${COMP_WORDS[2]}\" ;;\n        esac\n    fi\n"
+        "    case \"$command\" in\n";
+    bash_cases(out, program, "");
+    out +=
+        "    esac\n"
+        "    COMPREPLY=()\n"
+        "    COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
+        "    # Options only where one has been begun.\n"
+        "    [[ $word == -* ]] || COMPREPLY=($(printf '%s\\n' \"${COMPREPLY[@]}\" | grep -v '^-'))\n"
+        "    if [ -n \"$files\" ] && [[ $word != -* ]]; then\n"
+        "        local file\n"
+        "        while IFS= read -r file; do COMPREPLY+=(\"$file\"); done < <(compgen -f -- \"$word\")\n"
+        "    fi\n}\ncomplete -o filenames -F _carom carom\n";
+    return out;
+}
+
+// ---- zsh -------------------------------------------------------------------------------------------------
+
+/// Text inside '...[text]...' of _arguments.
+std::string zsh_text(std::string text) {
+    for (const char* c : {"\\", "[", "]", ":"}) text = replaced(std::move(text), c, std::string("\\") + c);
+    return replaced(std::move(text), "'", "'\\''");
+}
+
+std::string zsh_value(const Option& row) {
+    if (!row.choices.empty()) return fmt::format("({})", joined(row.choices, " "));
+    return takes_file(row) ? "_files" : " ";
+}
+
+void zsh_function(std::string& out, const Options& command, const std::string& name) {
+    const std::list<Options>& inner = command.commands;
+    for (const Options& sub : inner) zsh_function(out, sub, name + "_" + sub.name);
+    out += name + "() {\n";
+    if (!inner.empty()) out += "    local curcontext=\"$curcontext\" state line\n    local -a commands\n";
+    out += inner.empty() ? "    _arguments" : "    _arguments -C";
+    for (const Option& row : rows_of(command, false)) {
+        const std::string names = joined(row.names, ",");
+        const bool one = row.names.size() == 1;
+        out += fmt::format(" \\\n        '{}'{}'[{}]",
+                           row.may_be_repeated() ? "*" : fmt::format("({})", joined(row.names, " ")),
+                           one ? names : fmt::format("{{{}}}", names), zsh_text(meaning(row)));
+        if (!row.value.empty()) out += fmt::format(":{}:{}", zsh_text(row.value), zsh_value(row));
+        out += "'";
+    }
+    if (inner.empty()) {
+        for (const Option& row : rows_of(command, true))
+            out += fmt::format(" \\\n        ':{}:{}'", zsh_text(row.names.front()), zsh_value(row));
+        out += "\n}\n";
+        return;
+    }
+    out +=
+        " \\\n        '1:command:->command' '*::argument:->argument'\n    case $state in\n    command)\n     "
+        "   commands=(";
+    for (const Options& sub : inner)
+        out += "\n            '" + sub.name + ":" + replaced(sub.text, "'", "'\\''") + "'";
+    out += ")\n        _describe command commands ;;\n    argument)\n        case $words[1] in\n";
+    for (const Options& sub : inner) out += "        " + sub.name + ") " + name + "_" + sub.name + " ;;\n";
+    out += "        esac ;;\n    esac\n}\n";
+}
+
+std::string zsh_completion(const Options& program) {
+    std::string out = "#compdef carom\n# Completion of carom for zsh; made by: carom describe zsh\n";
+    zsh_function(out, program, "_carom");
+    return out + "_carom \"$@\"\n";
+}
+
+// ---- the command -----------------------------------------------------------------------------------------
+
+/// What the command can print: one row for each format.
+constexpr struct {
+    const char* name;
+    std::string (*text)(const Options& program);
+} kFormats[] = {{"man", man_page},
+                {"bash", bash_completion},
+                {"zsh", zsh_completion},
+                {"command-line", command_line_page},
+                {"scene-schema", [](const Options&) { return scene_schema(); }},
+                {"record-schema", [](const Options&) { return record_schema(); }},
+                {"scene-format", [](const Options&) { return scene_format(); }}};
+
+struct DescribeArgs {
+    std::string format;
+};
+
+int run(const DescribeArgs& args, const Options& program) {
+    for (const auto& format : kFormats)
+        if (args.format == format.name) print(format.text(program));
+    return kOk;
+}
+
+}  // namespace
+
+void add_describe(Options& program) {
+    auto args = std::make_shared<DescribeArgs>();
+    Options& command =
+        program.command("describe", "This program and its file formats, for people and for other programs");
+    Option& format = command.argument("FORMAT", args->format, "What to print");
+    format.required = true;
+    for (const auto& known : kFormats) format.choices.emplace_back(known.name);
+    command.run = [args, &program] { return run(*args, program); };
+}
+
+}  // namespace carom::tools

@@ -1,0 +1,64 @@
+// carom margin: the command.
+#include "commands/margin/margin.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "base/console.h"
+#include "base/setup.h"
+#include "report/table.h"
+
+namespace carom::tools {
+
+MeasuredMargin measure_margin(const Plan& plan, const MarginArgs& args) {
+    const double fps = chosen_fps(args.fps, plan.scene.render);
+    std::vector<MarginRun> runs;
+    for (int run = 0; run < args.repeat; ++run) {
+        runs.push_back(
+            one_run(plan, args.drawing(), fps, fmt::format("run {} of {}:", run + 1, args.repeat)));
+        // Only the last one is read.
+        if (run > 0) runs[static_cast<std::size_t>(run) - 1].record = {};
+    }
+    Margin margin = combine(runs, fps, !args.no_render);
+    if (margin.rendered) margin.size = args.drawn.size.value_or(plan.scene.render.size());
+    margin.timing = cost_of_timing(plan);
+    return {std::move(margin), std::move(runs.back())};
+}
+
+namespace {
+
+int run(const MarginArgs& asked) {
+    MarginArgs args = asked;
+    read_margin_args(args);
+    const auto [margin, last] = measure_margin(plan_scene(args.scene), args);
+    write_report(args.csv, table_csv(frames_table(margin, last)));
+    print(args.json ? margin_json(margin, last) : margin_text(margin, last, args.scene));
+    return kOk;
+}
+
+}  // namespace
+
+void read_margin_args(MarginArgs& args) {
+    if (!args.size.empty()) args.drawn.size = parse_size(args.size);
+}
+
+void add_margin_options(Options& command, MarginArgs& args) {
+    command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
+    add_picture(command, args.fps, args.size);
+    add_repeat(command, args.repeat, "Runs; every frame's cost is the median over them");
+    command.flag("--no-render", args.no_render, "Measure the simulation only (default: off)");
+    add_gl(command, args.drawn.gl);
+    add_reports(command, args.csv, args.json);
+    command.footer =
+        "simulate = detect + resolve + kernel + cluster. A frame costs simulate + draw + readback + encode + "
+        "write.";
+}
+
+void add_margin(Options& program) {
+    auto [command, args] =
+        program.command<MarginArgs>("margin", "Real-time margin: what every frame costs against 1/fps", run);
+    add_margin_options(command, args);
+}
+
+}  // namespace carom::tools

@@ -1,0 +1,183 @@
+// carom margin: table, JSON, sentences.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/clock.h"
+#include "base/console.h"
+#include "carom/render/sequence.h"
+#include "commands/margin/margin.h"
+#include "report/table.h"
+
+namespace carom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json spread_json(const std::vector<double>& values) {
+    const Spread v = spread(values);
+    return {{"p50", v.p50}, {"p95", v.p95}, {"p99", v.p99}, {"max", v.max}};
+}
+
+double time_of(const Margin& margin, std::size_t frame) {
+    return render::frame_time(0.0, static_cast<long>(frame), margin.fps);
+}
+
+std::vector<double> slacks(const Margin& margin) {
+    std::vector<double> list;
+    for (std::size_t k = 0; k < margin.total.size(); ++k) list.push_back(margin.slack(k));
+    std::sort(list.begin(), list.end());
+    return list;
+}
+
+}  // namespace
+
+Json event_cost_json(const Record& record, std::size_t i) {
+    const Event& event = record.events[i];
+    const EventCost& cost = record.costs.at(i);
+    return {{"time", event.time},
+            {"type", name(event.type)},
+            {"a", record.tracks.at(event.a).id},
+            {"b", record.partner_id(event)},
+            {"detect_ns", cost.detect_ns},
+            {"resolve_ns", cost.resolve_ns},
+            {"kernel_ns", cost.kernel_ns}};
+}
+
+std::string margin_lead(const Margin& margin) {
+    return fmt::format("{} of {:.3f} ms ({} fps{}), {} missed", counted(margin.total.size(), "frame"),
+                       margin.budget_ms, margin.fps,
+                       margin.rendered ? fmt::format(", {}x{}", margin.size.width, margin.size.height)
+                                       : std::string(", simulation only"),
+                       margin.missed);
+}
+
+Table stages_table(const Margin& margin) {
+    Table stages(Column("stage", "", "<14"), Column("p50", "p50", ">10.4f"), Column("p95", "p95", ">10.4f"),
+                 Column("p99", "p99", ">10.4f"), Column("max", "max", ">10.4f"),
+                 Column("", "   ms per frame", "<"));
+    const auto add = [&stages](const std::string& title, const std::vector<double>& values) {
+        const Spread v = spread(values);
+        stages.add({"  " + title, v.p50, v.p95, v.p99, v.max});
+    };
+    for (std::size_t s = 0; s < kMarginStages; ++s) {
+        const std::string title = name(static_cast<MarginStage>(s));
+        if (margin.has(s)) add(is_part_of_simulate(s) ? "  " + title : title, margin.stage[s]);
+    }
+    add("all", margin.total);
+    return stages;
+}
+
+std::string margin_sentences(const Margin& margin, const MarginRun& last) {
+    fmt::memory_buffer out;
+    const auto line = std::back_inserter(out);
+    const double p99 = spread(margin.total).p99;
+    const std::vector<double> slack = slacks(margin);
+    fmt::format_to(line,
+                   "At p99 a frame takes {:.1f} % of its time: margin {:.3f} ms. Slack: median {:.1f} %, "
+                   "least {:.1f} %.\n",
+                   100.0 * p99 / margin.budget_ms, margin.budget_ms - p99, median(slack), slack.front());
+    if (margin.rendered)
+        fmt::format_to(line,
+                       "Without encoding and writing, {} would be missed. Of a picture {:.1f} % were encoded "
+                       "anew (median; p99 "
+                       "{:.1f} %).\n",
+                       counted(static_cast<std::size_t>(margin.missed_shown), "frame"),
+                       100.0 * spread(margin.encoded_share).p50, 100.0 * spread(margin.encoded_share).p99);
+    if (margin.runs > 1)
+        fmt::format_to(
+            line,
+            "Medians of {} runs; from run to run p50 {:.3f} to {:.3f} ms, p99 {:.3f} to {:.3f} ms, "
+            "missed {:.0f} to {:.0f}; a frame varies by {:.0f} % (median).\n",
+            margin.runs, margin.p50_runs.low, margin.p50_runs.high, margin.p99_runs.low, margin.p99_runs.high,
+            margin.missed_runs.low, margin.missed_runs.high, 100.0 * margin.frame_spread);
+    fmt::format_to(line, "The parts add up to {:.1f} % of the {:.1f} ms on the wall, one after the other.\n",
+                   100.0 * margin.accounting.share(), margin.accounting.wall_ms);
+    fmt::format_to(
+        line,
+        "Timing itself: simulating takes {:.3f} ms with it, {:.3f} ms without ({:+.1f} %; a look at "
+        "the clock is {:.0f} ns). Off, it is not in the loop.\n",
+        margin.timing.profiled_ms, margin.timing.plain_ms, 100.0 * margin.timing.share(),
+        margin.timing.clock_ns);
+    const std::vector<std::size_t>& events = last.frames[margin.worst].events;
+    fmt::format_to(line, "worst frame: {} at {:.4f} s, {:.3f} ms, {}\n", margin.worst,
+                   time_of(margin, margin.worst), margin.total[margin.worst],
+                   counted(events.size(), "event"));
+    for (const std::size_t i : events) {
+        const Event& event = last.record.events[i];
+        fmt::format_to(line, "  {:.6f} s  {:<21} {} {}\n", event.time, name(event.type),
+                       last.record.tracks.at(event.a).id, last.record.partner_id(event));
+    }
+    return fmt::to_string(out);
+}
+
+Table frames_table(const Margin& margin, const MarginRun& last) {
+    Table table(Column("frame"), Column("time"), Column("events"));
+    for (std::size_t s = 0; s < kMarginStages; ++s)
+        if (margin.has(s))
+            table.columns.emplace_back(fmt::format("{}_ms", name(static_cast<MarginStage>(s))));
+    for (const char* key : {"total_ms", "slack_percent", "missed"}) table.columns.emplace_back(key);
+    for (std::size_t k = 0; k < margin.total.size(); ++k) {
+        std::vector<Cell> cells = {k, time_of(margin, k), last.frames[k].events.size()};
+        for (std::size_t s = 0; s < kMarginStages; ++s)
+            if (margin.has(s)) cells.emplace_back(margin.stage[s][k]);
+        for (const Cell& cell :
+             {Cell(margin.total[k]), Cell(margin.slack(k)), Cell(margin.total[k] > margin.budget_ms)})
+            cells.push_back(cell);
+        table.add(std::move(cells));
+    }
+    return table;
+}
+
+std::string margin_json(const Margin& margin, const MarginRun& last) {
+    Json stages = Json::object();
+    for (std::size_t s = 0; s < kMarginStages; ++s) {
+        // A stage that was not measured is null and not 0.
+        stages[name(static_cast<MarginStage>(s))] =
+            margin.has(s) ? spread_json(margin.stage[s]) : Json(nullptr);
+    }
+    Json events = Json::array();
+    for (const std::size_t i : last.frames[margin.worst].events)
+        events.push_back(event_cost_json(last.record, i));
+    const std::vector<double> slack = slacks(margin);
+    Json all = {{"fps", margin.fps},
+                {"budget_ms", margin.budget_ms},
+                {"frames", margin.total.size()},
+                {"missed", margin.missed}};
+    if (margin.rendered) {
+        all["size"] = {margin.size.width, margin.size.height};
+        all["missed_without_files"] = margin.missed_shown;
+        all["encoded_share"] = spread_json(margin.encoded_share);
+    }
+    all["stages"] = stages;
+    all["total"] = spread_json(margin.total);
+    all["slack_percent"] = {{"least", slack.front()}, {"median", median(slack)}};
+    all["worst"] = {{"frame", margin.worst},
+                    {"time", time_of(margin, margin.worst)},
+                    {"ms", margin.total[margin.worst]},
+                    {"events", events}};
+    all["runs"] = {{"count", margin.runs},
+                   {"p50", {margin.p50_runs.low, margin.p50_runs.high}},
+                   {"p99", {margin.p99_runs.low, margin.p99_runs.high}},
+                   {"missed", {margin.missed_runs.low, margin.missed_runs.high}},
+                   {"frame_spread", margin.frame_spread}};
+    all["serial"] = {{"wall_ms", margin.accounting.wall_ms},
+                     {"parts_ms", margin.accounting.parts_ms},
+                     {"share", margin.accounting.share()}};
+    all["timing"] = {{"clock_ns", margin.timing.clock_ns},
+                     {"simulate_ms", margin.timing.plain_ms},
+                     {"simulate_timed_ms", margin.timing.profiled_ms},
+                     {"share", margin.timing.share()}};
+    return all.dump() + "\n";
+}
+
+std::string margin_text(const Margin& margin, const MarginRun& last, const std::string& scene) {
+    return fmt::format("{}: {}\n\n{}\n{}", scene, margin_lead(margin), table_text(stages_table(margin)),
+                       margin_sentences(margin, last));
+}
+
+}  // namespace carom::tools

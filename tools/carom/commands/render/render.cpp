@@ -1,0 +1,329 @@
+// carom render: numbered PNG frames of a scene or of a record.
+#include <fmt/core.h>
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/console.h"
+#include "base/frame_costs.h"
+#include "base/options.h"
+#include "base/setup.h"
+#include "carom/render/sequence.h"
+#include "commands/render/film.h"
+
+namespace carom::tools {
+namespace {
+
+struct RenderArgs {
+    std::string input;  ///< a scene, or a record (.json)
+    std::string pattern = "frames/%05d.png";
+    std::optional<double> fps;
+    std::string size;  ///< "1280x720"; empty: the scene's
+    double from = 0.0;
+    std::optional<double> to;
+    std::optional<long> frame;
+    std::optional<double> at;
+    std::string camera;  ///< empty: the scene's
+    std::string gl = "osmesa";
+    std::string png_writer = "changes";
+    std::optional<int> png_level;
+    std::string eye, target;  ///< "x,y,z"; empty: a named camera
+    std::string ball;         ///< followed by the camera "follow"; empty: the ball that moves first
+    std::string overlay;      ///< list of names
+    bool trails = false;      ///< --overlay trails
+    std::string sheet;        ///< "4x3"; empty: frames
+    int jobs = 0;
+    bool resume = false;
+    bool raw = false;
+    bool y4m = false;
+    const FilmKind* film() const { return raw || y4m || !sheet.empty() ? nullptr : film_kind(pattern); }
+};
+
+/// Other programs tell what a file holds by its name.
+void check_png_name(const std::string& path) {
+    if (!path.ends_with(".png") && !path.ends_with(".PNG"))
+        throw UsageError(fmt::format("-o {}: pictures are PNG files; give a name that ends in .png", path));
+}
+
+void check_args(const RenderArgs& args) {
+    const auto second = [](const char* option, std::optional<double> value) {
+        if (value && !(*value >= 0.0 && std::isfinite(*value))) {
+            throw UsageError(fmt::format("{}: expected a number of seconds of at least 0", option));
+        }
+    };
+    second("--from", args.from);
+    second("--to", args.to);
+    second("--at", args.at);
+    if (args.to && *args.to < args.from) throw UsageError("--to is before --from: there would be no frame");
+    if (args.at && (args.from != 0.0 || args.to || args.frame)) {
+        throw UsageError("--at is one instant: it cannot be combined with --from, --to or --frame");
+    }
+    if (args.frame && *args.frame < 0) throw UsageError("--frame: frames are numbered from 0");
+    if (!args.sheet.empty()) {
+        parse_sheet(args.sheet);
+        if (args.pattern.find('%') == std::string::npos) check_png_name(args.pattern);
+        return;
+    }
+    if (const FilmKind* const film = args.film()) {
+        const std::string what = fmt::format("-o {}", args.pattern);
+        if (args.resume) throw UsageError(what + ": a film cannot be resumed");
+        if (args.frame || args.at) throw UsageError(what + ": one frame is no film; use --from and --to");
+        if (args.png_writer != "changes") throw UsageError(what + ": --png-writer is of PNG files");
+        require_ffmpeg(args.pattern);
+        return;
+    }
+    if (args.raw || args.y4m) return;
+    const bool one = args.at || args.frame;
+    try {
+        const bool numbered = render::is_numbered(args.pattern);
+        if (!one && !numbered)
+            throw UsageError(fmt::format(
+                "bad frame pattern '{}'; give exactly one %d or %0Nd, like frames/%05d.png, or the name of a "
+                "film, like shot.mp4 (.webm, .gif, .webp)",
+                args.pattern));
+        if (args.resume && !numbered)
+            throw UsageError(fmt::format("-o {}: one picture cannot be resumed", args.pattern));
+    } catch (const render::RenderError& error) {
+        throw UsageError(error.what());
+    }
+    check_png_name(args.pattern);
+}
+
+/// "x,y,z" in m.
+Vec3 parse_point(const char* option, const std::string& text) {
+    const auto x = numbers_in<double, 3>(text, ',');
+    if (x && std::isfinite((*x)[0]) && std::isfinite((*x)[1]) && std::isfinite((*x)[2]))
+        return Vec3(x->data());
+    throw UsageError(fmt::format("{}: expected three numbers in m, such as 0.6,-0.5,0.8", option));
+}
+
+render::Overlay overlay_of(const RenderArgs& args) {
+    try {
+        render::Overlay overlay = render::parse_overlay(args.overlay);
+        overlay.trails = overlay.trails || args.trails;
+        return overlay;
+    } catch (const render::RenderError& error) {
+        throw UsageError(fmt::format("--overlay: {}", error.what()));
+    }
+}
+
+void set_view(const RenderArgs& args, const RenderSettings& settings, render::SequenceOptions& options) {
+    if (!args.eye.empty() && args.target.empty()) throw UsageError("--eye needs --target X,Y,Z");
+    if (!args.eye.empty() && !args.camera.empty()) throw UsageError("--camera and --eye exclude each other");
+    options.camera = args.camera.empty() ? settings.camera : args.camera;
+    options.view.ball = args.ball;
+    if (!args.eye.empty()) {
+        options.view.eye = parse_point("--eye", args.eye);
+        options.view.target = parse_point("--target", args.target);
+        if (*options.view.eye == *options.view.target) throw UsageError("--target is where the eye is");
+    } else if (args.camera.empty()) {
+        options.view.eye = settings.eye;
+        options.view.target = settings.target;
+    }
+    options.overlay = overlay_of(args);
+}
+
+/// A scene's rate is lowered to what the film can have; a rate that was asked for is not.
+double film_fps(const RenderArgs& args, const RenderSettings& settings) {
+    const double fps = chosen_fps(args.fps, settings), fastest = args.film()->fastest;
+    if (fastest == 0.0 || fps <= fastest) return fps;
+    if (args.fps)
+        throw UsageError(
+            fmt::format("--fps {}: {} has at most {} frames per second", fps, args.film()->ending, fastest));
+    message(fmt::format("note: {} has at most {} frames per second, the scene {}", args.film()->ending,
+                        fastest, fps));
+    return fastest;
+}
+
+render::SequenceOptions sequence_options(const RenderArgs& args, const Record& record) {
+    const RenderSettings& settings = record.render;
+    render::SequenceOptions options;
+    options.pattern = args.pattern;
+    options.fps = args.film() ? film_fps(args, settings) : chosen_fps(args.fps, settings);
+    options.from = args.at.value_or(args.from);
+    options.to = args.at ? args.at : args.to;
+    options.frame = args.frame;
+    options.size = args.size.empty() ? settings.size() : parse_size(args.size);
+    set_view(args, settings, options);
+    if (args.png_writer == "libpng") options.libpng_level = args.png_level.value_or(1);
+    options.jobs = args.jobs;
+    options.resume = args.resume;
+    if (args.raw || args.y4m) {
+        if (args.y4m) options.raw_format = render::RawFormat::kY4m;
+        options.raw = [](const std::uint8_t* bytes, std::size_t count) {
+            print(std::string_view(reinterpret_cast<const char*>(bytes), count));
+        };
+    }
+    options.backend = render::backend_from_name(args.gl);
+    const long frames = checked_frame_count(options.from, options.to.value_or(record.duration), options.fps);
+    if (frames < 1 || (args.at && *args.at > record.duration)) {
+        throw UsageError(fmt::format("{} {}: the shot is over after {} s", args.at ? "--at" : "--from",
+                                     options.from, record.duration));
+    }
+    if (args.frame && *args.frame >= frames) {
+        throw UsageError(fmt::format("--frame {}: the last frame is {}", *args.frame, frames - 1));
+    }
+    return options;
+}
+
+/// Tells the margin bar what the simulation of each frame cost: the sum over the events between the frame and the next one.
+/// A record that was not profiled has no costs; its bar shows drawing, reading back and encoding only.
+void set_simulation_costs(const Record& record, render::SequenceOptions& options) {
+    if (record.costs.empty()) return;
+    // Events before the first and after the last frame that is shown belong to frames that are not shown.
+    const double before = std::ceil(options.from * options.fps);
+    const auto first = static_cast<long>(before);
+    const long frames = render::frame_count(options.from, options.to.value_or(record.duration), options.fps);
+    auto costs = costs_by_frame(record, options.from - before / options.fps, options.fps, first + frames + 1);
+    options.simulate_ms = [costs = std::move(costs), first](long k) {
+        return costs[first + k].simulate_ms();
+    };
+}
+
+int write_sheet(const RenderArgs& args, const Record& record, const render::SequenceOptions& options) {
+    const FrameSize grid = parse_sheet(args.sheet);
+    const std::string path = args.pattern.find('%') == std::string::npos ? args.pattern : "sheet.png";
+    render::render_sheet(record, options, grid.width, grid.height, path);
+    print(fmt::format(
+        "{}: {}\n",
+        counted(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height), "picture"),
+        path));
+    return kOk;
+}
+
+int write_film(const RenderArgs& args, const Record& record, render::SequenceOptions& options) {
+    const FilmKind& kind = *args.film();
+    if (kind.even && (options.size.width % 2 != 0 || options.size.height % 2 != 0)) {
+        throw UsageError(fmt::format("--size {}x{}: {} needs an even width and height", options.size.width,
+                                     options.size.height, kind.ending));
+    }
+    Film film(args.pattern, kind, options.size, options.fps);
+    options.raw_format = kind.input;
+    options.raw = [&film](const std::uint8_t* bytes, std::size_t count) { film.write(bytes, count); };
+    const std::size_t frames = render::render_sequence(record, options).size();
+    film.commit();
+    print(fmt::format("{}, {}x{} at {} fps: {}\n", counted(frames, "frame"), options.size.width,
+                      options.size.height, options.fps, args.pattern));
+    return kOk;
+}
+
+/// Says how to go on where it is interrupted.
+std::vector<render::FrameTiming> rendered(const Record& record, const render::SequenceOptions& options) {
+    try {
+        return render::render_sequence(record, options);
+    } catch (const Interrupted&) {
+        if (!options.raw && render::is_numbered(options.pattern))
+            message("stopped; the same command with --resume goes on");
+        throw;
+    }
+}
+
+int run(const RenderArgs& args) {
+    check_args(args);
+    if (args.raw && args.y4m) throw UsageError("--raw and --y4m exclude each other");
+    const char* const stream = args.raw ? "--raw" : "--y4m";
+    if ((args.raw || args.y4m) && (args.resume || !args.sheet.empty()))
+        throw UsageError(fmt::format("{} goes with neither --resume nor --sheet", stream));
+    if (args.png_writer != "libpng" && args.png_level)
+        throw UsageError("--png-level is of --png-writer libpng");
+    if (!args.size.empty()) parse_size(args.size);
+    SimulateOptions simulation;
+    simulation.profile = overlay_of(args).margin;
+    const Record record = read_shot(args.input, simulation);
+    render::SequenceOptions options = sequence_options(args, record);
+    if (options.overlay.margin) set_simulation_costs(record, options);
+    ProgressLine line("rendering:");
+    options.progress = [&line](long done, long total) {
+        throw_if_interrupted();
+        line.show_bar(done, total);
+    };
+    options.table_progress = [&line](int done, int total) {
+        throw_if_interrupted();
+        if (line.due()) line.show_text(fmt::format("the table, {} of {}", done, total));
+    };
+    if (!args.sheet.empty()) return write_sheet(args, record, options);
+    if (args.film() != nullptr) return write_film(args, record, options);
+    if (args.y4m) print(render::y4m_header(options.size, options.fps));
+    const std::vector<render::FrameTiming> timings = rendered(record, options);
+    throw_if_interrupted();
+    if (timings.empty()) {
+        print(fmt::format("0 frames: all are there: {}\n", options.pattern));
+        return kOk;
+    }
+    if (args.raw || args.y4m) {
+        flush_output();
+        const std::string input =
+            args.y4m ? std::string(
+                           "-f yuv4mpegpipe -i - -colorspace bt709 -color_primaries bt709 -color_trc bt709")
+                     : fmt::format("-f rawvideo -pix_fmt rgb24 -s {}x{} -framerate {} -i - -pix_fmt yuv420p",
+                                   options.size.width, options.size.height, options.fps);
+        message(fmt::format("{} of {}; to make a film of them, pipe them into: ffmpeg {} shot.mp4",
+                            counted(timings.size(), "frame"), args.y4m ? "Y4M" : "RGB", input));
+        return kOk;
+    }
+    if (timings.size() == 1) {
+        print(fmt::format("1 frame: {}\n", render::frame_path(options.pattern, timings.front().frame)));
+        return kOk;
+    }
+    print(fmt::format("{}, {}x{} at {} fps: {}\n", counted(timings.size(), "frame"), options.size.width,
+                      options.size.height, options.fps, options.pattern));
+    // With their number, so that older frames behind them are not in the film.
+    print(fmt::format(
+        "to make a film of them: ffmpeg -y -framerate {} -i {} -frames:v {} -pix_fmt yuv420p shot.mp4\n",
+        options.fps, shell_word(options.pattern), timings.back().frame + 1));
+    return kOk;
+}
+
+}  // namespace
+
+void add_render(Options& program) {
+    auto [command, args] = program.command<RenderArgs>(
+        "render", "Numbered PNG frames of a scene or a record; frame k shows from + k/fps", run);
+    command.argument("SCENE", args.input, "Scene file (TOML), or a record (.json) of carom simulate -o")
+        .required = true;
+    command.option("-o,--output", &args.pattern, "PATTERN",
+                   "Files, with one %d or %05d for the frame's number; or a film (.mp4, .webm, .gif, .webp), "
+                   "which ffmpeg makes");
+    add_picture(command, args.fps, args.size);
+    command.option("--from", &args.from, "S", "First instant in s");
+    command.option("--to", &args.to, "S", "Last instant in s (default: the end of the shot)");
+    command.option("--frame", &args.frame, "K", "Only frame K (default: all)");
+    command.option("--at", &args.at, "S", "Only this instant in s, as frame 0 (default: all)");
+    command.option("--camera", &args.camera, "NAME", "Camera (default: the scene's, else top)")
+        .one_of({"top", "rail", "player", "follow"});
+    command.option("--eye", &args.eye, "X,Y,Z",
+                   "Free camera: where the eye is, in m (default: a named camera)");
+    Option& target = command.option("--target", &args.target, "X,Y,Z",
+                                    "Free camera: what it looks at, in m (default: a named camera)");
+    target.needs = "--eye";
+    command.option("--ball", &args.ball, "ID",
+                   "Ball that camera follow follows (default: the one that moves first)");
+    command.option("--overlay", &args.overlay, "LIST",
+                   "Drawn over the picture: trails (or trails=ball, in the colours of the balls), events, "
+                   "spin, ghost, clock, margin, or all (default: none)");
+    command.flag("--trails", args.trails, "The same as --overlay trails (default: off)");
+    command.option("--sheet", &args.sheet, "CxR",
+                   "One contact sheet of columns x rows pictures, as wide as --size (default: off)");
+    command.option("--jobs", &args.jobs, "N", "Threads that encode and write; 0: one per core").in(0, 256);
+    command.flag("--resume", args.resume, "Leave out frames whose finished file is there (default: off)");
+    command.flag("--raw", args.raw,
+                 "RGB bytes on standard output instead of PNG files, for ffmpeg (default: off)");
+    command.flag("--y4m", args.y4m,
+                 "A Y4M stream (4:2:0) on standard output instead: half the bytes of --raw (default: off)");
+    add_gl(command, args.gl);
+    command
+        .option("--png-writer", &args.png_writer, "NAME",
+                "changes encodes what changed since the frame before, libpng every frame as a whole")
+        .one_of({"changes", "libpng"});
+    Option& level = command.option("--png-level", &args.png_level, "L",
+                                   "Compression by libpng, 0 (large, fast) to 9 (small, slow) (default: 1)");
+    level.in(0, 9);
+    level.needs = "--png-writer";
+}
+
+}  // namespace carom::tools

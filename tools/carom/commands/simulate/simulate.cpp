@@ -1,0 +1,251 @@
+// carom simulate: runs a scene and says what happened.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "base/console.h"
+#include "base/options.h"
+#include "base/setup.h"
+#include "carom/engine/verify.h"
+#include "report/csv.h"
+#include "report/table.h"
+
+namespace carom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SimulateArgs {
+    std::string scene;
+    std::string record;  ///< file names; empty: not asked for
+    std::string events;
+    std::string samples;
+    std::optional<double> sample_dt;  ///< [s]
+    std::optional<double> until;      ///< [s]
+    bool hash = false;
+    bool profile = false;
+    bool json = false;
+    bool list = false;    ///< the events as a table
+    bool verify = false;  ///< check the laws after every event
+};
+
+/// What the events of a profiled run cost, by kind: the sums. The text shows the means.
+Table costs_by_kind(const Record& record) {
+    Table table(Column("type", "", "<24"), Column("count", "count", ">6"),
+                Column("detect_ns", "detect", ">12"), Column("resolve_ns", "resolve", ">12"),
+                Column("kernel_ns", "kernel", ">12"));
+    for (int type = 0; type < kEventTypes; ++type) {
+        long count = 0;
+        double detect = 0.0, resolve = 0.0, kernel = 0.0;
+        for (std::size_t i = 0; i < record.costs.size(); ++i) {
+            if (record.events.at(i).type != static_cast<EventType>(type)) continue;
+            ++count;
+            detect += record.costs[i].detect_ns;
+            resolve += record.costs[i].resolve_ns;
+            kernel += record.costs[i].kernel_ns;
+        }
+        if (count == 0) continue;
+        const auto mean = [count](double sum) { return Cell(sum, fmt::format("{:.0f}", sum / count)); };
+        const std::string title = name(static_cast<EventType>(type));
+        table.add({{title, "  " + title}, count, mean(detect), mean(resolve), mean(kernel)});
+    }
+    return table;
+}
+
+std::string result_json(const Record& record) {
+    const auto numbers = [](const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); };
+    Json balls = Json::array();
+    for (std::size_t i = 0; i < record.tracks.size(); ++i) {
+        const BallState s = record.state_at(static_cast<int>(i), record.duration);
+        Json pocket = nullptr;
+        if (s.pocket >= 0) pocket = record.table.pockets.at(s.pocket).id;
+        balls.push_back({{"id", record.tracks[i].id},
+                         {"state", name(s.state)},
+                         {"position", numbers(s.position)},
+                         {"velocity", numbers(s.velocity)},
+                         {"spin", numbers(s.spin)},
+                         {"pocket", pocket}});
+    }
+    Json kinds = Json::object();
+    for (const Event& event : record.events) {
+        Json& count = kinds[name(event.type)];
+        count = count.is_null() ? 1 : count.get<int>() + 1;
+    }
+    Json all = {{"duration", record.duration},
+                {"events", record.events.size()},
+                {"events_by_kind", kinds},
+                {"hash", record.hash()},
+                {"balls", balls}};
+    if (!record.costs.empty()) {
+        all["profile"] = {{"setup_detect_ns", record.setup_detect_ns},
+                          {"kinds", table_json(costs_by_kind(record))}};
+    }
+    return all.dump() + "\n";
+}
+
+const char* reason(StopReason stopped) {
+    constexpr const char* kReasons[] = {"everything is at rest", "stopped at its time",
+                                        "stopped at its number of events",
+                                        "nothing more happens, but balls move for ever"};
+    return kReasons[static_cast<int>(stopped)];
+}
+
+std::string summary(const Record& record, const std::string& scene) {
+    fmt::memory_buffer out;
+    const auto line = std::back_inserter(out);
+    fmt::format_to(line, "{}: {}, {:.4f} s, {}; {}\n\nevents\n", scene, counted(record.tracks.size(), "ball"),
+                   record.duration, counted(record.events.size(), "event"), reason(record.stopped));
+    std::array<long, kEventTypes> counts{};
+    for (const Event& event : record.events) ++counts[static_cast<std::size_t>(event.type)];
+    for (int type = 0; type < kEventTypes; ++type) {
+        const long count = counts[type];
+        if (count > 0) fmt::format_to(line, "  {:<22}{:>6}\n", name(static_cast<EventType>(type)), count);
+    }
+    fmt::format_to(line, "\npocketed\n");
+    long pocketed = 0;
+    for (const Event& event : record.events) {
+        if (event.type != EventType::kBallPocket) continue;
+        ++pocketed;
+        fmt::format_to(line, "  {:<6} in {} at {:.4f} s\n", record.tracks.at(event.a).id,
+                       record.partner_id(event), event.time);
+    }
+    if (pocketed == 0) fmt::format_to(line, "  none\n");
+    fmt::format_to(line, "\nballs at the end (m)\n");
+    for (std::size_t i = 0; i < record.tracks.size(); ++i) {
+        const BallState s = record.state_at(static_cast<int>(i), record.duration);
+        fmt::format_to(line, "  {:<6} {:<11}{:>11.6f}{:>11.6f}\n", record.tracks[i].id, name(s.state),
+                       s.position.x(), s.position.y());
+    }
+    return fmt::to_string(out);
+}
+
+/// What happened, one line an event.
+std::string event_list(const Record& record) {
+    Table table(Column("", "time (s)", ">12.6f"), Column("", "  type", "<24"), Column("", "ball", "<10"),
+                Column("", "with", "<"));
+    for (const Event& event : record.events)
+        table.add({event.time, "  " + std::string(name(event.type)), record.tracks.at(event.a).id,
+                   record.partner_id(event)});
+    return "\n" + table_text(table);
+}
+
+/// Where the time of a profiled run went.
+std::string profile_report(const Record& record) {
+    double total = record.setup_detect_ns;
+    for (const EventCost& cost : record.costs) total += cost.detect_ns + cost.resolve_ns;
+    Table kernels(Column("", "  time (s)", ">14.6f"), Column("", "  balls", "<14"),
+                  Column("", "ns", ">12.0f"), Column("", "steps", ">8"), Column("", "  method", "<"));
+    for (std::size_t i = 0; i < record.costs.size(); ++i) {
+        const Event& event = record.events[i];
+        if (!balls_collide(event.type)) continue;
+        const EventCost& cost = record.costs[i];
+        kernels.add({event.time, "  " + record.tracks.at(event.a).id + " " + record.partner_id(event),
+                     cost.kernel_ns, cost.steps, fmt::format("  {}", cost.method)});
+    }
+    return fmt::format(
+        "\ncost by kind of event (mean ns; kernel is a part of resolve)\n{}"
+        "  first detection of all pairs: {:.0f} ns; all together: {:.3f} ms\n"
+        "\nkernel by ball-ball event and cluster\n{}",
+        table_text(costs_by_kind(record)), record.setup_detect_ns, total * 1e-6, table_text(kernels));
+}
+
+void check_args(const SimulateArgs& args) {
+    if (!args.samples.empty() && !args.sample_dt) throw UsageError("--samples needs --sample-dt S");
+    if (args.samples.empty() && args.sample_dt) throw UsageError("--sample-dt needs --samples FILE");
+    if (args.sample_dt && !(*args.sample_dt > 0.0 && std::isfinite(*args.sample_dt))) {
+        throw UsageError("--sample-dt: expected a number of seconds greater than 0");
+    }
+    if (args.until && !(*args.until >= 0.0 && std::isfinite(*args.until))) {
+        throw UsageError("--until: expected a number of seconds of at least 0");
+    }
+}
+
+bool is_stdout(const std::string& path) {
+    return path == "-";
+}
+
+void write_files(const SimulateArgs& args, const Record& record) {
+    const auto file = [](const std::string& path) { return is_stdout(path) ? "/dev/stdout" : path; };
+    if (!args.record.empty()) write_record(record, file(args.record));
+    if (!args.events.empty()) write_events_csv(record, file(args.events));
+    if (!args.samples.empty()) write_samples_csv(record, *args.sample_dt, file(args.samples));
+}
+
+/// Names the first law that the run broke, if any.
+int verified(const Record& record, const Plan& plan) {
+    const std::optional<Violation> violation = verify(record, plan);
+    if (!violation) return kOk;
+    std::string where = "after the last event";
+    if (violation->event < record.events.size()) {
+        const Event& event = record.events[violation->event];
+        where = fmt::format("event {} ({} {} {}, t = {:.17g} s)", violation->event, name(event.type),
+                            record.tracks.at(event.a).id, record.partner_id(event), event.time);
+    }
+    message(fmt::format("{} broken at {}: {}", violation->law, where, violation->message));
+    return kFailed;
+}
+
+int run(const SimulateArgs& args) {
+    check_args(args);
+    const Plan plan = plan_scene(args.scene);
+    SimulateOptions options;
+    options.profile = args.profile;
+    options.until = args.until;
+    const Record record = simulate_plan(plan, options);
+    write_files(args, record);
+    const int status = args.verify ? verified(record, plan) : kOk;
+    // --hash replaces the summary, so that the output is one line. The JSON contains the hash in any case.
+    if (args.json) {
+        print(result_json(record));
+        return status;
+    }
+    const bool taken = is_stdout(args.record) || is_stdout(args.events) || is_stdout(args.samples);
+    if (args.hash)
+        print(record.hash() + "\n");
+    else if (!taken)
+        print(summary(record, args.scene));
+    if (args.list) print(event_list(record));
+    if (args.profile) print(profile_report(record));
+    return status;
+}
+
+}  // namespace
+
+void add_simulate(Options& program) {
+    auto [command, args] = program.command<SimulateArgs>(
+        "simulate", "Run a scene: what happened, events, record, sampled states, hash", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
+    command
+        .option("-o,--output", &args.record, "FILE.json",
+                "Write the record, for carom render (default: not written)")
+        .to_stdout = true;
+    command
+        .option("--events", &args.events, "FILE.csv",
+                "Write the events; - is standard output, in place of the summary, as below (default: not "
+                "written)")
+        .to_stdout = true;
+    command
+        .option("--samples", &args.samples, "FILE.csv",
+                "Write sampled states; needs --sample-dt (default: not written)")
+        .to_stdout = true;
+    command.option("--sample-dt", &args.sample_dt, "S", "Time between samples in s (default: none)");
+    command.option("--until", &args.until, "S",
+                   "Stop at this time in s at the latest (default: the scene's end)");
+    command.flag("--list", args.list, "Print the events as a table (default: off)");
+    command.flag("--hash", args.hash,
+                 "Print the hash of all bits of the record instead of the summary (default: off)");
+    command.flag("--profile", args.profile,
+                 "Time every event: cost by kind, kernel by ball-ball event, columns in the events file "
+                 "(default: off)");
+    command.flag("--json", args.json, "Print JSON (default: off)");
+    command.flag(
+        "--verify", args.verify,
+        "Check the laws after every event; a broken one is named, and the exit status is 1 (default: off)");
+}
+
+}  // namespace carom::tools

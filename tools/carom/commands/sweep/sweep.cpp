@@ -1,0 +1,362 @@
+// carom sweep: simulates many shots of one scene and writes one row for each shot.
+//
+// A row depends only on the scene, the rules, the seed and its number; threads only decide when it is computed. Rows are
+// written in order: if the program is killed, the file contains the first rows of the whole table.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "base/console.h"
+#include "base/options.h"
+#include "base/setup.h"
+#include "commands/sweep/partial_file.h"
+#include "commands/sweep/row.h"
+#include "commands/sweep/status.h"
+
+namespace carom::tools {
+namespace {
+
+struct SweepArgs {
+    std::string scene;
+    std::vector<std::string> vary;  ///< "KEY=DISTRIBUTION"
+    std::uint64_t count = 0;
+    std::uint64_t seed = 1;
+    int jobs = 0;
+    std::string shard;  ///< "2/4"; empty: all
+    std::string output;
+    std::string status;  ///< a file; empty: none
+};
+
+using Clock = std::chrono::steady_clock;
+
+/// Doubles, and what reads tables as doubles, count to there.
+constexpr std::uint64_t kMostShots = std::uint64_t{1} << 53;
+constexpr std::uint64_t kMostShards = 1000000;
+/// A thread takes more shots at once as long as they last less than this, so that the queue costs nothing beside them.
+constexpr std::chrono::milliseconds kBlockTime(2);
+constexpr std::uint64_t kMostAtOnce = 256;
+/// Largest number of finished rows that wait for an earlier one; it limits the memory.
+constexpr std::uint64_t kMostWaiting = 4096;
+constexpr std::chrono::milliseconds kFlushEvery(200);
+
+/// Shots `first` to `last - 1`.
+struct ShotRange {
+    std::uint64_t first, last;
+    bool header;  ///< belongs to the first shard
+};
+
+ShotRange shard_range(const std::string& text, std::uint64_t count) {
+    if (text.empty()) return {0, count, true};
+    if (const auto part = numbers_in<std::uint64_t, 2>(text, '/')) {
+        const auto [i, n] = *part;
+        // count * k / n, without the product of the two, which may be too large.
+        const auto begin = [count, n = n](std::uint64_t k) { return count / n * k + count % n * k / n; };
+        if (i >= 1 && i <= n && n <= kMostShards) return {begin(i - 1), begin(i), i == 1};
+    }
+    throw UsageError(fmt::format("--shard {}: expected I/N with 1 <= I <= N, as in 2/4", text));
+}
+
+/// Rows of consecutive shots.
+struct SweepRows {
+    std::string text;  ///< with their line ends
+    std::uint64_t shots = 0;
+    Outcomes outcomes{};
+
+    void append(SweepPlayer& player, std::uint64_t index) {
+        ++outcomes[static_cast<std::size_t>(player.append(index, text))];
+        ++shots;
+    }
+};
+
+/// What makes the rows; every thread reads it.
+struct Sweep {
+    const Variation& variation;
+    kernel::Isa isa;
+
+    std::string row(std::uint64_t index) const {
+        SweepRows rows;
+        SweepPlayer player(variation, isa);
+        rows.append(player, index);
+        return rows.text;
+    }
+};
+
+/// Gives shot numbers to the threads that compute, and the rows in order to the thread that writes.
+class Queue {
+  public:
+    Queue(std::uint64_t first, std::uint64_t last) : next_(first), last_(last), wanted_(first) {}
+
+    struct Shots {
+        std::uint64_t first, last;
+    };
+    /// Up to `most` shots to run; nothing when all are taken or the sweep stops.
+    std::optional<Shots> claim(std::uint64_t most) {
+        std::unique_lock lock(mutex_);
+        room_.wait(lock, [&] { return stopped_ || next_ == last_ || next_ < wanted_ + kMostWaiting; });
+        if (stopped_ || next_ == last_) return std::nullopt;
+        const std::uint64_t first = next_;
+        next_ += std::min(most, last_ - next_);
+        return Shots{first, next_};
+    }
+
+    void put(std::uint64_t first, SweepRows rows) {
+        const std::lock_guard lock(mutex_);
+        rows_.emplace(first, std::move(rows));
+        if (first == wanted_) ready_.notify_one();
+    }
+
+    /// Rows that are ready and next in order; waits a tenth of a second for some.
+    std::vector<SweepRows> take() {
+        std::unique_lock lock(mutex_);
+        ready_.wait_for(lock, std::chrono::milliseconds(100),
+                        [&] { return stopped_ || rows_.count(wanted_) != 0; });
+        if (error_) std::rethrow_exception(error_);
+        std::vector<SweepRows> rows;
+        for (auto it = rows_.begin(); it != rows_.end() && it->first == wanted_; it = rows_.erase(it)) {
+            wanted_ += it->second.shots;
+            rows.push_back(std::move(it->second));
+        }
+        if (!rows.empty()) room_.notify_all();
+        return rows;
+    }
+
+    void stop(std::exception_ptr error) {
+        const std::lock_guard lock(mutex_);
+        if (!stopped_) error_ = std::move(error);
+        stopped_ = true;
+        room_.notify_all();
+        ready_.notify_one();
+    }
+
+  private:
+    std::mutex mutex_;
+    std::condition_variable room_, ready_;
+    std::map<std::uint64_t, SweepRows> rows_;  // by their first shot
+    std::uint64_t next_, last_, wanted_;
+    bool stopped_ = false;
+    std::exception_ptr error_;
+};
+
+/// Threads that run shots; the destructor waits for the shots that have begun.
+class Workers {
+  public:
+    Workers(Queue& queue, const Sweep& sweep, unsigned jobs) : queue_(queue) {
+        try {
+            for (unsigned i = 0; i < jobs; ++i)
+                threads_.emplace_back([&queue, &sweep] { work(queue, sweep); });
+        } catch (const std::exception& error) {  // the system gives no more threads
+            const std::size_t started = threads_.size();
+            finish();
+            throw std::runtime_error(
+                fmt::format("only {} of {} threads could be started ({}); use fewer with --jobs", started,
+                            jobs, error.what()));
+        }
+    }
+    ~Workers() { finish(); }
+    Workers(const Workers&) = delete;
+    Workers& operator=(const Workers&) = delete;
+
+  private:
+    static void work(Queue& queue, const Sweep& sweep) noexcept {
+        try {
+            SweepPlayer player(sweep.variation, sweep.isa);
+            std::uint64_t most = 1;
+            while (const auto shots = queue.claim(most)) {
+                const Clock::time_point start = Clock::now();
+                SweepRows rows;
+                for (std::uint64_t shot = shots->first; shot < shots->last; ++shot) rows.append(player, shot);
+                queue.put(shots->first, std::move(rows));
+                if (Clock::now() - start < kBlockTime && most < kMostAtOnce) most *= 2;
+            }
+        } catch (...) {
+            queue.stop(std::current_exception());
+        }
+    }
+    void finish() {
+        queue_.stop(nullptr);
+        for (std::thread& thread : threads_) thread.join();
+    }
+
+    Queue& queue_;
+    std::vector<std::thread> threads_;
+};
+
+/// The k-th value of a row as it stands there; of quotes only what is between them counts.
+std::string_view field_of(std::string_view row, std::size_t k) {
+    bool quoted = false;
+    std::size_t begin = 0, at = 0;
+    for (; at < row.size(); ++at) {
+        if (row[at] == '"') quoted = !quoted;
+        if (row[at] != ',' || quoted) continue;
+        if (k-- == 0) break;
+        begin = at + 1;
+    }
+    return row.substr(begin, at - begin);
+}
+
+/// What stands in a file that is taken up.
+struct RowsThere {
+    std::uint64_t failed = 0;
+    bool in_order = true;
+
+    void see(const Sweep& sweep, const ShotRange& range, long number, std::string_view row) {
+        if (range.header && number == 0) {
+            in_order = std::string(row) + '\n' == sweep_header(sweep.variation);
+            return;
+        }
+        const std::uint64_t shot = range.first + static_cast<std::uint64_t>(number) - (range.header ? 1 : 0);
+        in_order = in_order && field_of(row, 0) == fmt::format_int(shot).c_str();
+        if (field_of(row, 1 + sweep.variation.keys().size()) == name(ShotStatus::kFailed)) ++failed;
+    }
+};
+
+/// The shot at which an incomplete file of an earlier run is continued. Its last row is computed again: if another build gives
+/// another row, the file is not continued.
+std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRange& range,
+                      const RowsThere& there) {
+    if (file.lines() == 0) return range.first;
+    const std::uint64_t rows = static_cast<std::uint64_t>(file.lines()) - (range.header ? 1 : 0);
+    std::string expected;
+    if (rows <= range.last - range.first)
+        expected = rows == 0 ? sweep_header(sweep.variation) : sweep.row(range.first + rows - 1);
+    if (!there.in_order || expected != file.last_line() + '\n')
+        throw std::runtime_error(fmt::format("{}: {} not what this program computes; remove it to begin anew",
+                                             file.name(),
+                                             there.in_order ? "its last row is" : "its rows are"));
+    message(fmt::format("going on with {}: {} of {} shots are there", file.name(), rows,
+                        range.last - range.first));
+    return range.first + rows;
+}
+
+/// Runs the shots from `from` on and writes their rows.
+Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& range, std::uint64_t from,
+                    unsigned jobs, SweepStatus& status) {
+    Outcomes outcomes{};
+    Queue queue(from, range.last);
+    ProgressLine line("sweep");
+    Clock::time_point flushed = Clock::now();
+    const Workers workers(queue, sweep, jobs);
+    for (std::uint64_t done = from; done < range.last;) {
+        throw_if_interrupted();
+        for (const SweepRows& rows : queue.take()) {
+            file.append(rows.text);
+            for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += rows.outcomes[i];
+            done += rows.shots;
+        }
+        if (Clock::now() - flushed >= kFlushEvery) {
+            file.flush();
+            flushed = Clock::now();
+        }
+        status.show(done, outcomes);
+        line.show_bar(static_cast<long>(done - range.first), static_cast<long>(range.last - range.first));
+    }
+    return outcomes;
+}
+
+std::string summary(const Outcomes& outcomes, const SweepArgs& args, unsigned jobs, double seconds) {
+    std::uint64_t shots = 0;
+    for (const std::uint64_t n : outcomes) shots += n;
+    std::string text =
+        fmt::format("{}: {} in {:.2f} s on {}, {:.0f} a second\n", args.output, counted(shots, "shot"),
+                    seconds, counted(jobs, "thread"), static_cast<double>(shots) / std::max(seconds, 1e-9));
+    for (int i = 0; i < kShotStatuses; ++i) {
+        const std::uint64_t n = outcomes[i];
+        if (n > 0) text += fmt::format("  {:<8}{:>10}\n", name(static_cast<ShotStatus>(i)), n);
+    }
+    return text;
+}
+
+Variation read_variation(const SweepArgs& args) {
+    try {
+        return Variation(args.scene, args.vary, args.seed);
+    } catch (const VariationError& error) {
+        throw UsageError(fmt::format("--vary: {}", error.what()));
+    }
+}
+
+int run(const SweepArgs& args) {
+    if (args.count < 1 || args.count > kMostShots)
+        throw UsageError(fmt::format("--count: expected 1 to {} shots", kMostShots));
+    const ShotRange range = shard_range(args.shard, args.count);
+    const kernel::Isa isa = chosen_isa();
+    const Variation variation = read_variation(args);
+    for (const std::string& warning : make_plan(variation.base(), isa).warnings)
+        message("warning: " + warning);
+    // Each range of shots has a file of its own.
+    const std::uint64_t id =
+        variation.fingerprint() ^ (range.first * 0x9e3779b97f4a7c15u) ^ (range.last * 0xbf58476d1ce4e5b9u);
+    if (!args.shard.empty() && std::filesystem::is_regular_file(args.output))
+        throw UsageError(fmt::format(
+            "-o {}: this file is there, perhaps of another shard; give each its own, or remove it",
+            args.output));
+    const Sweep sweep{variation, isa};
+    RowsThere there;
+    PartialFile file(args.output, id,
+                     [&](long number, std::string_view row) { there.see(sweep, range, number, row); });
+    const std::uint64_t from = take_up(file, sweep, range, there);
+    if (range.header && file.lines() == 0) file.append(sweep_header(sweep.variation));
+    const unsigned jobs =
+        args.jobs > 0 ? static_cast<unsigned>(args.jobs) : std::max(1u, std::thread::hardware_concurrency());
+    const Clock::time_point start = Clock::now();
+    Outcomes outcomes{};
+    SweepStatus status(args.status, args.output, range.first, range.last, from);
+    try {
+        outcomes = write_rows(file, sweep, range, from, jobs, status);
+    } catch (const Interrupted&) {
+        file.flush();
+        status.end("stopped");
+        if (file.can_be_taken_up())
+            message(fmt::format("stopped; the same command goes on with {}", file.name()));
+        throw;
+    }
+    file.commit();
+    status.end("done");
+    print(summary(outcomes, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
+    const std::uint64_t failed = outcomes[static_cast<std::size_t>(ShotStatus::kFailed)] + there.failed;
+    if (failed == 0) return kOk;
+    message(fmt::format("{} failed while running; {} why", counted(failed, "shot"),
+                        failed == 1 ? "its row says" : "their rows say"));
+    return kFailed;
+}
+
+}  // namespace
+
+void add_sweep(Options& program) {
+    auto [command, args] = program.command<SweepArgs>(
+        "sweep", "Many shots of one scene with values that vary: a row a shot", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
+    Option& vary = command.option(
+        "--vary", &args.vary, "KEY=DISTRIBUTION",
+        "What varies and how, once per key: uniform(a,b), normal(sd) around the scene's value, "
+        "normal(mean,sd), integer(a,b) or list(v,...)");
+    vary.required = true;
+    command.option("--count", &args.count, "N", "Number of shots").required = true;
+    command.option("--seed", &args.seed, "S", "Seed of all draws");
+    command.option("--jobs", &args.jobs, "J", "Threads; 0: one per core; the rows do not depend on it")
+        .in(0, 256);
+    command.option("--shard", &args.shard, "I/N",
+                   "Only the I-th of N parts; the files of all parts, one behind the other, are the whole "
+                   "(default: all)");
+    command.option("--status", &args.status, "FILE",
+                   "How far it is, every second, as JSON (default: not written)");
+    command.option("-o,--output", &args.output, "FILE.csv", "Table to write").required = true;
+    command.footer =
+        "A sweep that was stopped or killed goes on when the same command is given again "
+        "(docs/guide/sweep.md).";
+}
+
+}  // namespace carom::tools

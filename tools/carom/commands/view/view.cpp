@@ -1,0 +1,102 @@
+// carom view: a shot as one page that plays it.
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/console.h"
+#include "base/frame_costs.h"
+#include "base/margin.h"
+#include "base/options.h"
+#include "base/setup.h"
+#include "page/shot_page.h"
+#include "report/margin_chart.h"
+#include "report/table.h"
+
+namespace carom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ViewArgs {
+    std::string input, second;  ///< a scene, or a record (.json); `second` may be empty
+    std::string output = "shot.html";
+    std::string gl = "osmesa";
+    bool margin = true;
+};
+
+/// A shot, and what its frames cost where that is known.
+struct MeasuredShot {
+    Record record;
+    Json margin = nullptr;  ///< a chart
+};
+
+/// Simulates and draws a scene once, and times both.
+MeasuredShot measured_scene(const ViewArgs& args) {
+    const Plan plan = plan_scene(args.input);
+    const RenderSettings& settings = plan.scene.render;
+    const FrameSettings drawn{{}, args.gl};
+    std::vector<MarginRun> runs;
+    runs.push_back(one_run(plan, &drawn, settings.fps, "the margin of every frame:"));
+    Margin margin = combine(runs, settings.fps, true);
+    margin.size = settings.size();
+    Json chart = margin_chart(margin, runs.front(), args.input);
+    return {std::move(runs.front().record), std::move(chart)};
+}
+
+/// A record has been simulated already. If that was profiled, it says what each frame of the simulation cost.
+MeasuredShot read_record_shot(const ViewArgs& args) {
+    std::vector<MarginRun> runs(1);
+    Record& record = runs.front().record;
+    record = read_shot(args.input, {});
+    if (!args.margin) return {std::move(record)};
+    if (record.costs.empty()) {
+        message(fmt::format(
+            "note: {}: the record is not profiled, so the page has no chart of frames; give the scene, or a "
+            "record of carom simulate --profile",
+            args.input));
+        return {std::move(record)};
+    }
+    const double fps = record.render.fps;
+    runs.front().frames = costs_by_frame(record, 0.0, fps, checked_frame_count(0.0, record.duration, fps));
+    for (const FrameCost& frame : runs.front().frames) add_simulation(runs.front(), frame);
+    Json chart = margin_chart(combine(runs, fps, false), runs.front(), args.input);
+    return {std::move(record), std::move(chart)};
+}
+
+MeasuredShot first_shot(const ViewArgs& args) {
+    if (is_record(args.input)) return read_record_shot(args);
+    if (args.margin) return measured_scene(args);
+    SimulateOptions options;
+    options.profile = true;
+    return {read_shot(args.input, options)};
+}
+
+int run(const ViewArgs& args) {
+    check_page_path("-o", args.output);
+    const MeasuredShot shot = first_shot(args);
+    std::optional<Record> second;
+    if (!args.second.empty()) second = read_shot(args.second, {});
+    const std::string title = second ? args.input + " and " + args.second : args.input;
+    const std::string html = shot_page(shot.record, second ? &*second : nullptr, shot.margin,
+                                       {title, command_line(), program_version()});
+    write_report(args.output, html);
+    print(fmt::format("{}: {}, {} kB\n", args.output, shot_lead(shot.record), (html.size() + 500) / 1000));
+    return kOk;
+}
+
+}  // namespace
+
+void add_view(Options& program) {
+    auto [command, args] = program.command<ViewArgs>("view", "A shot as one page that plays it", run);
+    command.argument("SCENE", args.input, "Scene file (TOML), or a record (.json)").required = true;
+    command.argument("SECOND", args.second, "Another one, over or beside it (default: none)");
+    command.option("-o,--output", &args.output, "FILE.html", "The page; FILE.html#t=1.5 opens at 1.5 s");
+    command.flag("--no-margin", args.margin, "Do not draw and time the frames (default: off)");
+    add_gl(command, args.gl);
+}
+
+}  // namespace carom::tools

@@ -1,0 +1,66 @@
+#include "page/shot_page.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "carom/render/draw_list.h"
+#include "page/page.h"
+#include "page/table_shape.h"
+
+namespace carom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json style_json(const render::BallStyle& style) {
+    constexpr std::array kPatterns = {"solid", "stripe", "dots", "halves"};
+    Json color = Json::array();
+    for (const float c : style.color) color.push_back(std::round(1e4 * c) / 1e4);
+    return {{"color", color},
+            {"pattern", kPatterns.at(static_cast<std::size_t>(style.pattern))},
+            {"number", style.number}};
+}
+
+/// What a page needs to know of a shot beside its record: the shape of the table, and the look of each ball as the
+/// renderer paints it.
+Json shot_json(const Record& record) {
+    const render::Stage stage(record, {});
+    Json styles = Json::array();
+    for (std::size_t i = 0; i < record.tracks.size(); ++i)
+        styles.push_back(
+            style_json(render::ball_style(record.tracks[i].id, record.table.preset, static_cast<int>(i))));
+    return {{"shape", table_shape(*stage.table())}, {"styles", styles}};
+}
+
+std::string counted(std::size_t count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::string shot_lead(const Record& record) {
+    return fmt::format("{}, {}, {:.3f} s", counted(record.tracks.size(), "ball"),
+                       counted(record.events.size(), "event"), record.duration);
+}
+
+std::string shot_page(const Record& record, const Record* second, const nlohmann::ordered_json& margin,
+                      const ShotPageTexts& texts) {
+    Json page = page_json(texts.title, shot_lead(record), texts.command, texts.version);
+    page.update(shot_json(record));
+    page["margin"] = margin;
+    std::vector<PageData> data = {{"shot", record_json(record)}};
+    if (second != nullptr) {
+        page["second"] = shot_json(*second);
+        data.push_back({"second", record_json(*second)});
+    }
+    data.push_back({"page", page.dump(-1, ' ', false, Json::error_handler_t::replace)});
+    return page_html(texts.title, {"dom.js", "motion.js", "look.js", "stage.js", "chart.js", "shot.js"},
+                     data);
+}
+
+}  // namespace carom::tools

@@ -1,0 +1,26 @@
+// The page that plays a shot: of `carom view`, and of a notebook.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "carom/engine/record.h"
+
+namespace carom::tools {
+
+/// What the page says about itself.
+struct ShotPageTexts {
+    std::string title;
+    /// How it was made, and by which version.
+    std::string command, version;
+};
+
+/// "16 balls, 212 events, 9.103 s"
+std::string shot_lead(const Record& record);
+
+/// The whole file. @param second  another shot to show over or beside the first; may be null
+/// @param margin  the chart of what its frames cost (margin_chart), or null
+std::string shot_page(const Record& record, const Record* second, const nlohmann::ordered_json& margin,
+                      const ShotPageTexts& texts);
+
+}  // namespace carom::tools

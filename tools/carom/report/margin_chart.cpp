@@ -1,0 +1,63 @@
+#include "report/margin_chart.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "carom/render/sequence.h"
+
+namespace carom::tools {
+namespace {
+
+double time_of(const Margin& margin, std::size_t frame) {
+    return render::frame_time(0.0, static_cast<long>(frame), margin.fps);
+}
+
+}  // namespace
+
+Plot margin_plot(const Margin& margin, const MarginRun& last, const std::string& scene) {
+    Plot plot;
+    plot.title = fmt::format("What each frame costs: {} at {} fps", scene, margin.fps);
+    plot.notes = {fmt::format("{}{} of {} frames missed; strokes below: contacts",
+                              margin.rendered ? fmt::format("{}x{}; ", margin.size.width, margin.size.height)
+                                              : std::string("simulation only; "),
+                              margin.missed, margin.total.size())};
+    plot.x = {"time of the shot, s", false, 0.0, {}};
+    plot.y = {"ms", true, {}, {}};
+    const auto add = [&](const char* title, const std::vector<double>& values, int colour, bool line = true) {
+        Series series{title, {}, line, !line, false, colour};
+        for (std::size_t k = 0; k < values.size(); ++k)
+            series.points.emplace_back(time_of(margin, k), values[k]);
+        plot.series.push_back(series);
+    };
+    if (margin.rendered) {
+        add("whole frame", margin.total, 6);
+        add("encode", margin.stage[kEncode], 7);
+        add("draw", margin.stage[kDraw], 0);
+    }
+    add("simulate (where not 0)", margin.stage[kSimulate], 1, false);
+    plot.levels = {{fmt::format("1/{} s", margin.fps), margin.budget_ms}};
+    constexpr std::array kKinds = {EventType::kBallBall, EventType::kBallCluster, EventType::kBallCushion,
+                                   EventType::kBallPocket};
+    for (const EventType kind : kKinds) {
+        Ticks ticks{name(kind), {}};
+        for (const Event& event : last.record.events)
+            if (event.type == kind) ticks.at.push_back(event.time);
+        if (!ticks.at.empty()) plot.ticks.push_back(ticks);
+    }
+    return plot;
+}
+
+nlohmann::ordered_json margin_chart(const Margin& margin, const MarginRun& last, const std::string& scene) {
+    nlohmann::ordered_json chart = chart_json(margin_plot(margin, last, scene));
+    chart["x"]["unit"] = "s";
+    chart["marks"] = {
+        {{"x", time_of(margin, margin.worst)},
+         {"y", margin.total[margin.worst]},
+         {"name", fmt::format("worst frame: {}, {:.3f} ms", margin.worst, margin.total[margin.worst])}}};
+    return chart;
+}
+
+}  // namespace carom::tools
