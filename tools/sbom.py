@@ -16,7 +16,7 @@ import sys
 import uuid
 
 # What stands in the build but is not shipped.
-NOT_SHIPPED = ("tests/", "tools/measure/", "python/")
+NOT_SHIPPED = ("tests/", "lab/", "python/")
 
 
 def output_of(*command, **options):

@@ -13,16 +13,17 @@ import urllib.parse
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 C_INTERFACE = "reference/c_interface.md"
-SECTIONS = ("guide", "reference", "design", "lab")
+SECTIONS = ("guide", "reference", "design")
 
 
 def navigation():
     index = (ROOT / "docs/README.md").read_text()
     paths = list(dict.fromkeys(re.findall(r"\]\(((?:%s)/[a-z0-9_-]+\.md)" % "|".join(SECTIONS), index, re.I)))
     paths.append(C_INTERFACE)
+    notes = [f"lab/{path}" for path in re.findall(r"\]\((notes/[a-z0-9_-]+\.md)\)", (ROOT / "lab/README.md").read_text())]
     sections = [{name.capitalize(): [f"docs/{path}" for path in paths if path.startswith(name + "/")]} for name in SECTIONS]
     return [{"carom": "README.md"}, {"Documents": "docs/README.md"}, *sections,
-            {"Contributing": "CONTRIBUTING.md"}, {"What is asserted": "tests/README.md"}, {"Changes": "CHANGELOG.md"}, {"Security": "SECURITY.md"}]
+            {"Laboratory": ["lab/README.md", *notes]}, {"Contributing": "CONTRIBUTING.md"}, {"What is asserted": "tests/README.md"}, {"Changes": "CHANGELOG.md"}, {"Security": "SECURITY.md"}]
 
 
 def configure(path):

@@ -59,7 +59,7 @@ bool has_v4() {
 }
 #endif
 
-// What was measured (docs/lab/2026-11-ladder.md): on this kind of processor, the fastest instruction set for each kernel, in the
+// What was measured (lab/notes/2026-11-ladder.md): on this kind of processor, the fastest instruction set for each kernel, in the
 // order of KernelKind.
 struct Measured {
     const char* processor;

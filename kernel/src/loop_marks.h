@@ -1,4 +1,4 @@
-// Comments in the assembly around the body of a loop, by which tools/measure/mca_kernel.py finds it. A build defines
+// Comments in the assembly around the body of a loop, by which lab/measure/mca_kernel.py finds it. A build defines
 // no CAROM_LOOP_MARKS, and the marks are empty.
 #pragma once
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Experiments E2 to E5 of docs/lab/2026-11-accuracy_experiments.md over seeded shots of four classes.
+"""Experiments E2 to E5 of lab/notes/2026-11-accuracy_experiments.md over seeded shots of four classes.
 
-    tools/measure/accuracy_experiments.py [--count 100] [--program build/release/carom] [--data FILE.json] [--images FOLDER]
-    tools/measure/accuracy_experiments.py --from FILE.json        # the tables again, from measurements kept
+    lab/measure/accuracy_experiments.py [--count 100] [--program build/release/carom] [--data FILE.json] [--images FOLDER]
+    lab/measure/accuracy_experiments.py --from FILE.json        # the tables again, from measurements kept
 
 Prints the tables as Markdown; --data keeps all measurements, --images draws the figures (python3-matplotlib).
 """

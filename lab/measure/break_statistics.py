@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What breaks bring, beside what was counted at tournaments: the table of docs/lab/2026-11-breaks.md.
+"""What breaks bring, beside what was counted at tournaments: the table of lab/notes/2026-11-breaks.md.
 
 Plays every kind of break with `carom sweep` (aim, speed, height of the tip and rack vary) and prints a Markdown table: how often a ball falls,
 how many, how often the cue ball falls, how often both is right, with 95 % intervals (Wilson). The same numbers on every machine.
 
-    tools/measure/break_statistics.py [--carom build/release/carom] [--count 2000] [-o docs/lab/2026-11-breaks.md]
+    lab/measure/break_statistics.py [--carom build/release/carom] [--count 2000] [-o lab/notes/2026-11-breaks.md]
 
 With -o the table between the marks <!-- begin breaks --> and <!-- end breaks --> of that page is written anew.
 """

@@ -4,7 +4,7 @@
 Valgrind knows AVX2 and not AVX-512: scalar and v3. Two runs of different length are subtracted, so that start-up does not
 count. Where a machine gives perf its hardware counters, --perf adds those.
 
-    tools/measure/cachegrind_kernel.py --one-rung build/release/tools/measure/carom_one_rung [--json FILE] [--perf]
+    lab/measure/cachegrind_kernel.py --one-rung build/release/lab/measure/carom_one_rung [--json FILE] [--perf]
 """
 import argparse
 import json

@@ -5,10 +5,10 @@ Callgrind writes out its counters at the start of every round of the event loop,
 are the same on every machine that runs the same build. Valgrind knows AVX2 and not AVX-512: CAROM_ISA is v3 or scalar.
 Needs valgrind; builds the target carom_shot_probe where --build names a build folder (default build/release).
 
-    tools/measure/callgrind_shot.py                              the eight-ball break, pair by pair
-    tools/measure/callgrind_shot.py two_ball_shot --seed 3 --functions 20
-    tools/measure/callgrind_shot.py gas --balls 100 --events 500
-    tools/measure/callgrind_shot.py --branches --functions 10    branches that callgrind's simple predictor misses, in place of instructions
+    lab/measure/callgrind_shot.py                              the eight-ball break, pair by pair
+    lab/measure/callgrind_shot.py two_ball_shot --seed 3 --functions 20
+    lab/measure/callgrind_shot.py gas --balls 100 --events 500
+    lab/measure/callgrind_shot.py --branches --functions 10    branches that callgrind's simple predictor misses, in place of instructions
 """
 import argparse
 import collections
@@ -82,7 +82,7 @@ def measure(probe, args, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("shot", nargs="?", default="eight_ball_break",
-                        help="a name of carom bench shot, or gas (default: eight_ball_break)")
+                        help="a name of carom-lab bench shot, or gas (default: eight_ball_break)")
     parser.add_argument("--seed", type=int, default=0, help="of the shot (default: 0, the one of scenes/)")
     parser.add_argument("--balls", type=int, default=16, help="of the gas (default: 16)")
     parser.add_argument("--events", type=int, default=300, help="of the gas (default: 300)")

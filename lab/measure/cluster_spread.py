@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What the model of several contacts at once costs, and how far it decides a break: compliant, rigid, sequential.
 
-    tools/measure/cluster_spread.py build/release/carom -o docs/images/cluster_spread.png
+    lab/measure/cluster_spread.py build/release/carom -o lab/notes/images/cluster_spread.png
 
 Plays the same seeded breaks (aim and speed vary a little) of racks with gaps from 0 to 1e-4 m under each model, and stops
 them before the balls reach a cushion. Compares the places of the balls there: under one model against its touching

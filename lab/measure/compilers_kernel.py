@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The same rungs built by several compilers and with several flags, interleaved in one run.
 
-    tools/measure/compilers_kernel.py gcc=BUILD/carom_one_rung clang=OTHER/carom_one_rung [--json FILE]
+    lab/measure/compilers_kernel.py gcc=BUILD/carom_one_rung clang=OTHER/carom_one_rung [--json FILE]
 """
 import argparse
 import json

@@ -6,7 +6,7 @@ each row: with other constants of its step rule, or for callgrind, where needed.
 N = 1000 on the first of the five states, timed in the same run. The error is the largest difference of a velocity or R w from steps of
 at most 1/1280 with an error of 1e-8 [V], over 20 racks (gaps to 0.2 mm, off-axis, spin). Needs g++, and valgrind for --parts.
 
-    tools/measure/contact_phase.py [--parts] [--isa v3] [--rounds 200]
+    lab/measure/contact_phase.py [--parts] [--isa v3] [--rounds 200]
 """
 import argparse
 import collections
@@ -24,7 +24,7 @@ PROBE = r"""
 #include <cstdlib>
 #include <cstring>
 #include <vector>
-#include "bench/clock.h"
+#include "base/clock.h"
 #include "bench/five_states.h"
 #include "kernel_set.h"
 #include "reference/random_impacts.h"

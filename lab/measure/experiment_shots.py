@@ -1,4 +1,4 @@
-"""Seeded shots for the experiments of docs/lab/2026-11-accuracy_experiments.md, as scene files: straight, cut, three cushions, break."""
+"""Seeded shots for the experiments of lab/notes/2026-11-accuracy_experiments.md, as scene files: straight, cut, three cushions, break."""
 import math
 import random
 

@@ -6,7 +6,7 @@ is `simulate_many` with the arrays of the same strikes and places, and nothing e
 CPU time of the thread, one thread; the least of the rounds, and the medians of the ratios of a round: of the judged batch and of a step to the plain batch. With --pooltool also an environment over pooltool 0.6.0 with the same actions and layouts on its own table and models, in
 a throw-away virtual environment (PyPI; side_by_side_shots.py knows what it needs). Neither the build nor a test needs this script.
 
-    tools/measure/gym_speed.py [--package build/release/python] [--rounds 15] [--pooltool]
+    lab/measure/gym_speed.py [--package build/release/python] [--rounds 15] [--pooltool]
 
 Needs gymnasium: run it with build/python-env/bin/python, which tools/test makes.
 """

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Draws the figures of docs/lab/2026-11-ladder.md (matplotlib).
+"""Draws the figures of lab/notes/2026-11-ladder.md (matplotlib).
 
-    carom bench kernel --json > bench.json
-    tools/measure/mca_kernel.py --cxx g++ clang++ --json mca.json
-    tools/measure/cachegrind_kernel.py --one-rung .../carom_one_rung --json cachegrind.json
-    tools/measure/compilers_kernel.py gcc=... clang=... --json compilers.json
+    carom-lab bench kernel --json > bench.json
+    lab/measure/mca_kernel.py --cxx g++ clang++ --json mca.json
+    lab/measure/cachegrind_kernel.py --one-rung .../carom_one_rung --json cachegrind.json
+    lab/measure/compilers_kernel.py gcc=... clang=... --json compilers.json
     carom_count_operations > counts.json
-    tools/measure/kernel_figures.py DIRECTORY_WITH_THE_FIVE docs/images
+    lab/measure/kernel_figures.py DIRECTORY_WITH_THE_FIVE lab/notes/images
 """
 import json
 import pathlib

@@ -6,7 +6,7 @@ kernel/src/loop_marks.h, and simulates it with the way back to its top. The fall
 that the compiler moved out of line (a step that falls back, a lane that flips) is not part of it. llvm-mca 14 knows
 znver1..3 and, for AArch64, apple-m1.
 
-    tools/measure/mca_kernel.py [--cxx g++] [--json FILE]
+    lab/measure/mca_kernel.py [--cxx g++] [--json FILE]
 """
 import argparse
 import json
@@ -73,7 +73,7 @@ def assembly(cxx, source, level, folder):
     path.write_text(source)
     command = [cxx, "-std=c++20", "-O3", f"-march=x86-64-{level}", "-ffp-contract=off", "-DCAROM_LOOP_MARKS", "-w",
                f"-I{ROOT}/kernel/include", f"-I{ROOT}/kernel/src", f"-I{ROOT}/kernel", "-S", "-o", "-", str(path)]
-    if source != PLAIN:  # as kernel/ladder/CMakeLists.txt builds it
+    if source != PLAIN:  # as lab/ladder/CMakeLists.txt builds it
         command.append("-fno-math-errno")
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""The study of a million breaks (docs/lab/2026-11-million_breaks.md): what falls, over aim and speed, as a map and as a table.
+"""The study of a million breaks (lab/notes/2026-11-million_breaks.md): what falls, over aim and speed, as a map and as a table.
 
-    tools/measure/million_breaks.py FOLDER -o map.png
+    lab/measure/million_breaks.py FOLDER -o map.png
 
-FOLDER holds the shards that python -m carom.sweep makes of docs/lab/2026-11-million_breaks.json. Needs duckdb and matplotlib from PyPI.
+FOLDER holds the shards that python -m carom.sweep makes of lab/notes/2026-11-million_breaks.json. Needs duckdb and matplotlib from PyPI.
 """
 
 import argparse

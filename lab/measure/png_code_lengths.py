@@ -3,7 +3,7 @@
 and cameras. Also prints how large the frames become with them, and with codes of their own, beside zlib's level 1 without filters.
 
     cmake --build --preset release --target carom_program
-    tools/measure/png_code_lengths.py [BUILD_FOLDER]
+    lab/measure/png_code_lengths.py [BUILD_FOLDER]
 """
 import pathlib
 import subprocess

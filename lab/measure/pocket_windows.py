@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""How much room a pocket leaves: the tables of docs/lab/2026-11-pockets.md.
+"""How much room a pocket leaves: the tables of lab/notes/2026-11-pockets.md.
 
 A ball rolls at a corner from 0.6 m away, at several speeds and angles to the long rail; its line is shifted sideways until it no longer
 drops at that visit. The window is the width [mm] of the lines that drop. The second table has balls beside the rail: of 24
 (0 to 5 mm from it, 1 degree away from it to 2 degrees into it), how many drop.
 
-    tools/measure/pocket_windows.py [--carom build/release/carom] [--table nine_foot] [--pocket fall] [--step 1.0]
+    lab/measure/pocket_windows.py [--carom build/release/carom] [--table nine_foot] [--pocket fall] [--step 1.0]
 """
 import argparse
 import json

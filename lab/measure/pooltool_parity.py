@@ -6,7 +6,7 @@ impacts one by one (the states before and after every impact stand in the file),
 continuize() of pooltool on every record of scenes/ that save writes, beside the states of the record. Needs PyPI, or with --python an
 interpreter that has pooltool; neither the build nor a test needs this script.
 
-    tools/measure/pooltool_parity.py [--package build/release/python] [--shots 20] [--python PYTHON]
+    lab/measure/pooltool_parity.py [--package build/release/python] [--shots 20] [--python PYTHON]
 """
 import argparse
 import glob

@@ -4,7 +4,7 @@
 The batch of the engine is carom_simulate_many of libcarom.so, which hands its arrays to the engine as they are. Both play the same
 shots from the same arrays on one thread. CPU time of the thread, the least of the rounds and the median of the ratios.
 
-    tools/measure/python_speed.py [--package build/release/python] [--library build/release/capi/libcarom.so] [--rounds 15]
+    lab/measure/python_speed.py [--package build/release/python] [--library build/release/capi/libcarom.so] [--rounds 15]
 """
 import argparse
 import ctypes

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Measures anew what the lab notes about accuracy and margins show: their figures in docs/images, and the tables between the marks
-<!-- begin NAME --> and <!-- end NAME -->. It writes notes of docs/lab/ only; the notes of another month are named by --accuracy and --margins
+"""Measures anew what the lab notes about accuracy and margins show: their figures, and the tables between the marks
+<!-- begin NAME --> and <!-- end NAME -->. It writes notes of lab/notes/ only; the notes of another month are named by --accuracy and --margins
 (copy the old ones first: a note is not changed later). Best on a machine with nothing else to do.
 
-    cmake --build --preset release --target carom_program carom_detectors
-    tools/measure/renew_reports.py [--quick] [--only NAME ...]
+    cmake --build --preset release --target carom_lab_program carom_detectors
+    lab/measure/renew_reports.py [--quick] [--only NAME ...]
 
 Takes about a quarter of an hour; --quick takes about three minutes and measures less. Needs python3-matplotlib.
 """
@@ -18,7 +18,15 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-IMAGES = ROOT / "docs/images"
+DOC_IMAGES = ROOT / "docs/images"
+NOTE_IMAGES = ROOT / "lab/notes/images"
+
+
+def image(name):
+    """A figure that a page of docs shows, too, stands among the pictures of docs."""
+    folder = DOC_IMAGES if (DOC_IMAGES / name).exists() else NOTE_IMAGES
+    return folder / name
+
 BREAK = "scenes/eight_ball_break.toml"
 THROW = "scenes/half_ball_throw.toml"
 
@@ -35,7 +43,7 @@ class Renewal:
         return done.stdout
 
     def carom(self, *arguments):
-        return self.call(self.build / "carom", *arguments)
+        return self.call(self.build / "carom-lab", *arguments)
 
     def machine(self):
         commit = self.call("git", "describe", "--always", "--dirty").strip()
@@ -50,7 +58,7 @@ class Renewal:
 
     def kernel(self):
         result = json.loads(self.carom("accuracy", "kernel", "--json", "--count", 200 if self.quick else 2000,
-                                       "--plot", IMAGES / "accuracy_kernel.svg"))
+                                       "--plot", image("accuracy_kernel.svg")))
         ns = lambda x: "-" if x is None else f"{x:.0f}"  # noqa: E731
         text = "| method | kind | 1e-3 | 1e-6 | 1e-9 | 1e-12 |\n|---|---|---|---|---|---|\n"
         reach = result["reach"]
@@ -66,8 +74,8 @@ class Renewal:
                          f"{r['error_max']:.1e} |\n")
         return text
 
-    def scene(self, path, image, *more):
-        result = json.loads(self.carom("accuracy", path, "--box2d", "--json", "--plot", IMAGES / image, *more))
+    def scene(self, path, figure, *more):
+        result = json.loads(self.carom("accuracy", path, "--box2d", "--json", "--plot", image(figure), *more))
         text = "| method | setting | us (minimum, median) | kernel | clusters | final error (m) | outcome |\n|---|---|---|---|---|---|---|\n"
         for r in result["rows"]:
             share = lambda x: "" if x is None else f"{100 * x:.0f} %"  # noqa: E731
@@ -86,19 +94,19 @@ class Renewal:
         return self.scene(THROW, "accuracy_throw.svg")
 
     def experiments(self):
-        out = self.call(sys.executable, ROOT / "tools/measure/accuracy_experiments.py", "--program", self.build / "carom", "--count",
-                        20 if self.quick else 100, "--noise-count", 5 if self.quick else 25, "--images", IMAGES)
+        out = self.call(sys.executable, ROOT / "lab/measure/accuracy_experiments.py", "--program", self.build / "carom", "--count",
+                        20 if self.quick else 100, "--noise-count", 5 if self.quick else 25, "--images", NOTE_IMAGES)
         return re.sub("^### ", "#### ", out.strip(), flags=re.M) + "\n"
 
     def detectors(self):
-        return self.call(self.build / "tools/measure/carom_detectors", 2000 if self.quick else 20000)
+        return self.call(self.build / "lab/measure/carom_detectors", 2000 if self.quick else 20000)
 
     def margin(self):
         text = ("| size | fps | budget | p50 | p99 | worst | missed | without files | simulate p99 | draw p50 | read p50 | encode p50 | "
                 "write p50 | parts / wall |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n")
         for size in ("1280x720", "1920x1080"):
             for fps in (60, 120, 240):
-                plot = ["--plot", IMAGES / "margin_break.svg"] if (size, fps) == ("1280x720", 60) else []
+                plot = ["--plot", image("margin_break.svg")] if (size, fps) == ("1280x720", 60) else []
                 m = json.loads(self.carom("margin", BREAK, "--json", "--fps", fps, "--size", size, "--repeat", 1 if self.quick else 3,
                                           *plot))
                 s = m["stages"]
@@ -106,7 +114,7 @@ class Renewal:
                          f"{m['worst']['ms']:.2f} | {m['missed']} of {m['frames']} | {m['missed_without_files']} | "
                          f"{s['simulate']['p99']:.3f} | {s['draw']['p50']:.2f} | {s['readback']['p50']:.2f} | {s['encode']['p50']:.2f} | "
                          f"{s['write']['p50']:.2f} | {100 * m['serial']['share']:.1f} % |\n")
-        m = json.loads(self.carom("margin", BREAK, "--json", "--no-render", "--repeat", 9, "--plot", IMAGES / "margin_simulation.svg"))
+        m = json.loads(self.carom("margin", BREAK, "--json", "--no-render", "--repeat", 9, "--plot", image("margin_simulation.svg")))
         t, s = m["timing"], m["stages"]["simulate"]
         return (text + f"\nms. Simulation alone (`--no-render --repeat 9`): its worst frame takes {s['max']:.3f} ms, p99 {s['p99']:.3f} ms. "
                 f"Timing itself: {t['simulate_timed_ms']:.3f} ms with, {t['simulate_ms']:.3f} ms without ({100 * t['share']:+.1f} %), "
@@ -114,9 +122,9 @@ class Renewal:
 
     def sweep(self):
         text = ""
-        for more, image, title in ((["--no-render"], "margin_sweep.svg", "Simulation only"), ([], "margin_sweep_drawn.svg", "Drawn at 720p")):
+        for more, figure, title in ((["--no-render"], "margin_sweep.svg", "Simulation only"), ([], "margin_sweep_drawn.svg", "Drawn at 720p")):
             result = json.loads(self.carom("margin", BREAK, "--sweep", "--json", "--repeat", 1 if self.quick else 3, "--plot",
-                                           IMAGES / image, *more))
+                                           image(figure), *more))
             rates = sorted({r["fps"] for r in result["rows"]})
             text += f"{title}: frames missed (worst frame in % of its time)\n\n| setting | " + " | ".join(f"{f:g} fps" for f in rates)
             text += " | real time up to |\n|---" + "|---" * (len(rates) + 1) + "|\n"
@@ -134,8 +142,8 @@ MARGINS = ("machine", "margin", "sweep")
 
 def lab_note(name):
     path = (ROOT / name).resolve()
-    if path.parent != ROOT / "docs/lab" or not path.is_file():
-        raise argparse.ArgumentTypeError(f"{name} is no note of docs/lab/")
+    if path.parent != ROOT / "lab/notes" or not path.is_file():
+        raise argparse.ArgumentTypeError(f"{name} is no note of lab/notes/")
     return path
 
 
@@ -143,8 +151,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default=str(ROOT / "build/release"))
     parser.add_argument("--quick", action="store_true", help="fewer impacts, shots and repeats")
-    parser.add_argument("--accuracy", type=lab_note, default="docs/lab/2026-11-accuracy_experiments.md", help="note to write (%(default)s)")
-    parser.add_argument("--margins", type=lab_note, default="docs/lab/2026-11-margins.md", help="note to write (%(default)s)")
+    parser.add_argument("--accuracy", type=lab_note, default="lab/notes/2026-11-accuracy_experiments.md", help="note to write (%(default)s)")
+    parser.add_argument("--margins", type=lab_note, default="lab/notes/2026-11-margins.md", help="note to write (%(default)s)")
     names = sorted({*ACCURACY, *MARGINS})
     parser.add_argument("--only", nargs="+", choices=names, help="renew these only (default: all)")
     options = parser.parse_args()

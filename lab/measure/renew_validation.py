@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Writes anew what docs/reference/validation.md shows of `carom validate`: its table between the marks <!-- begin summary --> and
+"""Writes anew what docs/reference/validation.md shows of `carom-lab validate`: its table between the marks <!-- begin summary --> and
 <!-- end summary -->, and its figures in docs/images. The same on every machine.
 
-    cmake --build --preset release --target carom_program
-    tools/measure/renew_validation.py [--carom build/release/carom] [--check]
+    cmake --build --preset release --target carom_lab_program
+    lab/measure/renew_validation.py [--carom build/release/carom-lab] [--check]
 
 --check writes nothing and fails where the page or a figure is not what the program prints.
 """
@@ -57,7 +57,7 @@ def summary(all_rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--carom", default=str(ROOT / "build/release/carom"))
+    parser.add_argument("--carom", default=str(ROOT / "build/release/carom-lab"))
     parser.add_argument("--check", action="store_true", help="write nothing, and fail where something is stale")
     args = parser.parse_args()
     new = {}
@@ -73,7 +73,7 @@ def main():
     new[PAGE] = page
     stale = [name for name, text in new.items() if not (ROOT / name).exists() or (ROOT / name).read_text() != text]
     if args.check and stale:
-        sys.exit(f"stale: {', '.join(stale)}; run tools/measure/renew_validation.py")
+        sys.exit(f"stale: {', '.join(stale)}; run lab/measure/renew_validation.py")
     for name in stale:
         (ROOT / name).write_text(new[name])
     print(f"renewed: {', '.join(stale)}" if stale else f"{PAGE} and its figures are what the program prints")

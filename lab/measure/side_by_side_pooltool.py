@@ -3,9 +3,9 @@
 
 Makes a throw-away virtual environment, installs pooltool-billiards 0.6.0 (PyPI, --no-deps) with what its impact function
 imports, and times pooltool.physics.resolve.ball_ball.frictional_mathavan.collide_balls on the paper's five states,
-interleaved with `carom bench kernel`. Needs PyPI; neither the build nor a test needs this script.
+interleaved with `carom-lab bench kernel`. Needs PyPI; neither the build nor a test needs this script.
 
-    tools/measure/side_by_side_pooltool.py [--carom build/release/carom] [--rounds 3]
+    lab/measure/side_by_side_pooltool.py [--carom build/release/carom-lab] [--rounds 3]
 """
 import argparse
 import json
@@ -81,7 +81,7 @@ def time_original():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--carom", default=str(ROOT / "build" / "release" / "carom"))
+    parser.add_argument("--carom", default=str(ROOT / "build" / "release" / "carom-lab"))
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
     args = parser.parse_args()

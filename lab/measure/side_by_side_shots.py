@@ -8,7 +8,7 @@ positions, aims and speeds on the seven-foot table with the same coefficients an
 cushion, pair by pair. CPU time of the thread. The first shots of pooltool, which compile it, are not counted. FastFiz is not
 on PyPI (sources: github.com/ekiefl/FastFiz); it is not compared. Needs PyPI; neither the build nor a test needs this script.
 
-    tools/measure/side_by_side_shots.py [--package build/release/python] [--shots 10]
+    lab/measure/side_by_side_shots.py [--package build/release/python] [--shots 10]
 """
 import argparse
 import contextlib

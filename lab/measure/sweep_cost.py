@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What sweeps in shards cost: CPU time beside the batch of the engine and beside `carom sweep`, bytes of a row, memory of the client.
 
-    PYTHONPATH=build/release/python tools/measure/sweep_cost.py [--rounds 9]
+    PYTHONPATH=build/release/python lab/measure/sweep_cost.py [--rounds 9]
 
 Everything on one thread, in turns; medians over the rounds. Needs numpy and pyarrow.
 """

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A map of a sweep: how often a condition holds, over two of the values that were varied.
 
-    tools/measure/sweep_map.py bank.csv cue.aim_deg cue.speed 1.pocket=p2 -o map.png
+    lab/measure/sweep_map.py bank.csv cue.aim_deg cue.speed 1.pocket=p2 -o map.png
 
 Reads the table of carom sweep; needs python3-matplotlib.
 """

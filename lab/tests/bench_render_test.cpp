@@ -1,4 +1,4 @@
-// What carom bench render refuses.
+// What carom-lab bench render refuses.
 #include "bench/render.h"
 
 #include <gtest/gtest.h>

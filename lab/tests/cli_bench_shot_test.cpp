@@ -1,4 +1,4 @@
-// carom bench shot: what it prints. Times are measured, and no test asserts one; events and bytes are counts.
+// carom-lab bench shot: what it prints. Times are measured, and no test asserts one; events and bytes are counts.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "cli.h"
+#include "lab_cli.h"
 
 namespace carom::test {
 namespace {
@@ -14,8 +14,8 @@ namespace {
 using Json = nlohmann::json;
 
 TEST(CliBenchShot, RowsAreWhole) {
-    const ProcessResult result =
-        carom_isa("scalar", {"bench", "shot", "--json", "--seeds", "2", "--repeat", "1", "--events", "200"});
+    const ProcessResult result = carom_lab_isa(
+        "scalar", {"bench", "shot", "--json", "--seeds", "2", "--repeat", "1", "--events", "200"});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json json = Json::parse(result.out);
     const double baseline = json.at("baseline_ns").get<double>();
@@ -79,17 +79,17 @@ TEST(CliBenchShot, RowsAreWhole) {
 
 TEST(CliBenchShot, PrintsATable) {
     const ProcessResult result =
-        carom_isa("scalar", {"bench", "shot", "--seeds", "1", "--repeat", "1", "--no-growth"});
+        carom_lab_isa("scalar", {"bench", "shot", "--seeds", "1", "--repeat", "1", "--no-growth"});
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_NE(result.out.find("two_ball_shot"), std::string::npos);
     EXPECT_EQ(result.out.find("bytes/ball"), std::string::npos);
 }
 
 TEST(CliBenchShot, RefusesBadUsage) {
-    EXPECT_EQ(carom({"bench", "shot", "--seeds", "0"}).status, 2);
-    EXPECT_EQ(carom({"bench", "shot", "--events", "5"}).status, 2);
-    EXPECT_EQ(carom({"bench", "shot", "--what"}).status, 2);
-    EXPECT_EQ(carom_isa("v5", {"bench", "shot", "--no-growth"}).status, 2);
+    EXPECT_EQ(carom_lab({"bench", "shot", "--seeds", "0"}).status, 2);
+    EXPECT_EQ(carom_lab({"bench", "shot", "--events", "5"}).status, 2);
+    EXPECT_EQ(carom_lab({"bench", "shot", "--what"}).status, 2);
+    EXPECT_EQ(carom_lab_isa("v5", {"bench", "shot", "--no-growth"}).status, 2);
 }
 
 }  // namespace

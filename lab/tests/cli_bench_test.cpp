@@ -1,4 +1,4 @@
-// carom bench kernel: what it prints. Times are measured, and
+// carom-lab bench kernel: what it prints. Times are measured, and
 // no test asserts one; counts and differences are the kernel's.
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "carom/kernel/isa.h"
-#include "cli.h"
+#include "lab_cli.h"
 
 namespace carom::test {
 namespace {
@@ -19,8 +19,8 @@ using Json = nlohmann::json;
 // Two forms; bench_kernel_test looks at the names of all.
 TEST(CliBench, KernelRowsAreWhole) {
     const ProcessResult result =
-        carom_isa("scalar", {"bench", "kernel", "--json", "--random", "40", "--repeat", "2", "--only",
-                             "march reduced", "--only", "tolerance 1e-6", "--only", "march baseline"});
+        carom_lab_isa("scalar", {"bench", "kernel", "--json", "--random", "40", "--repeat", "2", "--only",
+                                 "march reduced", "--only", "tolerance 1e-6", "--only", "march baseline"});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json json = Json::parse(result.out);
     const auto value = [](const Json& row, const char* key) { return row.at(key).get<double>(); };
@@ -78,8 +78,8 @@ TEST(CliBench, KernelRowsAreWhole) {
 
 TEST(CliBench, PrintsATable) {
     const ProcessResult result =
-        carom_isa("scalar", {"bench", "kernel", "--random", "10", "--repeat", "1", "--no-growth", "--only",
-                             "march summed", "--only", "tolerance 1e-3"});
+        carom_lab_isa("scalar", {"bench", "kernel", "--random", "10", "--repeat", "1", "--no-growth",
+                                 "--only", "march summed", "--only", "tolerance 1e-3"});
     EXPECT_EQ(result.status, 0) << result.err;
     int summed = 0, tolerance = 0;
     for (const std::string& line : lines_of(result.out)) {
@@ -95,7 +95,7 @@ TEST(CliBench, PrintsATable) {
 TEST(CliBench, AnUnknownFormIsRefusedWithTheNamesThereAre) {
     for (const char* name : {"march nothing", "march reduced stat", "tolerance 1e-1", "", "fma"}) {
         const ProcessResult result =
-            carom_isa("scalar", {"bench", "kernel", "--only", "march baseline", "--only", name});
+            carom_lab_isa("scalar", {"bench", "kernel", "--only", "march baseline", "--only", name});
         EXPECT_EQ(result.status, 2) << name;
         EXPECT_EQ(result.out, "") << name;
         EXPECT_NE(result.err.find("--only: there is no form \"" + std::string(name) + "\""),
@@ -107,10 +107,29 @@ TEST(CliBench, AnUnknownFormIsRefusedWithTheNamesThereAre) {
 }
 
 TEST(CliBench, RefusesBadUsage) {
-    EXPECT_EQ(carom({"bench"}).status, 2);
-    EXPECT_EQ(carom({"bench", "nothing"}).status, 2);
-    EXPECT_EQ(carom({"bench", "kernel", "--random", "0"}).status, 2);
-    EXPECT_EQ(carom_isa("v5", {"bench", "kernel"}).status, 2);
+    EXPECT_EQ(carom_lab({"bench"}).status, 2);
+    EXPECT_EQ(carom_lab({"bench", "nothing"}).status, 2);
+    EXPECT_EQ(carom_lab({"bench", "kernel", "--random", "0"}).status, 2);
+    EXPECT_EQ(carom_lab_isa("v5", {"bench", "kernel"}).status, 2);
+}
+
+TEST(CliBenchRender, GivesItsRows) {
+    const TemporaryFolder folder;
+    const std::string scene_ = folder.write("s.toml", kSmallScene);
+    EXPECT_EQ(carom_lab({"bench", "render", scene_, "--frames", "2"}).status, 2);
+    const ProcessResult rows = carom_lab({"bench", "render", scene_, "--frames", "3", "--json"});
+    ASSERT_EQ(rows.status, 0) << rows.err;
+    const auto json = nlohmann::json::parse(rows.out);
+    std::vector<std::string> names;
+    for (const auto& row : json.at("rows")) names.push_back(row.at("name"));
+    EXPECT_EQ(names, (std::vector<std::string>{"720p", "1080p", "1080p follow", "2160p"}));
+    EXPECT_EQ(json.at("rows")[2].at("encoded_share"), 1.0);  // its camera moves
+    EXPECT_LT(json.at("rows")[3].at("encoded_share"), 0.5);
+    for (const auto& row : json.at("rows")) {
+        for (const char* figure : {"draw_ms", "readback_ms", "draw_readback_p95_ms", "encode_ms",
+                                   "encoded_share", "write_ms", "setup_ms", "fps"})
+            EXPECT_GT(row.at(figure).get<double>(), 0.0) << figure;
+    }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// carom validate: what it prints and writes. Whether the numbers are as claimed is tested in validate_test.cpp.
+// carom-lab validate: what it prints and writes. Whether the numbers are as claimed is tested in validate_test.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli.h"
+#include "lab_cli.h"
 
 namespace carom::test {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 TEST(CliValidate, JsonHasARowANumberAndVariant) {
-    const ProcessResult result = carom({"validate", "V2", "--json"});
+    const ProcessResult result = carom_lab({"validate", "V2", "--json"});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json json = Json::parse(result.out);
     ASSERT_EQ(json.size(), 1u);
@@ -44,7 +44,7 @@ TEST(CliValidate, JsonHasARowANumberAndVariant) {
 
 // Where a number misses, that is a finding and no failure.
 TEST(CliValidate, ForPeople) {
-    const ProcessResult result = carom({"validate", "V2"});
+    const ProcessResult result = carom_lab({"validate", "V2"});
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.err, "");
     const std::vector<std::string> lines = lines_of(result.out);
@@ -55,9 +55,9 @@ TEST(CliValidate, ForPeople) {
 }
 
 TEST(CliValidate, ASharePlaysItsShotsTheSameWayEachTime) {
-    const ProcessResult first = carom({"validate", "V19", "--json"});
+    const ProcessResult first = carom_lab({"validate", "V19", "--json"});
     ASSERT_EQ(first.status, 0) << first.err;
-    EXPECT_EQ(first.out, carom_isa("scalar", {"validate", "V19", "--json"}).out);
+    EXPECT_EQ(first.out, carom_lab_isa("scalar", {"validate", "V19", "--json"}).out);
     const Json row = Json::parse(first.out).at("cases").at(0);
     EXPECT_TRUE(row.at("ball").is_null());
     EXPECT_EQ(row.at("quantity"), "share");
@@ -68,7 +68,7 @@ TEST(CliValidate, TableAndFiguresAsFiles) {
     const TemporaryFolder folder;
     for (const std::string id : {"V3", "V5", "V20"}) {
         const ProcessResult result =
-            carom({"validate", id, "--csv", folder.file("v.csv"), "--plot", folder.file("v.svg")});
+            carom_lab({"validate", id, "--csv", folder.file("v.csv"), "--plot", folder.file("v.svg")});
         ASSERT_EQ(result.status, 0) << result.err;
         const std::vector<std::string> lines = lines_of(read_file(folder.file("v.csv")));
         EXPECT_EQ(lines.at(0).substr(0, 25), "case,title,shot,quantity,");
@@ -81,7 +81,7 @@ TEST(CliValidate, TableAndFiguresAsFiles) {
 }
 
 TEST(CliValidate, AnUnknownCaseListsThem) {
-    const ProcessResult result = carom({"validate", "V99"});
+    const ProcessResult result = carom_lab({"validate", "V99"});
     EXPECT_EQ(result.status, 2);
     EXPECT_EQ(result.out, "");
     EXPECT_TRUE(contains(result.err, "carom: validate: there is no case V99; the cases are V1, V2, "))

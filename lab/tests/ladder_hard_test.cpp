@@ -8,9 +8,9 @@
 
 #include "ladder/ladder.h"
 #include "reference/random_impacts.h"
+#include "rung_runner.h"
 #include "support/hard_impacts.h"
 #include "support/impact_cases.h"
-#include "support/rung_runner.h"
 
 namespace carom::test {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "ladder/rungs.h"
 #include "reference/random_impacts.h"
+#include "rung_runner.h"
 #include "support/impact_cases.h"
-#include "support/rung_runner.h"
 
 namespace carom::test {
 using reference::BatchArrays;

@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Validation, testing::ValuesIn(all_files()),
 TEST(ValidationCases, AreThoseOfTheFolderInTheirOrder) {
     std::vector<std::string> ids;
     for (const CaseFile& file : case_files()) {
-        EXPECT_EQ(file.text, test::read_source("tests/data/validation/" + std::string(file.name)));
+        EXPECT_EQ(file.text, test::read_source("lab/data/validation/" + std::string(file.name)));
         ids.push_back(read_case(file).id);
     }
     std::vector<std::string> expected;

@@ -1,5 +1,5 @@
 // What each effect costs, and profiling: a bare scene, and the same with one thing added. For
-// tools/measure/effects_cost and the callgrind test.
+// lab/measure/effects_cost and the callgrind test.
 //
 //   effects_probe list           names of the cases, with the effect's own functions and how the case differs
 //   effects_probe run CASE N     N runs of one case; prints the events of one run

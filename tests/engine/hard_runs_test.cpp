@@ -219,7 +219,7 @@ TEST(HardRuns, Restart) {
     }
 }
 
-// Three of the million breaks of docs/lab/2026-11-million_breaks.md in which a held ball was left with 1e-13 m/s, and took days to stop.
+// Three of the million breaks of lab/notes/2026-11-million_breaks.md in which a held ball was left with 1e-13 m/s, and took days to stop.
 TEST(HardRuns, WhatFrictionStopsAtOnceDoesNotCreep) {
     const struct {
         const char *aim, *speed, *seed;

@@ -1,4 +1,4 @@
-// Jams that a scan of crowded scenes found (support/crowded_scenes.h, docs/lab/2026-11-jams.md): they end, and keep the laws.
+// Jams that a scan of crowded scenes found (support/crowded_scenes.h, lab/notes/2026-11-jams.md): they end, and keep the laws.
 #include <gtest/gtest.h>
 
 #include <cstddef>

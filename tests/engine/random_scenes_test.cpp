@@ -260,7 +260,7 @@ TEST(CrowdedScenes, GoOnWithTheSameBits) {
     EXPECT_GT(held, 50);
 }
 
-/// Scenes in which contacts do not end well yet (docs/lab/2026-11-jams.md): whoever mends one strikes it out.
+/// Scenes in which contacts do not end well yet (lab/notes/2026-11-jams.md): whoever mends one strikes it out.
 struct Open {
     const char* family;
     std::uint64_t seed;
@@ -275,7 +275,7 @@ bool is_open(const std::string& family, std::uint64_t seed) {
                        [&](const Open& open) { return open.family == family && open.seed == seed; });
 }
 
-/// A small share of the families for long campaigns (tools/measure/campaign).
+/// A small share of the families for long campaigns (lab/measure/campaign).
 class Families : public testing::TestWithParam<std::string> {};
 
 TEST_P(Families, KeepTheLaws) {

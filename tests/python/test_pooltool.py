@@ -1,5 +1,5 @@
 """pooltool's files both ways. tests/data/pooltool holds Systems that pooltool 0.6.0 saved: the same shot before and after it was
-simulated, a potted ball, and a jaw. tools/measure/pooltool_parity.py asks pooltool itself."""
+simulated, a potted ball, and a jaw. lab/measure/pooltool_parity.py asks pooltool itself."""
 
 from __future__ import annotations
 

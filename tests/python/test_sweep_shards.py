@@ -241,7 +241,7 @@ def test_duckdb_reads_the_files(tmp_path):
 
 
 def test_the_plan_of_the_study_can_be_read():
-    plan = sweep.Plan.load(SOURCE / "docs/lab/2026-11-million_breaks.json")
+    plan = sweep.Plan.load(SOURCE / "lab/notes/2026-11-million_breaks.json")
     assert (plan.shots, plan.shards) == (1_000_000, 20)
 
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/process.h"
@@ -14,12 +15,17 @@ inline bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
-/// Runs the built program.
-inline ProcessResult carom(std::vector<std::string> arguments, ProcessOptions options = {}) {
-    arguments.insert(arguments.begin(), CAROM_PROGRAM);
-    // The tests decide about the instruction set, not the shell they are started from.
+/// Runs a built program. The tests decide about the instruction set, not the shell they are started from.
+inline ProcessResult run_built(const char* program, std::vector<std::string> arguments,
+                               ProcessOptions options) {
+    arguments.insert(arguments.begin(), program);
     options.environment.insert(options.environment.begin(), {"CAROM_ISA", ""});
     return run_process(arguments, options);
+}
+
+/// Runs the built carom.
+inline ProcessResult carom(std::vector<std::string> arguments, ProcessOptions options = {}) {
+    return run_built(CAROM_PROGRAM, std::move(arguments), std::move(options));
 }
 
 inline ProcessResult carom_isa(const std::string& isa, const std::vector<std::string>& arguments) {

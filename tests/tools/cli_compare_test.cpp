@@ -169,19 +169,6 @@ TEST_F(Compare, NoAnswerIs2) {
     }
 }
 
-TEST_F(Compare, ThePictureHasBothWays) {
-    const std::string plot = folder_.file("ways.svg");
-    EXPECT_EQ(carom({"compare", scene_, faster("4.4"), "--plot", plot}).status, 1);
-    const std::string svg = read_file(plot);
-    EXPECT_EQ(svg.substr(0, 4), "<svg");
-    EXPECT_TRUE(contains(svg, ">ball 2</text>"));
-    EXPECT_TRUE(contains(svg, "stroke-dasharray"));
-    const ProcessResult bad = carom({"compare", scene_, scene_, "--plot", folder_.file("ways.png")});
-    EXPECT_EQ(bad.status, 2);
-    EXPECT_TRUE(contains(bad.err, "a name that ends in .svg")) << bad.err;
-    EXPECT_EQ(carom({"compare", scene_, scene_, "--plot", scene_}).status, 2);
-}
-
 TEST_F(Compare, AllScenesThatComeWithCaromEqualThemselves) {
     for (const std::string& scene : shipped_scenes()) {
         const Json same = json_of({scene, scene, "--tolerance", "0"}, 0);

@@ -69,16 +69,13 @@ TEST_F(Faults, AFileThatMayNotGrowIsNamedAndNotLeftHalf) {
         {"simulate", scene_, "--events"},
         {"simulate", scene_, "--sample-dt", "0.1", "--samples"},
         {"margin", scene_, "--no-render", "--csv"},
-        {"margin", scene_, "--no-render", "--trace"},
-        {"compare", scene_, scene_, "--plot"},
         {"accuracy", scene_, "--repeat", "1", "--csv"},
         {"render", scene_, "--size", "320x180", "--at", "0.5", "-o"},
         {"render", scene_, "--size", "320x180", "--sheet", "2x2", "-o"},
     };
     for (std::vector<std::string> command : commands) {
         const bool frames = std::find(command.begin(), command.end(), "--at") != command.end();
-        const bool plot = command.back() == "--plot";
-        command.push_back(folder_.file(frames ? "out%d.png" : plot ? "out.svg" : "out.png"));
+        command.push_back(folder_.file(frames ? "out%d.png" : "out.png"));
         ProcessOptions options;
         options.file_limit = 500;
         const ProcessResult result = carom(command, options);
@@ -97,9 +94,7 @@ TEST_F(Faults, AFolderThatTakesNoFilesIsNamed) {
              {"simulate", scene_, "-o", "/proc/carom.json"},
              {"simulate", scene_, "--events", "/proc/carom.csv"},
              {"margin", scene_, "--no-render", "--csv", "/proc/carom.csv"},
-             {"margin", scene_, "--no-render", "--plot", "/proc/carom.svg"},
-             {"compare", scene_, scene_, "--plot", "/proc/carom.svg"},
-             {"accuracy", scene_, "--repeat", "1", "--plot", "/proc/carom.svg"},
+             {"accuracy", scene_, "--repeat", "1", "--csv", "/proc/carom.csv"},
              {"render", scene_, "--at", "0.1", "--size", "64x36", "-o", "/proc/carom%d.png"}}) {
         const ProcessResult result = carom(command);
         EXPECT_EQ(result.status, 1) << command[0];

@@ -218,25 +218,6 @@ TEST_F(CliRenderOptions, AFileThatCannotGrowLeavesNothing) {
     EXPECT_EQ(folder_.names().size(), 2u);
 }
 
-TEST_F(CliRenderOptions, BenchRenderGivesItsRows) {
-    const ProcessResult result = carom({"bench", "render", record_, "--frames", "2"});
-    EXPECT_EQ(result.status, 2) << result.err;  // a scene is asked for
-    EXPECT_EQ(carom({"bench", "render", scene_, "--frames", "2"}).status, 2);
-    const ProcessResult rows = carom({"bench", "render", scene_, "--frames", "3", "--json"});
-    ASSERT_EQ(rows.status, 0) << rows.err;
-    const auto json = nlohmann::json::parse(rows.out);
-    std::vector<std::string> names;
-    for (const auto& row : json.at("rows")) names.push_back(row.at("name"));
-    EXPECT_EQ(names, (std::vector<std::string>{"720p", "1080p", "1080p follow", "2160p"}));
-    EXPECT_EQ(json.at("rows")[2].at("encoded_share"), 1.0);  // its camera moves
-    EXPECT_LT(json.at("rows")[3].at("encoded_share"), 0.5);
-    for (const auto& row : json.at("rows")) {
-        for (const char* figure : {"draw_ms", "readback_ms", "draw_readback_p95_ms", "encode_ms",
-                                   "encoded_share", "write_ms", "setup_ms", "fps"})
-            EXPECT_GT(row.at(figure).get<double>(), 0.0) << figure;
-    }
-}
-
 TEST_F(CliRenderOptions, ABrokenRecordIsRefused) {
     const std::string text = read_file(record_);
     const std::string torn = folder_.write("torn.json", text.substr(0, text.size() / 2));

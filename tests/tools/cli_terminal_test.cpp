@@ -5,36 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "cli.h"
-#include "support/terminal.h"
+#include "on_a_terminal.h"
 
 namespace carom::test {
 namespace {
 
-std::string all_of(const std::vector<std::string>& lines) {
-    std::string text;
-    for (const std::string& line : lines) text += line + "\n";
-    return text;
-}
-
-/// A break, for whose frames and shots nobody waits.
-const std::string kBreak = std::string(CAROM_SOURCE_DIR) + "/scenes/eight_ball_break.toml";
-
-class OnATerminal : public ::testing::Test {
+class OnATerminal : public LongWork {
   protected:
-    /// The work is far too much: once its line is there, Ctrl-C ends it, and takes the line along.
-    void moves_and_stops(const std::vector<std::string>& arguments, const std::string& line) {
-        std::vector<std::string> command{CAROM_PROGRAM};
-        command.insert(command.end(), arguments.begin(), arguments.end());
-        Terminal terminal(command);
-        EXPECT_TRUE(terminal.see("\r\033[K" + line)) << terminal.seen();
-        terminal.press_ctrl_c();
-        EXPECT_EQ(terminal.finish(), 130) << terminal.seen();
-        EXPECT_FALSE(contains(all_of(terminal.screen()), line)) << all_of(terminal.screen());
-    }
-
-    TemporaryFolder folder_;
-    std::string scene_ = folder_.write("s.toml", kSmallScene);
+    OnATerminal() : LongWork(CAROM_PROGRAM) {}
 };
 
 TEST_F(OnATerminal, RenderMoves) {
@@ -58,26 +36,8 @@ TEST_F(OnATerminal, MarginMoves) {
     moves_and_stops({"margin", kBreak, "--repeat", "1000", "--size", "640x360"}, "run ");
 }
 
-TEST_F(OnATerminal, MarginSweepMoves) {
-    moves_and_stops({"margin", kBreak, "--sweep", "--no-render", "--repeat", "1000"}, "margin --sweep: [");
-}
-
 TEST_F(OnATerminal, AccuracyMoves) {
     moves_and_stops({"accuracy", kBreak, "--repeat", "1000"}, "accuracy, times: [");
-    moves_and_stops({"accuracy", "kernel", "--count", "1000000"}, "accuracy kernel, converged solutions: [");
-}
-
-TEST_F(OnATerminal, BenchKernelMoves) {
-    moves_and_stops({"bench", "kernel", "--random", "1", "--repeat", "1000", "--no-growth"},
-                    "bench kernel [");
-}
-
-TEST_F(OnATerminal, BenchShotMoves) {
-    moves_and_stops({"bench", "shot", "--seeds", "1", "--repeat", "1000", "--no-growth"}, "bench shot [");
-}
-
-TEST_F(OnATerminal, BenchRenderMoves) {
-    moves_and_stops({"bench", "render", scene_, "--frames", "100000"}, "bench render [");
 }
 
 TEST_F(OnATerminal, SweepMoves) {

@@ -18,14 +18,9 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "a command is missing: simulate, render, view, export, compare, margin, accuracy, sweep, validate, "
-         "check, "
-         "impact, "
-         "bench or "
-         "describe; see carom --help"},
-        {{"bench"}, "a command is missing: kernel, render or shot; see carom bench --help"},
-        {{"bench", "kernel", "--seed", "x"}, "see carom bench kernel --help"},
-        {{"accuracy"}, "accuracy: a scene file or the word kernel is required; see carom accuracy --help"},
+         "a command is missing: simulate, render, view, export, compare, margin, accuracy, sweep, check, "
+         "impact or describe; see carom --help"},
+        {{"accuracy"}, "accuracy: a scene file is required; see carom accuracy --help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
         {{"simulate"}, "SCENE is required; see carom simulate --help"},
@@ -59,9 +54,7 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         {{"render", scene, "--y4m", "--sheet", "2x2"}, "--y4m goes with neither"},
         {{"render", scene, "--camera", "from the moon"}, "from the moon"},
         {{"margin", scene, "--repeat", "0"}, "--repeat"},
-        {{"margin", scene, "--sweep", "--fps", "60"}, "--sweep goes through the frame rates"},
-        {{"margin", scene, "--sweep", "--trace", folder.file("t.json")}, "--trace is of one setting"},
-        {{"margin", scene, "--plot", folder.file("t.png")}, "a name that ends in .svg"},
+        {{"margin", scene, "--sweep"}, "--sweep"},
         {{"compare", scene}, "B is required; see carom compare --help"},
         {{"compare", scene, scene, "more"}, "more"},
         {{"check", scene, "more"}, "more"},
@@ -86,8 +79,8 @@ TEST(CliUsage, VersionAndHelpExit0) {
     EXPECT_EQ(carom({"--version"}).out, "carom " CAROM_VERSION "\n");
     const ProcessResult help = carom({"--help"});
     EXPECT_EQ(help.status, 0);
-    for (const char* command : {"simulate", "render", "compare", "margin", "accuracy", "sweep", "validate",
-                                "check", "impact", "describe"}) {
+    for (const char* command :
+         {"simulate", "render", "compare", "margin", "accuracy", "sweep", "check", "impact", "describe"}) {
         EXPECT_TRUE(contains(help.out, command)) << command;
         const ProcessResult result = carom({command, "--help"});
         EXPECT_EQ(result.status, 0) << command;
@@ -96,8 +89,8 @@ TEST(CliUsage, VersionAndHelpExit0) {
 }
 
 TEST(CliUsage, HelpNamesEveryDefault) {
-    for (const char* command : {"simulate", "render", "compare", "margin", "accuracy", "sweep", "validate",
-                                "check", "impact", "describe"}) {
+    for (const char* command :
+         {"simulate", "render", "compare", "margin", "accuracy", "sweep", "check", "impact", "describe"}) {
         // Options begin with two blanks and a dash; their text may go on in the lines below.
         std::string option;
         const auto has_default = [&option] {

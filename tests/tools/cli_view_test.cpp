@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -16,20 +15,13 @@
 #include <vector>
 
 #include "base/splitmix64.h"
+#include "browser.h"
 #include "carom/engine/record.h"
 #include "carom/render/draw_list.h"
 #include "cli.h"
 
 namespace carom::test {
 namespace {
-
-using Json = nlohmann::json;
-
-constexpr char kView[] = CAROM_SOURCE_DIR "/tests/tools/view/";
-
-bool has(const char* program) {
-    return run_process({program, "--version"}).status == 0;
-}
 
 std::string stem(const std::string& path) {
     return std::filesystem::path(path).stem().string();
@@ -149,18 +141,6 @@ Json manifest_page(const std::string& name, const MadePage& page) {
         {"states", states}};
 }
 
-/// Lets the browser look at all pages of a manifest. For a person: CAROM_VIEW_PICTURES names a folder for what it shows.
-void expect_no_fault(const TemporaryFolder& folder, const Json& manifest) {
-    const char* const pictures = std::getenv("CAROM_VIEW_PICTURES");
-    const ProcessResult seen =
-        run_process({"node", kView + std::string("browser.mjs"),
-                     folder.write("manifest.json", manifest.dump()), pictures != nullptr ? pictures : ""});
-    EXPECT_EQ(seen.status, 0) << seen.out << seen.err;
-    const std::size_t pages = manifest.at("pages").size() + manifest.at("reports").size();
-    EXPECT_TRUE(contains(seen.out, fmt::format("{} pages, 0 faults", pages))) << seen.out;
-    std::fputs(seen.out.c_str(), stdout);
-}
-
 TEST(View, ABrowserShowsEveryScene) {
     if (!has("node")) GTEST_SKIP() << "node is not installed";
     if (!has("chromium")) GTEST_SKIP() << "chromium is not installed";
@@ -193,32 +173,6 @@ TEST(View, ABrowserShowsEveryScene) {
                            {"pages", pages},
                            {"reports", Json::array()}};
     expect_no_fault(folder, manifest);
-}
-
-TEST(View, ABrowserShowsReports) {
-    if (!has("node")) GTEST_SKIP() << "node is not installed";
-    if (!has("chromium")) GTEST_SKIP() << "chromium is not installed";
-    const TemporaryFolder folder;
-    const std::string scene = folder.write("small.toml", kSmallScene);
-    Json reports = Json::array();
-    // `column`: one with numbers, of the last table.
-    const auto make = [&](const std::string& name, int column, std::vector<std::string> command) {
-        const std::string file = folder.file(name + ".html");
-        command.insert(command.end(), {"--html", file});
-        const ProcessResult made = carom(command);
-        EXPECT_EQ(made.status, 0) << made.err;
-        reports.push_back(
-            {{"name", name}, {"file", file}, {"column", column}, {"command", "carom " + command.front()}});
-    };
-    make("margin", 3, {"margin", scene, "--no-render"});
-    make("margin_sweep", 5, {"margin", scene, "--no-render", "--sweep"});
-    make("accuracy", 2, {"accuracy", scene, "--repeat", "1", "--march", "10,30", "--tolerance", "1e-3,1e-6"});
-    make("accuracy_kernel", 3,
-         {"accuracy", "kernel", "--count", "20", "--repeat", "1", "--most-substeps", "100"});
-    expect_no_fault(folder, {{"chromium", "chromium"},
-                             {"profile", folder.file("profile")},
-                             {"pages", Json::array()},
-                             {"reports", reports}});
 }
 
 TEST(View, APageHoldsItsRecordAndItsPolicy) {
@@ -288,12 +242,6 @@ TEST(View, RefusesWhatItCannotDoBeforeItBegins) {
         EXPECT_TRUE(contains(result.err, message)) << result.err;
     };
     refused({"-o", folder.file("shot.htm5")}, "a page is an HTML file; give it a name that ends in .html");
-    for (const char* command : {"margin", "accuracy"}) {
-        const ProcessResult html = carom({command, scene, "--html", folder.file("a.png")});
-        EXPECT_EQ(html.status, 2);
-        EXPECT_TRUE(contains(html.err, "--html " + folder.file("a.png") + ": a page is an HTML file"))
-            << html.err;
-    }
     refused({folder.file("none.json"), "-o", folder.file("a.html")}, "none.json");
     EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});
 }

@@ -106,9 +106,10 @@ class Clone {
 
 std::vector<std::string> pages() {
     std::vector<std::string> names = {"README.md", "CONTRIBUTING.md"};
-    for (const auto& entry : fs::recursive_directory_iterator(CAROM_SOURCE_DIR "/docs"))
-        if (entry.path().extension() == ".md")
-            names.push_back(fs::relative(entry.path(), CAROM_SOURCE_DIR).string());
+    for (const char* folder : {"/docs", "/lab"})
+        for (const auto& entry : fs::recursive_directory_iterator(CAROM_SOURCE_DIR + std::string(folder)))
+            if (entry.path().extension() == ".md")
+                names.push_back(fs::relative(entry.path(), CAROM_SOURCE_DIR).string());
     std::sort(names.begin(), names.end());
     return names;
 }

@@ -1,5 +1,5 @@
 // What docs/ says about file formats is what the program says of itself. Where a test here fails, renew the pages with
-// tools/measure/renew_formats.py.
+// tools/renew_formats.py.
 #include "commands/describe/formats.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kStale = " is stale; run tools/measure/renew_formats.py";
+constexpr const char* kStale = " is stale; run tools/renew_formats.py";
 
 TEST(Formats, TheSchemaOfScenesIsThatOfTheTables) {
     EXPECT_TRUE(test::read_source("docs/reference/scene.schema.json") == scene_schema())

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// From the bottom up: a layer may use itself and those in front of it.
-constexpr std::array<std::string_view, 5> kLayers = {"kernel", "engine", "games", "render", "tools"};
+constexpr std::array<std::string_view, 6> kLayers = {"kernel", "engine", "games", "render", "tools", "lab"};
 constexpr int kNoLayer = -1;
 /// The C interface stands beside the games: it uses what they may use, and nobody uses it.
 constexpr std::string_view kCInterface = "capi";
@@ -21,38 +21,42 @@ constexpr int kCInterfaceLayer = 2;
 /// The Python package stands beside the program: it uses what the program may use, and nobody uses it.
 constexpr std::string_view kPython = "python";
 constexpr int kPythonLayer = 4;
+/// The laboratory may include anything, and nothing includes it, tests of the product and examples neither.
+constexpr std::string_view kLab = "lab";
+constexpr std::array<std::string_view, 2> kBesideTheProduct = {"tests", "examples"};
 
 /// The rooms of one layer. A toolbox includes toolboxes to its left; a station, one step of the data's way, includes toolboxes.
 /// Stations never include each other: they meet in public types only. What lies in the folder itself is left of all.
 struct Rooms {
     std::string_view folder;
     std::vector<std::string_view> toolboxes, stations;
+    /// Whether a file in the folder itself stands right of all rooms, as a main() does.
+    bool top_uses_rooms = false;
 };
-const std::array<Rooms, 3> kRooms = {{
+const std::array<Rooms, 5> kRooms = {{
     {"kernel/src", {}, {"march", "tolerance", "contact_phase"}},
     {"engine/src", {"base", "physics", "contact"}, {"scene", "plan", "loop", "record", "batch"}},
     {"render/src", {"font", "gl"}, {"stage", "draw", "frames"}},
+    // Inner rooms stand before the rooms that hold them.
+    {"tools/carom/commands",
+     {},
+     {"simulate", "render", "view", "export", "compare", "sweep", "check", "impact", "describe", "accuracy",
+      "margin"}},
+    {"tools/carom", {"base", "page", "report"}, {"commands"}, true},
 }};
-/// Public headers that say what a station made or does. A toolbox knows none of them.
+/// Public headers that say what a station of the engine made or does. A toolbox of the engine knows none of them.
 constexpr std::array<std::string_view, 4> kHeadersOfStations = {
     "carom/engine/plan.h", "carom/engine/simulate.h", "carom/engine/variation.h", "carom/engine/verify.h"};
-/// Folders that others may use although they are no public headers: who, and what. The probes in tools/measure look inside
-/// whatever they measure, and share scenes with the tests; the program itself includes nothing of tests/.
+/// Folders that others may use although they are no public headers: who, and what.
 struct Door {
     std::string_view from, to;
 };
-constexpr std::array<Door, 12> kDoors = {{{"kernel/ladder", "kernel/src"},
-                                          {"tools", "kernel/ladder"},
-                                          {"tools", "kernel/reference"},
-                                          {"games", "engine/src/base"},
-                                          {"render", "engine/src/base"},
-                                          {"tools", "engine/src/base"},
-                                          {"python", "engine/src/base"},
-                                          {"tools/measure", "kernel/src"},
-                                          {"tools/measure", "engine/src"},
-                                          {"tools/measure", "render/src"},
-                                          {"tools/measure", "tools/carom"},
-                                          {"tools/measure", "tests"}}};
+constexpr std::array<Door, 6> kDoors = {{{"tools", "kernel/reference"},
+                                         {"games", "engine/src/base"},
+                                         {"render", "engine/src/base"},
+                                         {"tools", "engine/src/base"},
+                                         {"python", "engine/src/base"},
+                                         {"python", "tools/carom/page"}}};
 
 int layer_of(std::string_view name) {
     const auto it = std::find(kLayers.begin(), kLayers.end(), name);
@@ -141,7 +145,7 @@ bool is_within(std::string_view path, std::string_view folder) {
     return starts_with(path, folder) && (path.size() == folder.size() || path[folder.size()] == '/');
 }
 
-/// The folder whose files include each other: kernel/src, kernel/ladder, engine/src, tools/carom ...
+/// The folder whose files include each other: kernel/src, engine/src, tools/carom ...
 std::string house_of(const std::string& path) {
     const std::size_t first = path.find('/'), second = path.find('/', first + 1);
     return path.substr(0, second == path.npos ? first : second);
@@ -164,6 +168,7 @@ int place_of(const Rooms& rooms, std::string_view path) {
 /// `from` and `to` lie in the folder of these rooms.
 std::string room_violation(const Rooms& rooms, const std::string& from, const std::string& to) {
     const int here = place_of(rooms, from), there = place_of(rooms, to);
+    if (here == -1 && rooms.top_uses_rooms) return "";
     if (here == -2) return "stands in a file of no known room";
     if (there == -2) return "points to no known room";
     if (here == there) return "";
@@ -175,16 +180,20 @@ std::string room_violation(const Rooms& rooms, const std::string& from, const st
 
 std::string target_violation(const fs::path& root, const std::string& from, int layer,
                              const std::string& to) {
-    if (house_of(from) == house_of(to)) {
-        for (const Rooms& rooms : kRooms)
-            if (is_within(from, rooms.folder)) return room_violation(rooms, from, to);
-        return "";
-    }
     const std::string first = top_folder(to);
     const int target = layer_of(first);
-    if (target > layer) return "points upwards to " + first;
+    if (layer == kNoLayer) return first == kLab ? "points into the laboratory" : "";
+    if (top_folder(from) == kLab) return "";
+    if (house_of(from) == house_of(to)) {
+        for (const Rooms& rooms : kRooms)
+            if (is_within(from, rooms.folder) && is_within(to, rooms.folder))
+                return room_violation(rooms, from, to);
+        return "";
+    }
+    // A door stands in front of the order of layers: Python uses the pages, which stand among the tools.
     for (const Door& door : kDoors)
         if (is_within(from, door.from) && is_within(to, door.to)) return "";
+    if (target > layer) return "points upwards to " + first;
     if (target == kNoLayer)
         return "points outside the layers of " + fs::absolute(root).filename().string() + ": " + first;
     return "points into " + house_of(to) + ", which is not public";
@@ -195,11 +204,12 @@ std::string public_violation(const fs::path& root, const std::string& from, int 
                              std::string_view name) {
     const std::string first(name.substr(6, name.find('/', 6) - 6));
     const int target = layer_of(first);
+    if (layer == kNoLayer || top_folder(from) == kLab) return "";
     if (target > layer) return "points upwards to " + first;
     if (target == kNoLayer)
         return "points outside the layers of " + fs::absolute(root).filename().string() + ": " + first;
     for (const Rooms& rooms : kRooms) {
-        if (!is_within(from, rooms.folder)) continue;
+        if (rooms.folder != "engine/src" || !is_within(from, rooms.folder)) continue;
         const int place = place_of(rooms, from);
         if (place >= static_cast<int>(rooms.toolboxes.size())) continue;
         for (const std::string_view header : kHeadersOfStations)
@@ -211,6 +221,7 @@ std::string public_violation(const fs::path& root, const std::string& from, int 
 std::string include_violation(const fs::path& root, const fs::path& file, int layer, const Include& include) {
     if (include.name.empty()) return "is not a literal name, so that its layer cannot be known";
     const std::string from = path_below(root, file);
+    if (layer == kNoLayer && !include.quoted) return "";
     if ((starts_with(from, kCInterface) || starts_with(from, kPython)) &&
         (include.name == "carom/carom.h" || include.name == "carom/version.h"))
         return "";
@@ -218,14 +229,14 @@ std::string include_violation(const fs::path& root, const fs::path& file, int la
     if (!include.quoted) return library_violation(layer, include.name);
     // Beside the file, then by room.
     std::vector<fs::path> folders = {file.parent_path(), root / house_of(from)};
-    for (const std::string_view base :
-         {"", "kernel", "kernel/src", "engine/src", "render/src", "tools/carom", "tools", "tests"})
+    for (const std::string_view base : {"", "kernel", "kernel/src", "engine/src", "render/src", "tools/carom",
+                                        "tools", "tests", "lab/carom", "lab"})
         folders.push_back(root / base);
     for (const fs::path& folder : folders) {
         const fs::path candidate = folder / include.name;
         if (fs::exists(candidate)) return target_violation(root, from, layer, path_below(root, candidate));
     }
-    return "cannot be resolved";
+    return layer == kNoLayer ? "" : "cannot be resolved";
 }
 
 /// A target named in a CMakeLists.txt is an include path: carom::render in engine/ points upwards.
@@ -235,7 +246,13 @@ std::vector<std::string> cmake_violations(const fs::path& file, int layer) {
     std::string line;
     for (int number = 1; std::getline(stream, line); ++number) {
         line = line.substr(0, line.find('#'));
-        for (int upper = layer + 1; upper < static_cast<int>(kLayers.size()); ++upper) {
+        const bool of_product = layer != kNoLayer && layer < layer_of(kLab);
+        if (of_product && line.find("/tests") != line.npos)
+            found.push_back(file.string() + ":" + std::to_string(number) + ": reads tests/");
+        for (const char* target : {"carom::ladder", "carom_ladder"})
+            if (of_product && line.find(target) != line.npos)
+                found.push_back(file.string() + ":" + std::to_string(number) + ": links " + target);
+        for (int upper = layer + 1; layer != kNoLayer && upper < static_cast<int>(kLayers.size()); ++upper) {
             for (const std::string separator : {"::", "_"}) {
                 const std::string target = "carom" + separator + std::string(kLayers[upper]);
                 if (line.find(target) == line.npos) continue;
@@ -259,6 +276,7 @@ std::vector<std::string> layer_violations(const fs::path& root) {
     std::vector<std::pair<std::string_view, int>> folders = {{kCInterface, kCInterfaceLayer},
                                                              {kPython, kPythonLayer}};
     for (std::size_t i = 0; i < kLayers.size(); ++i) folders.emplace_back(kLayers[i], static_cast<int>(i));
+    for (const std::string_view name : kBesideTheProduct) folders.emplace_back(name, kNoLayer);
     for (const auto& [name, layer] : folders) {
         const fs::path folder = root / name;
         if (!fs::exists(folder)) continue;

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(Layers, NoIncludePointsUpwards) {
-    for (const char* layer : {"kernel", "engine", "games", "render", "capi", "tools", "python"}) {
+    for (const char* layer : {"kernel", "engine", "games", "render", "capi", "tools", "python", "lab"}) {
         ASSERT_TRUE(fs::exists(fs::path(CAROM_SOURCE_DIR) / layer)) << layer;
     }
     for (const std::string& violation : layer_violations(CAROM_SOURCE_DIR)) ADD_FAILURE() << violation;
@@ -32,7 +32,7 @@ class LayersSelfTest : public ::testing::Test {
         put("kernel/src/inner.h", "#pragma once\n");
         put("kernel/src/march/m.h", "#include \"inner.h\"\n");
         put("kernel/src/tolerance/t.h", "#pragma once\n");
-        put("kernel/ladder/l.h", "#include \"march/m.h\"\n#include \"inner.h\"\n");
+        put("lab/ladder/l.h", "#include \"march/m.h\"\n#include \"inner.h\"\n");
         put("kernel/reference/s.h", "#include \"carom/kernel/k.h\"\n");
         put("engine/src/e.cpp", "#include <Eigen/Core>\n#include \"carom/kernel/k.h\"\n");
         put("engine/src/base/b.h", "#pragma once\n");
@@ -47,15 +47,24 @@ class LayersSelfTest : public ::testing::Test {
         put("render/src/r.cpp", "#include <png.h>\n#include <GL/gl.h>\n#include \"carom/engine/e.h\"\n");
         put("tools/t.cpp", "#include <CLI/CLI.hpp>\n#include \"carom/render/r.h\"\n#include \"u.h\"\n");
         put("tools/u.h", "#pragma once\n");
-        put("tools/carom/p.cpp",
-            "#include \"ladder/l.h\"\n#include \"reference/s.h\"\n#include \"base/b.h\"\n");
-        put("tools/measure/m.cpp", "#include \"support/s.h\"\n#include \"contact/c.h\"\n");
+        put("tools/carom/main.cpp", "#include \"base/p.h\"\n#include \"commands/view/v.h\"\n");
+        put("tools/carom/base/p.h", "#include \"reference/s.h\"\n#include \"base/b.h\"\n");
+        put("tools/carom/page/q.h", "#include \"base/p.h\"\n");
+        put("tools/carom/commands/view/v.h", "#include \"base/p.h\"\n#include \"page/q.h\"\n");
+        put("tools/carom/commands/margin/m.h", "#include \"base/p.h\"\n");
+        put("lab/carom/r.h", "#pragma once\n");
+        put("lab/carom/l.cpp",
+            "#include \"ladder/l.h\"\n#include \"commands/view/v.h\"\n#include \"contact/c.h\"\n#include "
+            "\"r.h\"\n");
+        put("lab/measure/m.cpp", "#include \"support/s.h\"\n#include \"contact/c.h\"\n");
         put("capi/src/c.cpp",
             "#include \"carom/carom.h\"\n#include \"c.h\"\n#include \"carom/engine/e.h\"\n");
         put("capi/src/c.h", "#pragma once\n");
         put("python/src/p.cpp",
-            "#include <nanobind/nanobind.h>\n#include \"base/b.h\"\n#include \"carom/render/r.h\"\n");
+            "#include <nanobind/nanobind.h>\n#include \"base/b.h\"\n#include \"carom/render/r.h\"\n#include "
+            "\"page/q.h\"\n");
         put("tests/support/s.h", "#pragma once\n");
+        put("tests/t.cpp", "#include \"support/s.h\"\n#include \"gone_in_the_build.h\"\n");
     }
 
     void put(const std::string& name, const std::string& text) {
@@ -99,9 +108,19 @@ TEST_F(LayersSelfTest, SeesEveryKindOfViolation) {
         {"capi/CMakeLists.txt", "target_link_libraries(carom_c carom::render)\n", "links carom::render"},
         {"render/src/r.cpp", "#include \"carom/carom.h\"\n", "outside the layers"},
         {"python/src/p.cpp", "#include \"contact/c.h\"\n", "engine/src, which is not public"},
-        {"tools/carom/p.cpp", "#include \"../../python/src/p.cpp\"\n", "outside the layers"},
+        {"tools/carom/base/p.h", "#include \"../../python/src/p.cpp\"\n", "outside the layers"},
         {"render/src/r.cpp", "#include HEADER\n", "not a literal name"},
-        {"kernel/src/k.cpp", "#include \"ladder/l.h\"\n", "kernel/ladder, which is not public"},
+        {"kernel/src/k.cpp", "#include \"ladder/l.h\"\n", "upwards to lab"},
+        {"tools/carom/base/p.h", "#include \"ladder/l.h\"\n", "upwards to lab"},
+        {"tools/carom/commands/view/v.h", "#include \"../../../../lab/carom/r.h\"\n", "upwards to lab"},
+        {"python/src/p.cpp", "#include \"../../lab/carom/r.h\"\n", "upwards to lab"},
+        {"tests/t.cpp", "#include \"ladder/l.h\"\n", "into the laboratory"},
+        {"tools/carom/base/p.h", "#include \"page/q.h\"\n", "room on the right"},
+        {"tools/carom/page/q.h", "#include \"commands/view/v.h\"\n", "room on the right"},
+        {"tools/carom/commands/view/v.h", "#include \"commands/margin/m.h\"\n", "another station"},
+        {"tools/carom/CMakeLists.txt", "set(folder ${PROJECT_SOURCE_DIR}/tests/data)\n", "reads tests/"},
+        {"tools/carom/CMakeLists.txt", "target_link_libraries(carom_tools carom::ladder)\n",
+         "links carom::ladder"},
         {"kernel/src/march/m.h", "#include \"tolerance/t.h\"\n", "another station"},
         {"kernel/src/inner.h", "#include \"march/m.h\"\n", "room on the right"},
         {"engine/src/base/b.h", "#include \"contact/c.h\"\n", "room on the right"},
@@ -113,8 +132,8 @@ TEST_F(LayersSelfTest, SeesEveryKindOfViolation) {
         {"engine/src/loop/l.h", "#include \"reference/s.h\"\n", "kernel/reference, which is not public"},
         {"render/src/stage/s.cpp", "#include \"draw/d.h\"\n", "another station"},
         {"render/src/stage/s.cpp", "#include \"contact/c.h\"\n", "engine/src, which is not public"},
-        {"tools/carom/p.cpp", "#include \"contact/c.h\"\n", "engine/src, which is not public"},
-        {"tools/carom/p.cpp", "#include \"support/s.h\"\n", "outside the layers"},
+        {"tools/carom/base/p.h", "#include \"contact/c.h\"\n", "engine/src, which is not public"},
+        {"tools/carom/base/p.h", "#include \"support/s.h\"\n", "outside the layers"},
         {"engine/CMakeLists.txt", "target_link_libraries(carom_engine PUBLIC carom::render)\n",
          "links carom::render"},
         {"kernel/CMakeLists.txt", "target_link_libraries(carom_kernel carom_engine)\n", "links carom_engine"},

@@ -1,11 +1,9 @@
 // The bookkeeping of carom margin, on costs that are given.
-#include "commands/margin/margin.h"
+#include "base/margin.h"
 
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
 
 namespace carom::tools {
 namespace {
@@ -59,16 +57,6 @@ TEST(Accounting, LeavesOutTheFirstFrameWhoseStartNobodySees) {
     EXPECT_DOUBLE_EQ(sum.parts_ms, 6 + 10 + 20 + 2 * 3);
     EXPECT_DOUBLE_EQ(sum.wall_ms, 6.5 + 13.5 + 23.0);
     EXPECT_DOUBLE_EQ(sum.share(), 42.0 / 43.0);
-}
-
-TEST(MarginTrace, ALateFramePushesTheNextOne) {
-    const auto trace =
-        nlohmann::json::parse(margin_trace(run_of({0, 0, 0}, {20, 1, 1}), 100.0)).at("traceEvents");
-    std::vector<double> starts;
-    for (const auto& event : trace)
-        if (event.at("cat") == "frame") starts.push_back(event.at("ts").get<double>());
-    // 23 ms for the first: the second begins then, and the third too late as well.
-    EXPECT_EQ(starts, (std::vector<double>{0.0, 23000.0, 27000.0}));
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ inline constexpr double kClusterFaster = 1.05;
 inline constexpr double kTouchUlp = 64.0 * 2.220446049250313e-16;
 
 /// [V] and [L/V] Regularisation of the friction in the compliant map, from which its errors come: 6e-4 V in racks that touch, up to 2.7e-3 V
-/// where gaps of 0.3 mm let errors grow (docs/lab/2026-11-moving_normals.md); and its longest steps, without friction (at the speed V) and with it.
+/// where gaps of 0.3 mm let errors grow (lab/notes/2026-11-moving_normals.md); and its longest steps, without friction (at the speed V) and with it.
 inline constexpr double kClusterEpsilon = 1.3e-3;
 inline constexpr double kClusterStep = 1.0 / 60.0;
 inline constexpr double kClusterFrictionStep = 1.0 / 12.0;

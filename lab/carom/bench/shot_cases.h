@@ -1,4 +1,4 @@
-// The scenes of carom-lab bench shot and of tools/measure/callgrind_shot.py: seeded, so that a name and a seed mean the
+// The scenes of carom-lab bench shot and of lab/measure/callgrind_shot.py: seeded, so that a name and a seed mean the
 // same shot everywhere.
 #pragma once
 

@@ -1,7 +1,7 @@
 """pooltool's files, both ways: the System of pooltool 0.6.0 as JSON.
 
 `load` gives the scene that a System plays, with pooltool's models; `save` writes a record so that pooltool plays it. pooltool itself is
-not needed. What agrees, and what does not, was measured: docs/lab/2026-11-pooltool.md.
+not needed. What agrees, and what does not, was measured: lab/notes/2026-11-pooltool.md.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ struct Repeated {
     unsigned length, codes;
 };
 // Lengths of the codes [bits], and how many codes in a row have each; 0: no run of whole pixels has this code. By
-// tools/measure/png_code_lengths.py from 1080p frames of five tables and seven cameras.
+// lab/measure/png_code_lengths.py from 1080p frames of five tables and seven cameras.
 constexpr Repeated kLengthsInRows[] = {
     {1, 1},  {3, 1},  {5, 1}, {6, 1}, {7, 1}, {8, 1}, {9, 1}, {10, 3}, {11, 7}, {12, 223},
     {11, 6}, {10, 3}, {9, 2}, {8, 1}, {7, 1}, {6, 1}, {5, 1}, {3, 1},  {12, 1}, {10, 1},

@@ -122,7 +122,7 @@ std::string listed(const std::list<Options>& commands) {
     return text;
 }
 
-/// The program and the commands that the command line names: "carom bench".
+/// The program and the commands that the command line names: "carom-lab bench".
 std::string path_of(const CLI::App& app) {
     const std::vector<CLI::App*> named = app.get_subcommands();
     return app.get_name() + (named.empty() ? "" : " " + path_of(*named.front()));

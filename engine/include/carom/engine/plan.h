@@ -49,7 +49,7 @@ struct EffectInfo {
 std::span<const EffectInfo> effect_table();
 
 /// How detection looks for what a ball can meet: through all boxes, or in a tree of them (Box2D's). The
-/// events are the same to the last bit; docs/lab/2026-11-event_cost.md has the measured crossing.
+/// events are the same to the last bit; lab/notes/2026-11-event_cost.md has the measured crossing.
 enum class Search : std::uint8_t { kDirect, kTree };
 constexpr auto names_of(Search) {
     return std::array{"direct", "tree"};

@@ -28,7 +28,7 @@ inline constexpr double kContactTimeFactor = 2.6;
 inline constexpr double kContactStiffness = 3.094e9;  ///< [m^-0.5 s^-2] k/m
 
 /// [-] From this many balls, or parts of the table, a tree of boxes is faster than a loop through all of them
-/// (docs/lab/2026-11-event_cost.md: measured crossings).
+/// (lab/notes/2026-11-event_cost.md: measured crossings).
 inline constexpr std::size_t kTreeFromBalls = 600;
 inline constexpr std::size_t kTreeFromParts = 1000;
 /// [-] and [ball radii] From this many balls on, a ball's box covers only this way and is then renewed: what

@@ -27,7 +27,7 @@ enum class KernelKind : unsigned char { kMarch, kSummedMarch, kTolerance, kToler
 inline constexpr int kKernelKinds = 5;
 
 /// What Isa::kFastest stands for here: the available one that was measured to be fastest on this kind of processor
-/// (docs/lab/2026-11-ladder.md), and the widest one on processors that were not measured. Never kFastest.
+/// (lab/notes/2026-11-ladder.md), and the widest one on processors that were not measured. Never kFastest.
 Isa fastest_isa(KernelKind kind) noexcept;
 /// The row of measurements that holds for this processor: "AMD Zen 5"; null where it was not measured.
 const char* measured_processor() noexcept;

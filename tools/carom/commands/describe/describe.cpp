@@ -29,7 +29,7 @@ std::string meaning(const Option& row) {
 }
 
 bool takes_file(const Option& row) {
-    // What is known by its place is a scene or a record, but for the cases of carom validate.
+    // What is known by its place is a scene or a record, but for the cases of carom-lab validate.
     if (row.by_place()) return row.choices.empty() && row.names.front() != "CASE";
     return row.value.find("FILE") != std::string::npos || row.value.find("PATTERN") != std::string::npos;
 }

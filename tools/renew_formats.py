@@ -4,7 +4,7 @@ docs/reference/command_line.md, docs/reference/scene.schema.json, the parts of d
 tables of docs/reference/scene_format.md between the marks <!-- begin NAME --> and <!-- end NAME -->.
 
     cmake --build --preset release --target carom_program
-    tools/measure/renew_formats.py [BUILD_FOLDER]
+    tools/renew_formats.py [BUILD_FOLDER]
 """
 import json
 import pathlib
@@ -12,7 +12,7 @@ import re
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[1]
 PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release") / "carom"
 
 
