@@ -84,7 +84,7 @@ TEST(CliValidate, AnUnknownCaseListsThem) {
     const ProcessResult result = carom_lab({"validate", "V99"});
     EXPECT_EQ(result.status, 2);
     EXPECT_EQ(result.out, "");
-    EXPECT_TRUE(contains(result.err, "carom: validate: there is no case V99; the cases are V1, V2, "))
+    EXPECT_TRUE(contains(result.err, "carom-lab: validate: there is no case V99; the cases are V1, V2, "))
         << result.err;
     EXPECT_TRUE(contains(result.err, ", V20, B1\n")) << result.err;
 }

@@ -76,10 +76,10 @@ TEST(CliDescribe, ZshReadsItsCompletion) {
     const ProcessResult seen =
         shell("zsh",
               "_arguments() { print -l -- \"$@\"; }; _describe() { print -l -- ${(P)2}; }\n"
-              "words=(x); state=command; source ./_carom; _carom_render; _carom_sweep; _carom_bench_kernel",
+              "words=(x); state=command; source ./_carom; _carom_render; _carom_sweep",
               folder.path().string());
     EXPECT_EQ(seen.status, 0) << seen.err;
-    for (const char* line : {"*--vary[What varies and how", "*--only[Time only", ":SCENE:_files",
+    for (const char* line : {"*--vary[What varies and how", ":SCENE:_files",
                              "(--camera)--camera[Camera (default", ":NAME:(top rail player follow)"})
         EXPECT_NE(seen.out.find(line), std::string::npos) << line << "\n" << seen.out;
 }
@@ -89,9 +89,9 @@ TEST(CliDescribe, TheManPageHasEveryCommandAndIsCleanRoff) {
     const std::string page = described("man");
     EXPECT_EQ(page.rfind(".TH CAROM 1 ", 0), 0u);
     for (const char* text :
-         {".SS \"carom simulate SCENE [options]\"", ".SS \"carom-lab bench kernel [options]\"",
-          ".SS \"carom accuracy SCENE [options]\"", "\\fB\\-o, \\-\\-output\\fR \\fIPATTERN\\fR",
-          "\\-\\-vary KEY=DISTRIBUTION", "One of top, rail, player, follow."})
+         {".SS \"carom simulate SCENE [options]\"", ".SS \"carom accuracy SCENE [options]\"",
+          "\\fB\\-o, \\-\\-output\\fR \\fIPATTERN\\fR", "\\-\\-vary KEY=DISTRIBUTION",
+          "One of top, rail, player, follow."})
         EXPECT_NE(page.find(text), std::string::npos) << text;
     folder.write("carom.1", page);
     if (run_process({"groff", "--version"}).status != 0) GTEST_SKIP() << "groff is not installed";
@@ -105,8 +105,7 @@ TEST(Formats, ThePageOfTheCommandLineIsThatOfTheOptions) {
     EXPECT_TRUE(read_source("docs/reference/command_line.md") == page)
         << "docs/reference/command_line.md is stale; run tools/renew_formats.py";
     for (const char* text :
-         {"\n## carom-lab bench kernel\n",
-          "\n`carom sweep SCENE --vary KEY=DISTRIBUTION --count N --output FILE.csv`\n",
+         {"\n## carom sweep\n", "\n`carom sweep SCENE --vary KEY=DISTRIBUTION --count N --output FILE.csv`\n",
           "* `--jobs N`: Threads that encode and write; 0: one per core (default: 0); 0 to 256\n",
           "; one of `top`, `rail`, `player`, `follow`\n", "143 terminated"})
         EXPECT_NE(page.find(text), std::string::npos) << text;

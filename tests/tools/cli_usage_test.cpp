@@ -20,7 +20,7 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         {{},
          "a command is missing: simulate, render, view, export, compare, margin, accuracy, sweep, check, "
          "impact or describe; see carom --help"},
-        {{"accuracy"}, "accuracy: a scene file is required; see carom accuracy --help"},
+        {{"accuracy"}, "accuracy: a scene file is required; see --help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
         {{"simulate"}, "SCENE is required; see carom simulate --help"},

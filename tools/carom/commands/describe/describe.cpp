@@ -29,8 +29,8 @@ std::string meaning(const Option& row) {
 }
 
 bool takes_file(const Option& row) {
-    // What is known by its place is a scene or a record, but for the cases of carom-lab validate.
-    if (row.by_place()) return row.choices.empty() && row.names.front() != "CASE";
+    // What is known by its place is a scene or a record.
+    if (row.by_place()) return row.choices.empty();
     return row.value.find("FILE") != std::string::npos || row.value.find("PATTERN") != std::string::npos;
 }
 
@@ -191,23 +191,15 @@ void bash_cases(std::string& out, const Options& command, const std::string& pat
     }
     out += "    '" + path + "')\n        case \"$before\" in\n" + values + "        *) words='" +
            joined(words, " ") + "'" + (any_file ? " files=1" : "") + " ;;\n        esac ;;\n";
-    for (const Options& inner : command.commands)
-        bash_cases(out, inner, path.empty() ? inner.name : path + " " + inner.name);
+    for (const Options& inner : command.commands) bash_cases(out, inner, inner.name);
 }
 
 std::string bash_completion(const Options& program) {
-    std::string groups;
-    for (const Options& command : program.commands)
-        if (!command.commands.empty()) groups += (groups.empty() ? "" : "|") + command.name;
     std::string out =
         "# Completion of carom for bash; made by: carom describe bash\n_carom() {\n"
         "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
         "    local command= words= files=\n"
-        "    if [ \"$COMP_CWORD\" -gt 1 ]; then\n"
-        "        command=${COMP_WORDS[1]}\n"
-        "        case \"$command\" in\n        " +
-        groups +
-        ") [ \"$COMP_CWORD\" -gt 2 ] && command=\"$command ${COMP_WORDS[2]}\" ;;\n        esac\n    fi\n"
+        "    [ \"$COMP_CWORD\" -gt 1 ] && command=${COMP_WORDS[1]}\n"
         "    case \"$command\" in\n";
     bash_cases(out, program, "");
     out +=
@@ -236,41 +228,38 @@ std::string zsh_value(const Option& row) {
     return takes_file(row) ? "_files" : " ";
 }
 
-void zsh_function(std::string& out, const Options& command, const std::string& name) {
-    const std::list<Options>& inner = command.commands;
-    for (const Options& sub : inner) zsh_function(out, sub, name + "_" + sub.name);
-    out += name + "() {\n";
-    if (!inner.empty()) out += "    local curcontext=\"$curcontext\" state line\n    local -a commands\n";
-    out += inner.empty() ? "    _arguments" : "    _arguments -C";
+/// The arguments of _arguments that a command's options and places are.
+std::string zsh_arguments(const Options& command) {
+    std::string out;
     for (const Option& row : rows_of(command, false)) {
         const std::string names = joined(row.names, ",");
-        const bool one = row.names.size() == 1;
-        out += fmt::format(" \\\n        '{}'{}'[{}]",
-                           row.may_be_repeated() ? "*" : fmt::format("({})", joined(row.names, " ")),
-                           one ? names : fmt::format("{{{}}}", names), zsh_text(meaning(row)));
+        out +=
+            fmt::format(" \\\n        '{}'{}'[{}]",
+                        row.may_be_repeated() ? "*" : fmt::format("({})", joined(row.names, " ")),
+                        row.names.size() == 1 ? names : fmt::format("{{{}}}", names), zsh_text(meaning(row)));
         if (!row.value.empty()) out += fmt::format(":{}:{}", zsh_text(row.value), zsh_value(row));
         out += "'";
     }
-    if (inner.empty()) {
-        for (const Option& row : rows_of(command, true))
-            out += fmt::format(" \\\n        ':{}:{}'", zsh_text(row.names.front()), zsh_value(row));
-        out += "\n}\n";
-        return;
-    }
-    out +=
-        " \\\n        '1:command:->command' '*::argument:->argument'\n    case $state in\n    command)\n     "
-        "   commands=(";
-    for (const Options& sub : inner)
-        out += "\n            '" + sub.name + ":" + replaced(sub.text, "'", "'\\''") + "'";
-    out += ")\n        _describe command commands ;;\n    argument)\n        case $words[1] in\n";
-    for (const Options& sub : inner) out += "        " + sub.name + ") " + name + "_" + sub.name + " ;;\n";
-    out += "        esac ;;\n    esac\n}\n";
+    for (const Option& row : rows_of(command, true))
+        out += fmt::format(" \\\n        ':{}:{}'", zsh_text(row.names.front()), zsh_value(row));
+    return out;
 }
 
 std::string zsh_completion(const Options& program) {
-    std::string out = "#compdef carom\n# Completion of carom for zsh; made by: carom describe zsh\n";
-    zsh_function(out, program, "_carom");
-    return out + "_carom \"$@\"\n";
+    std::string functions, names, cases;
+    for (const Options& command : program.commands) {
+        functions +=
+            fmt::format("_carom_{}() {{\n    _arguments{}\n}}\n", command.name, zsh_arguments(command));
+        names += fmt::format("\n            '{}:{}'", command.name, replaced(command.text, "'", "'\\''"));
+        cases += fmt::format("        {0}) _carom_{0} ;;\n", command.name);
+    }
+    return fmt::format(
+        "#compdef carom\n# Completion of carom for zsh; made by: carom describe zsh\n{}"
+        "_carom() {{\n    local curcontext=\"$curcontext\" state line\n    local -a commands\n"
+        "    _arguments -C{} \\\n        '1:command:->command' '*::argument:->argument'\n    case $state in\n"
+        "    command)\n        commands=({})\n        _describe command commands ;;\n"
+        "    argument)\n        case $words[1] in\n{}        esac ;;\n    esac\n}}\n_carom \"$@\"\n",
+        functions, zsh_arguments(program), names, cases);
 }
 
 // ---- the command -----------------------------------------------------------------------------------------
