@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -164,5 +164,16 @@ class Scene:
 def _from_tree(tree: Mapping[str, Any], name: str) -> _carom.Scene:
     try:
         return _carom.parse_scene(_toml.document(tree, name), name)
+    except SceneError as error:
+        raise _placeless(error) from None
+
+
+def scene_with_cue(cue: str | Mapping[str, Any] | None, make: Callable[[str], _carom.Scene], **standard: Any) -> Scene:
+    """The scene that `make` makes with the section [cue] of this cue, or without one.
+
+    standard: what the cue has where it does not say anything else
+    """
+    try:
+        return Scene._of(make("" if cue is None else _toml.document({"cue": standard | dict(_section(cue, "preset"))}, "scene")))
     except SceneError as error:
         raise _placeless(error) from None

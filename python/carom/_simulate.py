@@ -11,11 +11,10 @@ import numpy as np
 
 from carom import _carom
 from carom._record import Record
+from carom._scene import Scene
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
-
-    from carom._scene import Scene
 
 #: The columns of `simulate_many(cue=...)`.
 _CUE_KEYS = ("cue.speed", "cue.aim_deg", "cue.elevation_deg", "cue.offset.side", "cue.offset.height")
@@ -38,6 +37,27 @@ def simulate(scene: Scene, *, until: float | None = None, max_events: int | None
     """
     _limits(until, max_events)
     return Record._of(_carom.simulate(scene._native, until, max_events, verify))
+
+
+class SimulationError(RuntimeError):
+    """A run that cannot go on, or one whose record breaks a law (`verify=True`). `str()` says why.
+
+    record: what happened until then, or None where nothing was kept
+    """
+
+    record: Record | None
+
+    def __init__(self, message: str, record: Record | None = None) -> None:
+        super().__init__(message, record)
+        self.record = record
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+def simulation_error(message: str, native: _carom.Record | None) -> SimulationError:
+    """For the extension module."""
+    return SimulationError(message, None if native is None else Record._of(native))
 
 
 class ShotStatus(enum.IntEnum):

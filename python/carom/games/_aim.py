@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from carom import _carom
+from carom._scene import Scene
 from carom.games._rules import _two
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from carom._scene import Scene
 
 
 class PocketLine(NamedTuple):

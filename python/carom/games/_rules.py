@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from carom import _carom, _toml
-from carom._errors import SceneError
-from carom._scene import Scene, _placeless, _section
+from carom import _carom
+from carom._record import Record
+from carom._scene import Scene, scene_with_cue
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from carom._record import Record
 
 GAMES = ("eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three")
 
@@ -168,14 +166,8 @@ def next_scene(
     Raises ValueError for a place that is missing or not allowed, for a new rack and for a game that is over; SceneError where the result is no scene.
     """
     taken = option.options[0] if isinstance(option, Verdict) else option
-    section = ""
-    if cue is not None:
-        section = _toml.document({"cue": {"ball": taken.state.cue_ball} | dict(_section(cue, "preset"))}, "scene")
-    try:
-        played = None if scene is None else scene._native
-        return Scene._of(_carom.next_table(record._native, played, taken, None if place is None else _two(place), section))
-    except SceneError as error:
-        raise _placeless(error) from None
+    played, at = None if scene is None else scene._native, None if place is None else _two(place)
+    return scene_with_cue(cue, lambda section: _carom.next_table(record._native, played, taken, at, section), ball=taken.state.cue_ball)
 
 
 def spots(record: Record) -> dict[str, tuple[float, float]]:

@@ -15,11 +15,10 @@ except ImportError as error:
     raise ImportError("carom.gym.match needs PettingZoo: pip install 'carom-billiards[gym]'") from error
 
 from carom import games
-from carom._errors import SimulationError
 from carom._record import Record
 from carom._render import render
 from carom._scene import Scene
-from carom._simulate import ShotStatus, simulate
+from carom._simulate import ShotStatus, SimulationError, simulate
 from carom.gym._env import check_render_mode, noise_of
 from carom.gym._games import Game, States
 from carom.gym._strikes import Strikes

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.io.pooltool import POCKETS, STATES
+from carom._record import Record
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from carom._record import Record
-
+#: The names of pooltool's motion states, by number.
+STATES = ("stationary", "spinning", "sliding", "rolling", "pocketed")
+#: Pockets in the order of carom's p1 to p6.
+POCKETS = ("lb", "lc", "lt", "rt", "rc", "rb")
 #: Seconds between two states where pooltool has no formula for the motion.
 _STEP = 0.005
 #: How deep a pocket is in pooltool's pictures [m].

@@ -9,20 +9,16 @@ from __future__ import annotations
 import json
 import math
 import os
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 from carom._errors import SceneError
+from carom._record import Record
 from carom._scene import Scene
-
-if TYPE_CHECKING:
-    from carom._record import Record
+from carom.io import _system
+from carom.io._system import POCKETS, STATES
 
 __all__ = ["load", "save"]
 
-#: The names of pooltool's motion states, by number.
-STATES = ("stationary", "spinning", "sliding", "rolling", "pocketed")
-#: Pockets in the order of carom's p1 to p6.
-POCKETS = ("lb", "lc", "lt", "rt", "rc", "rb")
 #: The friction of balls in pooltool, a + b exp(-c u), which is part of its models and not of a file.
 FRICTION = (0.009951, 0.108, 1.088)
 
@@ -178,7 +174,6 @@ def _parameters(params: _Tree) -> tuple[float, float, dict[str, dict[str, Any]]]
     return radius, params.at("m").number(), {"balls": balls, "physics": physics}
 
 
-
 def _struck(root: _Tree) -> bool:
     """Whether the shot begins with the cue: of a System that was simulated, as it was; of another, as pooltool would."""
     events = [event.at("event_type").text() for event in root.at("events").parts()]
@@ -214,8 +209,6 @@ def save(record: Record, path: str | os.PathLike[str]) -> None:
 
     Raises ValueError for a name that does not end in .json and for balls that are not alike, OSError where the file cannot be written.
     """
-    from carom.io import _system
-
     name = os.fspath(path)
     if not name.endswith(".json"):
         raise ValueError(f"{name}: a System is saved as .json")

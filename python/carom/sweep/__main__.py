@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from carom._errors import SceneError
 from carom.sweep import _folder, _run, _slurm
 from carom.sweep._plan import Plan, SweepError, plan
+from carom.sweep._shard import need
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -141,8 +142,6 @@ def _play(args: argparse.Namespace, of: Plan, folder: str) -> int:
 
 
 def _dask_client(address: str) -> Any:
-    from carom.sweep._shard import need
-
     need("distributed")
     import distributed
 

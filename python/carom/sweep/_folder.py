@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -80,8 +81,6 @@ def _described(schema: pyarrow.Schema) -> tuple[object, ...]:
 
 def _check_shard(plan: Plan, shard: int, path: str) -> dict[str, int]:
     """Reads a whole shard; its outcomes. Raises SweepError for anything that is not as it was written."""
-    import json
-
     import pyarrow.parquet
 
     about = footer(plan, shard, path)

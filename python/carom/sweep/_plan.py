@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
@@ -74,8 +76,6 @@ class Plan(NamedTuple):
 
     def text(self) -> str:
         """The file: JSON."""
-        import json
-
         return json.dumps({**self._content(), "sha256": self.id}, indent=1, ensure_ascii=False) + "\n"
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -90,8 +90,6 @@ class Plan(NamedTuple):
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Plan:
         """Reads a plan. Raises SweepError for a file that is none, or that was changed."""
-        import json
-
         name = os.fspath(path)
         try:
             with open(name, encoding="utf-8") as file:
@@ -113,15 +111,11 @@ class Plan(NamedTuple):
 
 
 def sha256(data: bytes) -> str:
-    import hashlib
-
     return hashlib.sha256(data).hexdigest()
 
 
 def canonical(tree: Any) -> bytes:
     """A tree as bytes that are equal if and only if the trees are."""
-    import json
-
     return json.dumps(tree, ensure_ascii=False, sort_keys=True, separators=(",", ":")).encode()
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 import queue
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, CancelledError, ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from carom.sweep._folder import PLAN, in_parallel, status
@@ -117,8 +118,6 @@ class _Tasks:
 
     def next(self) -> tuple[int, Any]:
         """The shard whose work has ended, and its result."""
-        from concurrent.futures import CancelledError
-
         while True:
             shard, future = self.ended.get()
             if self.running.pop(shard, None) is None:
@@ -251,8 +250,6 @@ def _take(count: _Count, results: Iterator[Any]) -> None:
 
 
 def _count_what_is_there(count: _Count, folder: str, shards: Iterable[int]) -> None:
-    import json
-
     plan = count.plan
     for about in in_parallel(lambda shard: footer(plan, shard, os.path.join(folder, plan.file(shard))), shards):
         count.add(json.loads(about["carom.outcomes"]), played=False)

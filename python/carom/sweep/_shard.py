@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
+import importlib
+import json
 import os
 import threading
 import time
@@ -35,8 +38,6 @@ class Stopped(Exception):
 
 def need(name: str) -> None:
     """Raises ImportError that says where the package comes from."""
-    import importlib
-
     try:
         importlib.import_module(name)
     except ImportError as error:
@@ -47,8 +48,6 @@ class ContentHash:
     """SHA-256 of a table's content: names, types, values. It does not depend on how the table is cut, nor on what wrote a file."""
 
     def __init__(self, schema: pyarrow.Schema) -> None:
-        import hashlib
-
         import pyarrow
 
         with _FIRST_ARRAY:
@@ -157,8 +156,6 @@ class Tally:
     """Of the shots of a shard: how they ended, and the digest of their records."""
 
     def __init__(self) -> None:
-        import hashlib
-
         self.counts = np.zeros(len(OUTCOMES), np.int64)
         self.records: Any = hashlib.sha256()
 
@@ -295,8 +292,6 @@ def _publish(plan: Plan, shard: int, temporary: str, path: str, about: dict[str,
 
 
 def _result(plan: Plan, shard: int, path: str, about: dict[str, str], *, played: bool, start: float) -> dict[str, Any]:
-    import json
-
     first, last = plan.range(shard)
     return {
         "shard": shard,
