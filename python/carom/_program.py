@@ -10,7 +10,8 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from carom._scene import Scene
+from carom._arguments import checked
+from carom._scene import SceneLike, as_scene
 
 _PROGRAM = os.path.join(os.path.dirname(__file__), "bin", "carom")
 
@@ -59,7 +60,7 @@ def _write(path: str, text: str) -> None:
         file.write(text)
 
 
-def _report(arguments: Sequence[str], scene: Scene | None, table: bool) -> dict[str, Any]:
+def _report(arguments: Sequence[str], scene: SceneLike | None, table: bool) -> dict[str, Any]:
     """Runs a command with --json, and with --csv where `table` says so: then its columns stand under "table"."""
     import csv
     import tempfile
@@ -67,7 +68,7 @@ def _report(arguments: Sequence[str], scene: Scene | None, table: bool) -> dict[
     with tempfile.TemporaryDirectory(prefix="carom-") as folder:
         command = [*arguments, "--json"]
         if scene is not None:
-            _write(os.path.join(folder, "scene.toml"), scene.source)
+            _write(os.path.join(folder, "scene.toml"), as_scene(scene).source)
             command.append("scene.toml")
         rows = os.path.join(folder, "table.csv")
         if table:
@@ -80,8 +81,9 @@ def _report(arguments: Sequence[str], scene: Scene | None, table: bool) -> dict[
         return result
 
 
+@checked
 def margin(
-    scene: Scene, *, runs: int = 5, fps: float | None = None, size: tuple[int, int] | None = None, render: bool = True, backend: str = "egl"
+    scene: SceneLike, *, runs: int = 5, fps: float | None = None, size: tuple[int, int] | None = None, render: bool = True, backend: str = "egl"
 ) -> dict[str, Any]:
     """What every frame of a shot costs against 1/fps: the report of `carom margin` as data (docs/guide/margin.md).
 
@@ -103,8 +105,9 @@ def margin(
     return _report(options, scene, table=True)
 
 
+@checked
 def accuracy(
-    scene: Scene | None = None,
+    scene: SceneLike | None = None,
     *,
     target: float | None = None,
     march: Sequence[int] | None = None,

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 
 from carom import _carom, _program
-from carom._scene import Scene, scene_with_cue
+from carom._arguments import checked
+from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
 
 if TYPE_CHECKING:
     from typing import Self
@@ -49,6 +50,7 @@ class TablePlan(NamedTuple):
     pockets: list[tuple[str, float, float, float]]
 
 
+@checked
 class Record:
     """What happened in a shot: motion segments in closed form, and events. Immutable.
 
@@ -170,7 +172,7 @@ class Record:
         self._native.orientations(times, turned.reshape(-1))
         return turned
 
-    def final_scene(self, *, scene: Scene | None = None, cue: Any = None) -> Scene:
+    def final_scene(self, *, scene: SceneLike | None = None, cue: Any = None) -> Scene:
         """The scene for the next shot: the balls where and as they are at the end, without those in pockets.
 
         scene: the one that was played; needed for a record that was loaded from a file, which has no physics
@@ -179,7 +181,8 @@ class Record:
         Raises ValueError without a scene, and SceneError where the result is none: no ball is left, or the one that is struck is gone
         or still moves.
         """
-        return scene_with_cue(cue, lambda section: self._native.scene_after(None if scene is None else scene._native, section))
+        played = None if scene is None else as_scene(scene)._native
+        return scene_with_cue(cue, lambda section: self._native.scene_after(played, section))
 
     def to_pandas(self, what: Literal["events", "segments"] = "events") -> pandas.DataFrame:
         """The events, or the motion segments of all balls, as a DataFrame; a copy. Needs pandas (extra [notebook]).

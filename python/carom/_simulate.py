@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from carom import _carom
+from carom._arguments import checked
 from carom._record import Record
-from carom._scene import Scene
+from carom._scene import Scene, SceneLike, as_scene
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -27,16 +28,18 @@ def _limits(until: float | None, max_events: int | None) -> None:
         raise ValueError(f"max_events={max_events}: expected at least 0")
 
 
-def simulate(scene: Scene, *, until: float | None = None, max_events: int | None = None, verify: bool = False) -> Record:
+@checked
+def simulate(scene: SceneLike, *, until: float | None = None, max_events: int | None = None, verify: bool = False) -> Record:
     """Plays one shot to rest, to a time [s] or to a number of events.
 
+    scene: or the path of its file, or its tree as for `Scene.from_dict`
     verify: check the laws of mechanics after every event
 
     Raises SimulationError, with the record so far, for a run that cannot go on or breaks a law; never hangs. Raises SceneError
     where [effects] leaves out what the scene needs, and ValueError for a limit that is none.
     """
     _limits(until, max_events)
-    return Record._of(_carom.simulate(scene._native, until, max_events, verify))
+    return Record._of(_carom.simulate(as_scene(scene)._native, until, max_events, verify))
 
 
 class SimulationError(RuntimeError):
@@ -71,6 +74,7 @@ class ShotStatus(enum.IntEnum):
     FAILED = 5  # the simulation could not go on
 
 
+@checked
 class Shots(NamedTuple):
     """n shots of b balls, in the order of `scene.ids`. A shot without a result has its status, NaN as duration and places, 0 events,
     -1 and 0 elsewhere, and a message."""
@@ -154,8 +158,9 @@ def _array(name: str, values: ArrayLike, shape: tuple[int, ...], words: str) -> 
     return array
 
 
+@checked
 def simulate_many(
-    scene: Scene,
+    scene: SceneLike,
     *,
     cue: ArrayLike | None = None,
     xy: ArrayLike | None = None,
@@ -170,6 +175,7 @@ def simulate_many(
     """Plays n shots that differ in numbers. Shot i has the bits of `simulate` for the scene with these numbers, whatever the number
     of threads; one that fails has its status and does not raise for the others.
 
+    scene: as for `simulate`
     cue: (n, 5): speed [m/s], aim_deg, elevation_deg, side, height; the scene has to have a cue
     xy: (n, balls, 2) places at the start [m]; a ball with NaN twice is left out of its shot
     params: (n,) for each key, such as "balls.mu_s", "physics.gravity", "ball.cue.velocity.y", "cue.offset.side"
@@ -185,6 +191,7 @@ def simulate_many(
     _limits(until, max_events)
     if threads < 0:
         raise ValueError(f"threads={threads}: expected at least 0")
+    scene = as_scene(scene)
     ids = scene.ids
     n, columns, absent = _columns_of(scene, cue, xy, params, shots)
     into = Shots.empty(n, len(ids), hashes=hashes) if out is None else _checked(out, n, len(ids), hashes)

@@ -62,7 +62,7 @@ RecordObject simulate_one(const NativeScene& native, std::optional<double> until
         record = error.so_far();
     }
     for (const std::string& warning : warnings)
-        if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 2) != 0) throw nb::python_error();
+        if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 3) != 0) throw nb::python_error();
     if (!why.empty())
         raise_simulation_error(why, record ? nb::object(held(record, native.scene)) : nb::none());
     return held(std::move(record), native.scene);

@@ -58,7 +58,7 @@ def test_a_mapping_says_the_same():
 
 def test_what_is_wrong_is_said(draw_scene):
     for call, message in [
-        (lambda: sweep.columns(draw_scene, "cue.speed=uniform(2,4)", 5), "vary: expected a list"),
+        (lambda: sweep.columns(draw_scene, "cue.speed=uniform(2,4)", 5), "vary: expected a mapping or a list"),
         (lambda: sweep.columns(draw_scene, ["cue.speed=gauss(2)"], 5), "unknown distribution"),
         (lambda: sweep.columns(draw_scene, ["cue.speed=list(-1)"], 5), "none of the first"),
         (lambda: sweep.columns(draw_scene, {"cue.speed": [2.0]}, 5, last=6), "first=0, last=6"),

@@ -204,7 +204,7 @@ def test_what_cannot_be_planned_is_said():
         ({"shots": 2**53}, "more than 10000000 shards; take at least 900719926 shots for each"),
         ({"hashes": "all"}, "hashes='all': expected one of none, digest, column"),
         ({"seed": -1}, "seed=-1"),
-        ({"vary": "cue.speed=uniform(1,2)"}, "vary: expected a list"),
+        ({"vary": "cue.speed=uniform(1,2)"}, "vary: expected a mapping or a list"),
         ({"vary": ["cue.spede=uniform(1,2)"]}, r"unknown key \"spede\" in \[cue\]; .*; did you mean speed\?"),
     ]:
         with pytest.raises(ValueError, match=message):
@@ -251,7 +251,7 @@ import sys
 sys.modules["pyarrow"] = None
 from carom import sweep
 try:
-    sweep.run(None, "nowhere")
+    sweep.check("nowhere")
 except ImportError as error:
     print(error)
 """

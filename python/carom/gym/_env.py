@@ -8,6 +8,7 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
+from carom._arguments import checked
 from carom._record import Record
 from carom._render import render
 from carom.games import Noise
@@ -85,6 +86,7 @@ def searched(rules: Rules, states: States, actions: ArrayLike, noise_seed: int |
     return search.rollout(states, actions, seeds, np.arange(n))
 
 
+@checked
 class TableEnv(gymnasium.Env[Observation, Any]):
     """One table. The subclasses in carom.gym say which game.
 
@@ -177,6 +179,7 @@ class TableEnv(gymnasium.Env[Observation, Any]):
         return {key: values[0] for key, values in all_of.items()} if isinstance(all_of, dict) else all_of[0]
 
 
+@checked
 class FeaturePlanes(gymnasium.ObservationWrapper[Any, Any, Any]):
     """Observes a `TableEnv` as planes for a convolution: float32 (4, height, width), y of the table along the width. One each for the cue ball, the balls that may be hit
     first, the other balls, and what the game shows beside them (a target). A ball is a cone over two radii.

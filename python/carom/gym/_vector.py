@@ -10,6 +10,7 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
+from carom._arguments import checked
 from carom._render import render
 from carom.gym._env import Observation, check_render_mode, observed, plain, rules_of, searched, spaces_of
 from carom.gym._games import Game, States
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 _Step = tuple[Observation, "NDArray[np.float64]", "NDArray[np.bool_]", "NDArray[np.bool_]", dict[str, Any]]
 
 
+@checked
 class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
     """n tables. Table i does what a `TableEnv` does that was seeded with its seed: the same bits. The other options are those of `TableEnv`.
 

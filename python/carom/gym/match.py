@@ -15,6 +15,7 @@ except ImportError as error:
     raise ImportError("carom.gym.match needs PettingZoo: pip install 'carom-billiards[gym]'") from error
 
 from carom import games
+from carom._arguments import checked
 from carom._record import Record
 from carom._render import render
 from carom._scene import Scene
@@ -39,11 +40,13 @@ _MOST_EVENTS = 1_000_000
 _PHASES = ("strike", "place")
 
 
+@checked
 def env(game: str, **options: Any) -> MatchEnv:
     """A game by its name: "EightBall", "NineBall" or "Snooker". Raises ValueError for another one."""
     return MatchEnv(game, **options)
 
 
+@checked
 class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # PettingZoo has no types
     """A game of two players by the rules of `carom.games`, from the break to its end: 1 for who wins, -1 for who loses.
 

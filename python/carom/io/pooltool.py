@@ -11,6 +11,7 @@ import math
 import os
 from typing import Any, NoReturn
 
+from carom._arguments import checked
 from carom._errors import SceneError
 from carom._record import Record
 from carom._scene import Scene
@@ -68,6 +69,7 @@ class _Tree:
         return str(self.value)
 
 
+@checked
 def load(path: str | os.PathLike[str]) -> Scene:
     """The scene of a System, from its start; of one that was simulated, what was simulated.
 
@@ -199,6 +201,7 @@ def _cue(root: _Tree) -> dict[str, Any] | None:
     }
 
 
+@checked
 def save(record: Record, path: str | os.PathLike[str]) -> None:
     """Writes a record as a simulated System, whole or not at all, which pooltool 0.6.0 loads, shows and evaluates.
 

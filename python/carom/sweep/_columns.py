@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from carom import _carom, _toml
-from carom._scene import Scene
+from carom._arguments import checked
+from carom._scene import SceneLike, as_scene
 from carom._simulate import Shots, ShotStatus
 
 if TYPE_CHECKING:
@@ -42,8 +43,6 @@ Column = np.ndarray[Any, Any] | Texts | Counts
 
 def rules_of(vary: Mapping[str, Any] | Sequence[str]) -> list[str]:
     """Rules of `carom sweep --vary`."""
-    if isinstance(vary, str):
-        raise ValueError('vary: expected a list of rules such as ["cue.speed=uniform(2,4)"], or a mapping')
     if not isinstance(vary, Mapping):
         return list(vary)
     rules = []
@@ -86,9 +85,10 @@ class Player:
     Raises ValueError for a rule that cannot be read or that gives no valid scene.
     """
 
-    def __init__(self, scene: Scene, vary: Mapping[str, Any] | Sequence[str], seed: int) -> None:
+    def __init__(self, scene: SceneLike, vary: Mapping[str, Any] | Sequence[str], seed: int) -> None:
         if not 0 <= seed < 2**64:
             raise ValueError(f"seed={seed}: expected 0 to 2**64 - 1")
+        scene = as_scene(scene)
         self.rules = rules_of(vary)
         self.ids = scene.ids
         self._sweep = _carom.make_sweep(scene._native, self.rules, seed)
@@ -172,8 +172,9 @@ def _shots(shots: int, first: int, last: int | None, threads: int) -> tuple[int,
     return first, end
 
 
+@checked
 def columns(
-    scene: Scene,
+    scene: SceneLike,
     vary: Mapping[str, Any] | Sequence[str],
     shots: int,
     *,
@@ -233,8 +234,9 @@ def arrow_schema(types: Mapping[str, tuple[str, str]], about: Mapping[str, str])
     return pyarrow.schema(fields, metadata=dict(about))
 
 
+@checked
 def table(
-    scene: Scene,
+    scene: SceneLike,
     vary: Mapping[str, Any] | Sequence[str],
     shots: int,
     *,
@@ -246,6 +248,7 @@ def table(
     """`columns` as a pyarrow Table, whose metadata say where it comes from: scene, vary, seed, first, last, version; the metadata of a
     column have its unit. What a shot without a result lacks is null. Needs pyarrow (extra [sweep])."""
     first, end = _shots(shots, first, last, threads)
+    scene = as_scene(scene)
     player = Player(scene, vary, seed)
     played, _ = player.play(first, end, threads)
     about = {

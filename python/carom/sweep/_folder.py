@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
+from carom._arguments import checked
 from carom.sweep._plan import Plan, SweepError
 from carom.sweep._shard import UNFINISHED, ContentHash, _first_line, footer, need, schema_of
 
@@ -46,6 +47,7 @@ class Check(NamedTuple):
         return not self.faults and not self.missing
 
 
+@checked
 def status(folder: str | os.PathLike[str]) -> Status:
     """Which shards of a sweep are there. No file but the plan is read: one that has its name is whole. Raises SweepError where there is
     no plan."""
@@ -100,6 +102,7 @@ def _check_shard(plan: Plan, shard: int, path: str) -> dict[str, int]:
     return outcomes
 
 
+@checked
 def check(folder: str | os.PathLike[str], *, threads: int = 0) -> Check:
     """Reads every file of a sweep and compares its content with its hash and its description with the plan.
 
@@ -132,6 +135,7 @@ def check(folder: str | os.PathLike[str], *, threads: int = 0) -> Check:
     return Check(found.plan, rows, outcomes, faults, found.missing)
 
 
+@checked
 def open(folder: str | os.PathLike[str], *, verify: bool = True, partial: bool = False) -> pyarrow.dataset.Dataset:
     """The rows of a sweep as a pyarrow Dataset, in the order of the shots. Its columns are those of `carom sweep`, with their units.
 

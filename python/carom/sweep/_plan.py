@@ -10,7 +10,8 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from carom import _carom
-from carom._scene import Scene
+from carom._arguments import checked
+from carom._scene import Scene, SceneLike, as_scene
 from carom.sweep._columns import MOST_SHOTS, Player
 
 FORMAT = "carom sweep plan 1"
@@ -28,6 +29,7 @@ class SweepError(RuntimeError):
     """A plan, a folder or a worker that does not fit, or a file that is not what it has to be. `str()` names them and says what to do."""
 
 
+@checked
 class Plan(NamedTuple):
     """What the shots of a sweep are. Make one by `plan`, or read one by `Plan.load`."""
 
@@ -167,8 +169,9 @@ def wrong_worker(plan: Plan) -> str:
     return ""
 
 
+@checked
 def plan(
-    scene: Scene | str | os.PathLike[str],
+    scene: SceneLike,
     vary: Mapping[str, Any] | Sequence[str],
     shots: int,
     *,
@@ -178,7 +181,7 @@ def plan(
 ) -> Plan:
     """The plan of a sweep; it plays no more than the first few shots.
 
-    scene: or the path of its file
+    scene: or the path of its file, or its tree
     vary: rules as for `carom sweep --vary`, or a mapping from keys to distributions ("normal(0.5)") or lists of values
     shots: at most 2**53
     seed: of all draws
@@ -189,8 +192,7 @@ def plan(
     Raises ValueError for a number out of its range and for a rule that cannot be read or that gives no valid scene, SceneError
     for the scene.
     """
-    if not isinstance(scene, Scene):
-        scene = Scene.load(scene)
+    scene = as_scene(scene)
     if not 1 <= shots <= MOST_SHOTS:
         raise ValueError(f"shots={shots}: expected 1 to 2**53")
     if shard < 1:

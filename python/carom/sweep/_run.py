@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, CancelledError, ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from carom._arguments import checked
 from carom.sweep._folder import PLAN, in_parallel, status
 from carom.sweep._plan import Plan, SweepError, wrong_worker
 from carom.sweep._shard import Stopped, Tally, footer, make_shard, need, run_shard, tables
@@ -193,6 +194,7 @@ def _executor(executor: Any) -> Any:
     return executor
 
 
+@checked
 def run(
     plan: Plan,
     folder: str | os.PathLike[str],
@@ -277,6 +279,7 @@ def _merge(a: Any, b: Any) -> Any:
     return a + b
 
 
+@checked
 def reduce(
     plan: Plan,
     fn: Callable[[pyarrow.Table], Any],

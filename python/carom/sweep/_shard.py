@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom import _carom
+from carom._arguments import checked
 from carom._simulate import Shots
 from carom.sweep._columns import OUTCOMES, Column, arrow, arrow_schema
 from carom.sweep._plan import HASH_EVERY, Plan, SweepError, canonical, player_of, sha256, sync_folder, wrong_worker
@@ -309,6 +310,7 @@ def _result(plan: Plan, shard: int, path: str, about: dict[str, str], *, played:
     }
 
 
+@checked
 def run_shard(plan: Plan | str | os.PathLike[str], shard: int, folder: str | os.PathLike[str], *, threads: int = 1) -> dict[str, Any]:
     """Makes one shard, unless it is there. The file appears whole or not at all, and is the same whoever makes it, and how often.
 
