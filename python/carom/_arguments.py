@@ -70,7 +70,7 @@ def _either(one: _Kind, other: _Kind) -> _Kind:
 
 def _named(name: str) -> _Kind:
     """Of a class by its name: who imports it need not be imported here."""
-    return _Kind(f"a {name} of carom", lambda value: any(base.__name__ == name for base in type(value).__mro__))
+    return _Kind(f"{'an' if name[0] in 'AEIOU' else 'a'} {name}", lambda value: any(base.__name__ == name for base in type(value).__mro__))
 
 
 def _with_items(whole: _Kind, inner: _Kind, count: int | None) -> _Kind:

@@ -84,10 +84,11 @@ WRONG = [
 def public_functions():
     """The functions and methods of carom's public names, by their names. What the classes of others define is theirs."""
     modules = [carom, carom.games, carom.kernel, carom.plot, carom.sweep, importlib.import_module("carom.io.pooltool")]
-    modules += [importlib.import_module(name) for name in ("carom.gym", "carom.gym.match") if importlib.util.find_spec("pettingzoo")]
+    if importlib.util.find_spec("pettingzoo"):
+        modules += map(importlib.import_module, ("carom.gym", "carom.gym.match", "carom.gym._env"))
     for module in modules:
-        for name in getattr(module, "__all__", ("env", "MatchEnv")):
-            public = getattr(module, name)
+        for name in getattr(module, "__all__", ("env", "MatchEnv", "TableOptions")):
+            public = getattr(module, name, None)
             if inspect.isfunction(public):
                 yield f"{module.__name__}.{name}", public
             if not inspect.isclass(public) or issubclass(public, Exception):
