@@ -54,6 +54,8 @@ def test_a_mapping_says_the_same():
         np.testing.assert_array_equal(one[name], two[name])
     assert one["cue.speed"].dtype == np.float64
     assert sweep.columns(scene, {"cue.speed": [2, 3]}, 5)["cue.speed"].dtype == np.int64
+    other = sweep.columns(scene, ["cue.speed=list(0x2,2.5)", "cue.aim_deg=list(0o132,0b1011010)"], 9)
+    assert set(other["cue.speed"]) == {2.0, 2.5} and set(other["cue.aim_deg"].tolist()) == {90}
 
 
 def test_what_is_wrong_is_said(draw_scene):

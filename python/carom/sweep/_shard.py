@@ -16,7 +16,7 @@ import numpy as np
 from carom import _carom
 from carom._arguments import checked
 from carom._simulate import Shots
-from carom.sweep._columns import OUTCOMES, Column, arrow, arrow_schema
+from carom.sweep._columns import OUTCOMES, Column, arrow, arrow_schema, provenance
 from carom.sweep._plan import HASH_EVERY, Plan, SweepError, canonical, player_of, sha256, sync_folder, wrong_worker
 
 if TYPE_CHECKING:
@@ -88,22 +88,14 @@ class ContentHash:
         return sha256(canonical([self.rows, streams]))
 
 
-def provenance(plan: Plan, first: int, last: int) -> dict[str, str]:
+def about_rows(plan: Plan, first: int, last: int) -> dict[str, str]:
     """What every file and dataset of a plan says about itself."""
-    return {
-        "carom.plan": plan.id,
-        "carom.version": plan.version,
-        "carom.scene": plan.scene,
-        "carom.scene_sha256": sha256(plan.scene.encode()),
-        "carom.vary": "\n".join(plan.vary),
-        "carom.seed": str(plan.seed),
-        "carom.first": str(first),
-        "carom.last": str(last),
-    }
+    own = {"carom.plan": plan.id, "carom.version": plan.version, "carom.scene": plan.scene, "carom.scene_sha256": sha256(plan.scene.encode())}
+    return own | provenance(plan.scene, plan.vary, plan.seed, first, last)
 
 
 def schema_of(plan: Plan, first: int, last: int) -> pyarrow.Schema:
-    return arrow_schema(plan.types(), provenance(plan, first, last))
+    return arrow_schema(plan.types(), about_rows(plan, first, last))
 
 
 def footer(plan: Plan, shard: int, path: str) -> dict[str, str]:
@@ -118,7 +110,7 @@ def footer(plan: Plan, shard: int, path: str) -> dict[str, str]:
         raise SweepError(f"{path}: no whole Parquet file ({_first_line(error)}); remove it, and it is made again") from None
     digest = said.pop("carom.sha256", None)
     if "carom.plan" in said and digest == sha256(canonical(said)):
-        for name, wanted in provenance(plan, *plan.range(shard)).items():
+        for name, wanted in about_rows(plan, *plan.range(shard)).items():
             if said.get(name) != wanted:
                 words = f"shots {said.get('carom.first')} to {said.get('carom.last')}" if said["carom.plan"] == plan.id else f"plan {said['carom.plan']}"
                 raise SweepError(f"{path}: a file of {words}, not of shard {shard} of plan {plan.id}; take another folder, or remove the file")
@@ -219,7 +211,7 @@ def _write(plan: Plan, shard: int, file: Any, threads: int, stop: Callable[[], b
         for table in tables(plan, shard, threads, stop, tally):
             content.add(table)
             writer.write_table(table, row_group_size=_ROW_GROUP)
-        about = provenance(plan, first, last) | {
+        about = about_rows(plan, first, last) | {
             "carom.writer": f"pyarrow {pyarrow.__version__}",
             "carom.content": content.hexdigest(),
             "carom.records": "" if plan.hashes == "none" else tally.records.hexdigest(),
