@@ -10,7 +10,6 @@ import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from carom._errors import SceneError
 from carom.sweep import _folder, _run, _slurm
 from carom.sweep._plan import Plan, SweepError, plan
 from carom.sweep._shard import need
@@ -68,8 +67,6 @@ def _new_plan(args: argparse.Namespace) -> int:
         _usage("--scene needs --vary and --shots")
     try:
         made = plan(args.scene, args.vary, args.shots, seed=args.seed, shard=args.shard, hashes=args.hashes)
-    except SceneError as error:
-        return _complain(error, 2)
     except ValueError as error:
         return _complain(error, 2)
     made.save(args.plan)

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from carom import _carom
 from carom._arguments import checked
+from carom._files import whole_file
 from carom._scene import Scene, SceneLike, as_scene
 from carom.sweep._columns import MOST_SHOTS, Player
 
@@ -87,7 +88,11 @@ class Plan(NamedTuple):
             if Plan.load(name) != self:
                 raise SweepError(f"{name}: there is another plan already; remove it, or write to another place")
             return
-        write_whole(name, self.text().encode())
+        try:
+            with whole_file(name) as file:
+                file.write(self.text().encode())
+        except OSError as error:
+            raise SweepError(f"{name}: cannot write it: {error.strerror}") from None
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Plan:
@@ -119,30 +124,6 @@ def sha256(data: bytes) -> str:
 def canonical(tree: Any) -> bytes:
     """A tree as bytes that are equal if and only if the trees are."""
     return json.dumps(tree, ensure_ascii=False, sort_keys=True, separators=(",", ":")).encode()
-
-
-def write_whole(path: str, data: bytes) -> None:
-    """The file appears complete or not at all, and stays after a power cut."""
-    temporary = f"{path}.{os.urandom(4).hex()}.tmp"
-    try:
-        with open(temporary, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
-    except OSError as error:
-        if os.path.exists(temporary):
-            os.unlink(temporary)
-        raise SweepError(f"{path}: cannot write it: {error.strerror}") from None
-    sync_folder(os.path.dirname(path) or ".")
-
-
-def sync_folder(path: str) -> None:
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 @lru_cache(maxsize=8)

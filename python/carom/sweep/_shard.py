@@ -15,9 +15,10 @@ import numpy as np
 
 from carom import _carom
 from carom._arguments import checked
+from carom._files import whole_file
 from carom._simulate import Shots
 from carom.sweep._columns import OUTCOMES, Column, arrow, arrow_schema, provenance
-from carom.sweep._plan import HASH_EVERY, Plan, SweepError, canonical, player_of, sha256, sync_folder, wrong_worker
+from carom.sweep._plan import HASH_EVERY, Plan, SweepError, canonical, player_of, sha256, wrong_worker
 
 if TYPE_CHECKING:
     import pyarrow
@@ -258,20 +259,14 @@ def make_shard(plan: Plan, shard: int, folder: str, threads: int, stop: Callable
         raise SweepError(f"{folder}: there is no such folder on {_host()}; all workers have to see the folder of the sweep")
     growing = os.path.join(folder, UNFINISHED)
     temporary = os.path.join(growing, f"{name}.{_host()}.{os.getpid()}.{os.urandom(4).hex()}.tmp")
+    about: dict[str, str] = {}
     try:
         os.makedirs(growing, exist_ok=True)
         _forget_the_dead(growing, name)
-        with open(temporary, "xb") as file:
-            about = _write(plan, shard, file, threads, stop)
-            file.flush()
-            os.fsync(file.fileno())
-        _publish(plan, shard, temporary, path, about)
-        sync_folder(folder)
+        with whole_file(path, temporary, lambda *_: _publish(plan, shard, temporary, path, about)) as file:
+            about |= _write(plan, shard, file, threads, stop)
     except OSError as error:
         raise OSError(error.errno, f"cannot write: {error.strerror or error}", path) from None
-    finally:
-        if os.path.exists(temporary):
-            os.unlink(temporary)
     return _result(plan, shard, path, about, played=True, start=start)
 
 
