@@ -268,6 +268,11 @@ def _again(text: str, scene: Scene | None) -> Record:
 def _output(out: NDArray[np.float64] | None, shape: tuple[int, ...]) -> NDArray[np.float64]:
     if out is None:
         return np.empty(shape)
-    if out.shape != shape or out.dtype != np.float64 or not out.flags.c_contiguous or not out.flags.writeable:
-        raise ValueError(f"out: expected a writable contiguous array of float64 with the shape {shape}")
+    check_output("out", out, shape, np.dtype(np.float64))
     return out
+
+
+def check_output(name: str, out: Any, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
+    """Whether a caller's array can be filled. Raises ValueError."""
+    if not isinstance(out, np.ndarray) or out.shape != shape or out.dtype != dtype or not out.flags.c_contiguous or not out.flags.writeable:
+        raise ValueError(f"{name}: expected a writable contiguous array of {dtype} with the shape {shape}")

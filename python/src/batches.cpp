@@ -101,29 +101,13 @@ std::vector<std::tuple<std::string, std::string, std::string, bool>> column_rows
 }  // namespace
 
 void add_batches(nb::module_& m) {
-    nb::class_<ShotArrays>(m, "ShotArrays")
-        .def(
-            "__init__",
-            [](ShotArrays* self, Flat<std::uint8_t> status, Flat<double> duration, Flat<std::int64_t> events,
-               Flat<std::int32_t> first_hit, Flat<std::int32_t> contacts,
-               Flat<std::int32_t> approach_cushions, Flat<double> xy, Flat<std::int32_t> pocket,
-               Flat<std::int32_t> fell, Flat<std::int32_t> cushions, Flat<std::uint64_t> hash) {
-                new (self) ShotArrays{std::move(status),    std::move(duration), std::move(events),
-                                      std::move(first_hit), std::move(contacts), std::move(approach_cushions),
-                                      std::move(xy),        std::move(pocket),   std::move(fell),
-                                      std::move(cushions),  std::move(hash)};
-            },
-            nb::arg("status").noconvert(), nb::arg("duration").noconvert(), nb::arg("events").noconvert(),
-            nb::arg("first_hit").noconvert(), nb::arg("contacts").noconvert(),
-            nb::arg("approach_cushions").noconvert(), nb::arg("xy").noconvert(),
-            nb::arg("pocket").noconvert(), nb::arg("fell").noconvert(), nb::arg("cushions").noconvert(),
-            nb::arg("hash").noconvert());
     m.def("simulate_many", many, nb::arg("scene"), nb::arg("shots"), nb::arg("columns"), nb::arg("absent"),
-          nb::arg("until").none(), nb::arg("max_events").none(), nb::arg("threads"), nb::arg("out"));
+          nb::arg("until").none(), nb::arg("max_events").none(), nb::arg("threads"),
+          nb::arg("out").noconvert());
     nb::class_<NativeSweep>(m, "Sweep")
         .def_prop_ro("columns", column_rows)
-        .def("play", sweep_shots, nb::arg("first"), nb::arg("shots"), nb::arg("threads"), nb::arg("out"),
-             nb::arg("hash_every"));
+        .def("play", sweep_shots, nb::arg("first"), nb::arg("shots"), nb::arg("threads"),
+             nb::arg("out").noconvert(), nb::arg("hash_every"));
     m.def("make_sweep", make_sweep);
 }
 

@@ -83,7 +83,7 @@ std::vector<std::string> foul_names() {
 
 void add_judged(nb::module_& m) {
     m.def("judge_many", judge_many, nb::arg("scene"), nb::arg("game"), nb::arg("shots"), nb::arg("columns"),
-          nb::arg("absent"), nb::arg("max_events").none(), nb::arg("threads"), nb::arg("out"),
+          nb::arg("absent"), nb::arg("max_events").none(), nb::arg("threads"), nb::arg("out").noconvert(),
           nb::arg("xy").noconvert(), nb::arg("group").noconvert(), nb::arg("foul").noconvert(),
           nb::arg("points").noconvert(), nb::arg("goes_on").noconvert());
     m.def("legal_many", legal_many, nb::arg("scene"), nb::arg("game"), nb::arg("xy").noconvert(),
