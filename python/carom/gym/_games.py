@@ -82,8 +82,9 @@ class Game:
     # What subclasses say.
 
     def start(self, states: NDArray[np.uint64]) -> States:
-        """New tables, one for each of the generators, which move on."""
-        raise NotImplementedError
+        """New tables, one for each of the generators, which move on: random layouts, unless a subclass says otherwise."""
+        xy = self.random_places(states, len(self.ids))
+        return States(xy, self.no_extra(len(xy)))
 
     def legal(self, states: States) -> NDArray[np.bool_]:
         """(n, balls) which balls may be hit first."""
@@ -156,10 +157,6 @@ class Pot(Game):
     def __init__(self, *, table: str = "nine_foot", scene: SceneLike | None = None) -> None:
         super().__init__(scene or Scene(table=table, ball=_placed({"cue": (0.4, 0.5), "1": (0.5, 1.2)}), cue={"speed": 2.0, "aim_deg": 90.0}))
 
-    def start(self, states: NDArray[np.uint64]) -> States:
-        xy = self.random_places(states, len(self.ids))
-        return States(xy, self.no_extra(len(xy)))
-
     def judge(self, states: States, cue: NDArray[np.float64], shots: Shots) -> Judged:
         foul = self.scratch(shots)
         potted = shots.pocket >= 0
@@ -201,10 +198,6 @@ class _Ruled(Game):
     def __init__(self, scene: SceneLike) -> None:
         super().__init__(scene)
         self._fouls = np.array([*_carom.foul_names(), ""], object)
-
-    def start(self, states: NDArray[np.uint64]) -> States:
-        xy = self.random_places(states, len(self.ids))
-        return States(xy, self.no_extra(len(xy)))
 
     def legal(self, states: States) -> NDArray[np.bool_]:
         out = np.empty(states.xy.shape[:2], np.uint8)
