@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from carom._record import Record
-    from carom._scene import Scene
+from carom._arguments import checked
+from carom._scene import SceneLike, as_scene
 
 _PROGRAM = os.path.join(os.path.dirname(__file__), "bin", "carom")
 
@@ -30,7 +30,7 @@ def _column(values: list[str]) -> Any:
 
 def _run(command: Sequence[str], folder: str) -> str:
     """What the program prints, run in a folder whose name is left out of its messages."""
-    import subprocess
+    import subprocess  # as csv and tempfile: `import carom` is fast without them
 
     done = subprocess.run(
         [_PROGRAM, *command], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False
@@ -42,30 +42,33 @@ def _run(command: Sequence[str], folder: str) -> str:
     return done.stdout
 
 
-def page(record: Record, second: Record | None) -> str:
-    """The page of `carom view`."""
+def page(*shots: str) -> str:
+    """The page of `carom view` of one record, or of two, that are given as their files' text."""
     import tempfile
 
     with tempfile.TemporaryDirectory(prefix="carom-") as folder:
-        shots = {"shot.json": record} | ({"second.json": second} if second is not None else {})
-        for name, shot in shots.items():
-            shot.save(os.path.join(folder, name))
-        _run(["view", *shots, "--no-margin", "-o", "shot.html"], folder)
+        names = ["shot.json", "second.json"][: len(shots)]
+        for name, text in zip(names, shots):
+            _write(os.path.join(folder, name), text)
+        _run(["view", *names, "--no-margin", "-o", "shot.html"], folder)
         with open(os.path.join(folder, "shot.html"), encoding="utf-8") as file:
             return file.read()
 
 
-def _report(arguments: Sequence[str], scene: Scene | None, table: bool) -> dict[str, Any]:
+def _write(path: str, text: str) -> None:
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def _report(arguments: Sequence[str], scene: SceneLike | None, table: bool) -> dict[str, Any]:
     """Runs a command with --json, and with --csv where `table` says so: then its columns stand under "table"."""
     import csv
-    import json
     import tempfile
 
     with tempfile.TemporaryDirectory(prefix="carom-") as folder:
         command = [*arguments, "--json"]
         if scene is not None:
-            with open(os.path.join(folder, "scene.toml"), "w", encoding="utf-8") as file:
-                file.write(scene.source)
+            _write(os.path.join(folder, "scene.toml"), as_scene(scene).source)
             command.append("scene.toml")
         rows = os.path.join(folder, "table.csv")
         if table:
@@ -78,8 +81,9 @@ def _report(arguments: Sequence[str], scene: Scene | None, table: bool) -> dict[
         return result
 
 
+@checked
 def margin(
-    scene: Scene, *, runs: int = 5, fps: float | None = None, size: tuple[int, int] | None = None, render: bool = True, backend: str = "egl"
+    scene: SceneLike, *, runs: int = 5, fps: float | None = None, size: tuple[int, int] | None = None, render: bool = True, backend: str = "egl"
 ) -> dict[str, Any]:
     """What every frame of a shot costs against 1/fps: the report of `carom margin` as data (docs/guide/margin.md).
 
@@ -101,8 +105,9 @@ def margin(
     return _report(options, scene, table=True)
 
 
+@checked
 def accuracy(
-    scene: Scene | None = None,
+    scene: SceneLike | None = None,
     *,
     target: float | None = None,
     march: Sequence[int] | None = None,

@@ -5,10 +5,9 @@ from __future__ import annotations
 import base64
 import html
 import io
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from carom._record import Record
+from carom import plot
+from carom._record import Record
 
 
 def picture(record: Record) -> bytes | None:
@@ -18,8 +17,6 @@ def picture(record: Record) -> bytes | None:
         from matplotlib.figure import Figure
     except ImportError:
         return None
-    from carom import plot
-
     # Not a figure of pyplot's, which the notebook would show a second time.
     figure = Figure(figsize=(8.0, 4.6), dpi=100, layout="constrained")
     FigureCanvasAgg(figure)

@@ -137,12 +137,6 @@ std::vector<std::string> event_names() {
     return names;
 }
 
-template <class E>
-std::vector<std::string> names_in_files() {
-    const auto names = names_of(E());
-    return {names.begin(), names.end()};
-}
-
 }  // namespace
 
 const Scene& scene_of(const NativeRecord& r, const NativeScene* other) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -91,6 +92,17 @@ Distribution parse_distribution(std::string_view text, const toml::node* own) {
     }
     fail("unknown distribution {}; use uniform, normal, integer or list{}", in_quotes(name),
          did_you_mean(name, {"uniform", "normal", "integer", "list"}));
+}
+
+ValueKind kind_of(std::string_view text) {
+    const std::size_t open = text.find('(');
+    const std::string_view name = text.substr(0, open);
+    if (name != "list") return name == "integer" ? ValueKind::kWhole : ValueKind::kNumber;
+    const toml::array list = arguments(name, text.substr(open + 1, text.size() - open - 2));
+    const auto all = [&list](auto&& is) { return std::all_of(list.begin(), list.end(), is); };
+    if (all([](const toml::node& value) { return value.is_integer(); })) return ValueKind::kWhole;
+    return all([](const toml::node& value) { return value.is_number(); }) ? ValueKind::kNumber
+                                                                          : ValueKind::kText;
 }
 
 }  // namespace carom::detail

@@ -40,6 +40,7 @@ struct Rule {
     std::string key;
     std::vector<Step> path;
     Distribution distribution;
+    ValueKind kind = ValueKind::kNumber;
     // What the key is where it can be set without the file; neither where it cannot.
     std::optional<SceneNumber> number;
     const Field<Rack>* rack = nullptr;
@@ -194,6 +195,7 @@ Rule parse_rule(toml::table& file, const std::string& name, const std::string& t
     const toml::node* const own = follow(file, rule.path);
     if (own == nullptr) check_known(file, name, rule.path);
     rule.distribution = detail::parse_distribution(std::string_view(text).substr(equals + 1), own);
+    rule.kind = detail::kind_of(std::string_view(text).substr(equals + 1));
     return rule;
 }
 
@@ -335,6 +337,10 @@ std::string Variation::unit(std::size_t key) const {
     } catch (const std::invalid_argument&) {
         return "";
     }
+}
+
+ValueKind Variation::kind(std::size_t key) const {
+    return parts_->rules.at(key).kind;
 }
 
 std::uint64_t Variation::fingerprint() const {

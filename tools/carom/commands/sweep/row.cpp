@@ -4,21 +4,14 @@
 #include <cstdint>
 
 #include "base/setup.h"
+#include "carom/engine/sweep_columns.h"
 #include "report/table.h"
 
 namespace carom::tools {
 
 std::string sweep_header(const Variation& variation) {
     std::vector<Cell> cells;
-    const auto add = [&cells](const std::string& key) { cells.emplace_back(key); };
-    add("shot");
-    for (const std::string& key : variation.keys()) add(key);
-    for (const char* key :
-         {"outcome", "duration", "events", "first_contact", "contacts", "cushions", "pocketed"})
-        add(key);
-    for (const BallStart& ball : variation.base().ball)
-        for (const char* key : {".x", ".y", ".pocket"}) add(ball.id + key);
-    add("message");
+    for (const SweepColumn& column : sweep_columns(variation)) cells.emplace_back(column.name);
     return csv_line(cells);
 }
 
