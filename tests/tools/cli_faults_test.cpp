@@ -250,7 +250,7 @@ TEST_F(Faults, ThreadsThatCannotBeMadeAreAnErrorThatSaysWhatToDo) {
               folder_.file("t.csv")}}) {
         const ProcessResult result = carom(command, options);
         EXPECT_EQ(result.status, 1) << command[0];
-        EXPECT_EQ(result.err.rfind("carom: only 0 of 4 threads could be started (", 0), 0u) << result.err;
+        EXPECT_NE(result.err.find(" of 4 threads could be started ("), std::string::npos) << result.err;
         EXPECT_NE(result.err.find("; use fewer with --jobs\n"), std::string::npos) << result.err;
         EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
     }

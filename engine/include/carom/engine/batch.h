@@ -120,6 +120,12 @@ class BatchStopped : public std::runtime_error {
 /// Outcomes of n shots of b balls: arrays of n, or of n x b with the balls of a shot one after the other, in the order of
 /// Scene::ball. A shot without a result has 0 everywhere and -1 as ball and pocket.
 struct Batch {
+    Batch() = default;
+    /// Arrays for n shots of b balls, to be filled. @param hash  whether `hash` is wanted
+    Batch(std::size_t n, std::size_t b, bool hash = false);
+    /// Where simulate_many puts their values.
+    BatchArrays arrays();
+
     std::size_t shots = 0, balls = 0;
     std::vector<ShotStatus> status;       ///< n
     std::vector<double> duration;         ///< n [s]
