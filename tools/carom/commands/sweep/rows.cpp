@@ -1,11 +1,7 @@
 #include "commands/sweep/rows.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
-#include <stdexcept>
+#include <future>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "base/console.h"
@@ -35,10 +31,9 @@ std::string sweep_header(const Variation& variation) {
     return csv_line(cells);
 }
 
-SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa,
-                    int threads) {
+SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa) {
     BatchOptions options;
-    options.threads = threads;
+    options.threads = 1;
     options.stop = [] { return interrupted(); };
     Batch batch(shots, variation.base().ball.size());
     std::vector<std::string> draws;
@@ -46,9 +41,6 @@ SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t
         batch.messages = simulate_many(variation, first, shots, isa, options, batch.arrays(), draws);
     } catch (const BatchStopped&) {
         throw Interrupted();
-    } catch (const std::system_error& error) {
-        throw std::runtime_error(fmt::format(
-            "not all of {} threads could be started ({}); use fewer with --jobs", threads, error.what()));
     }
     const std::vector<SweepColumn> columns = sweep_columns(variation);
     const std::vector<ColumnValues> values =
@@ -65,6 +57,27 @@ SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t
                 append_value(rows.text, columns[k], values[k], shot, has_result(batch.status[shot]));
         }
         rows.text.back() = '\n';
+    }
+    return rows;
+}
+
+SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa,
+                    int threads) {
+    const auto parts = static_cast<std::size_t>(threads);
+    std::vector<std::future<SweepRows>> played;
+    for (std::size_t i = 0; i < parts; ++i) {
+        const std::size_t from = shots * i / parts, to = shots * (i + 1) / parts;
+        if (to > from)
+            played.push_back(
+                std::async(std::launch::async, [&variation, isa, begin = first + from, count = to - from] {
+                    return play_rows(variation, begin, count, isa);
+                }));
+    }
+    SweepRows rows;
+    for (std::future<SweepRows>& part : played) {
+        const SweepRows more = part.get();
+        rows.text += more.text;
+        for (std::size_t i = 0; i < rows.outcomes.size(); ++i) rows.outcomes[i] += more.outcomes[i];
     }
     return rows;
 }

@@ -9,8 +9,10 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <future>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -108,7 +110,7 @@ std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRan
     std::string expected;
     if (rows <= range.last - range.first)
         expected = rows == 0 ? sweep_header(sweep.variation)
-                             : play_rows(sweep.variation, range.first + rows - 1, 1, sweep.isa, 1).text;
+                             : play_rows(sweep.variation, range.first + rows - 1, 1, sweep.isa).text;
     if (!there.in_order || expected != file.last_line() + '\n')
         throw std::runtime_error(fmt::format("{}: {} not what this program computes; remove it to begin anew",
                                              file.name(),
@@ -118,22 +120,34 @@ std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRan
     return range.first + rows;
 }
 
-/// Runs the shots from `from` on, block by block, and writes their rows.
+/// Runs the shots from `from` on, block by block, and writes their rows. The next block is played while one is waited for and
+/// written, so that no thread stands idle.
 Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& range, std::uint64_t from,
                     SweepStatus& status) {
     Outcomes outcomes{};
     ProgressLine line("sweep");
     auto block = 2 * static_cast<std::uint64_t>(sweep.threads);
+    std::uint64_t begun = from;
+    std::future<SweepRows> next;
+    const auto begin_next = [&] {
+        const std::uint64_t first = begun, shots = std::min(block, range.last - begun);
+        begun += shots;
+        next = std::async(std::launch::async, [&sweep, first, shots] {
+            return play_rows(sweep.variation, first, static_cast<std::size_t>(shots), sweep.isa,
+                             sweep.threads);
+        });
+    };
+    if (begun < range.last) begin_next();
     for (std::uint64_t done = from; done < range.last;) {
-        throw_if_interrupted();
         const Clock::time_point start = Clock::now();
-        const std::uint64_t shots = std::min(block, range.last - done);
-        const SweepRows rows =
-            play_rows(sweep.variation, done, static_cast<std::size_t>(shots), sweep.isa, sweep.threads);
+        const std::uint64_t last = begun;
+        std::future<SweepRows> ready = std::move(next);
+        if (begun < range.last) begin_next();
+        const SweepRows rows = ready.get();
         file.append(rows.text);
         file.flush();
         for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += rows.outcomes[i];
-        done += shots;
+        done = last;
         if (Clock::now() - start < kBlockTime && block < kLargestBlock) block *= 2;
         status.show(done, outcomes);
         line.show_bar(static_cast<long>(done - range.first), static_cast<long>(range.last - range.first));
@@ -191,6 +205,10 @@ int run(const SweepArgs& args) {
     SweepStatus status(args.status, args.output, range.first, range.last, from);
     try {
         outcomes = write_rows(file, sweep, range, from, status);
+    } catch (const std::system_error& error) {
+        throw std::runtime_error(fmt::format("not all of {} could be started ({}); use fewer with --jobs",
+                                             counted(static_cast<std::size_t>(jobs), "thread"),
+                                             error.what()));
     } catch (const Interrupted&) {
         file.flush();
         status.end("stopped");
