@@ -218,8 +218,8 @@ void guide_friction(Group& g, double h) {
     g.links_before = g.links;
     const bool smooth = g.smooth;
     if (!guide(g, h)) return;
-    const bool solved = step(g, h, {.friction = g.around.balls.ball_friction() && !smooth}) && !g.smooth &&
-                        keeps_direction(g);
+    const bool solved = step(g, h, {.friction = g.around.balls.ball_friction().any() && !smooth}) &&
+                        !g.smooth && keeps_direction(g);
     g.smooth = smooth;
     if (solved) return;
     g.bodies.swap(g.bodies_before);
@@ -274,8 +274,8 @@ bool accelerates(const Group& g) {
 bool attempt_at(Group& g, double& h, double shortest, double longest, bool may_cut) {
     g.cut = 0.0;
     if (!g.smooth) {
-        const bool solved =
-            step(g, h, {.friction = g.around.balls.ball_friction(), .may_cut = may_cut && h > shortest});
+        const bool solved = step(
+            g, h, {.friction = g.around.balls.ball_friction().any(), .may_cut = may_cut && h > shortest});
         if (g.cut > 0.0) return false;
         if (!g.smooth || longest <= shortest) return solved;
         if (step(g, shortest) && !g.smooth && locks(g, shortest)) {

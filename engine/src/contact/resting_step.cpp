@@ -93,7 +93,7 @@ double rate_rounding(const Group& g) {
 double friction_at_start(const Group& g, const Link& link) {
     const Vec2 slip = contact_slip(g, link, false);
     const double size = length(slip);
-    return size > 0.0 ? -ball_friction(g.around.balls, size) * slip.x() / size : 0.0;
+    return size > 0.0 ? -g.around.balls.ball_friction()(size) * slip.x() / size : 0.0;
 }
 
 bool locks(const Group& g, double h) {

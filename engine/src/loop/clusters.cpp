@@ -178,7 +178,7 @@ long Clusters::resolve(double v_n, bool friction) {
         .e_b = e_b,
         .published_cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
         .epsilon = kClusterEpsilon,
-        .longest_step = friction && p.ball_friction() ? kClusterFrictionStep : kClusterStep,
+        .longest_step = friction && p.ball_friction().any() ? kClusterFrictionStep : kClusterStep,
         .integrate = plan_.contact_phase,
         .mu_b_more = friction ? p.mu_b_more : 0.0,
         .mu_b_fall = p.mu_b_fall};
