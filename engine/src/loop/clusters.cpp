@@ -12,6 +12,8 @@ namespace {
 
 // [reach] Contacts of balls nearer than this turn as the balls do.
 constexpr double kNearShare = 0.5;
+// [approach] What closes more slowly after a cluster is rounding.
+constexpr double kClosesStill = 1e-12;
 
 /// Gap [m] of two balls, the speed [m/s] at which it closes, and the unit vector from the first to the second.
 struct Gap {
@@ -166,12 +168,22 @@ void Clusters::share_turning() {
     }
 }
 
+// The balls of the map move, and those of the loop stay. A glancing contact with a fast slip opens in the map as its
+// normal turns, with hardly any force, while the balls pass each other; where they stay they close on, and the same
+// cluster would come again, ten thousand times. So what touches has to open where the balls are: the map goes on with
+// normals that stay, which is how two balls without others meet.
+bool Clusters::closes_still(double v_n) const {
+    return std::any_of(contacts_.begin(), contacts_.end(), [&](const ClusterContact& c) {
+        return c.gap == 0.0 && dot3(c.n, members_[c.i].v - members_[c.j].v) > kClosesStill * v_n;
+    });
+}
+
 long Clusters::resolve(double v_n, bool friction) {
     const BallParams& p = plan_.balls;
     const double e_b = plan_.ball_ball->reads_friction ? p.e_b : 1.0;
     const double R = balls_.radius(members_.front().ball);  // equal for all members
     if (plan_.clusters == ClusterModel::kRigid) return map_.rigid(members_, contacts_, p.e_b, R);
-    const ClusterSettings settings{
+    ClusterSettings settings{
         .R = R,
         .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
         .mu_b = friction ? p.mu_b : 0.0,
@@ -182,8 +194,13 @@ long Clusters::resolve(double v_n, bool friction) {
         .integrate = plan_.contact_phase,
         .mu_b_more = friction ? p.mu_b_more : 0.0,
         .mu_b_fall = p.mu_b_fall};
-    const long steps = in_space_ ? map_.compliant_in_space(members_, contacts_, settings, v_n)
-                                 : map_.compliant(members_, contacts_, settings, v_n);
+    long steps = in_space_ ? map_.compliant_in_space(members_, contacts_, settings, v_n)
+                           : map_.compliant(members_, contacts_, settings, v_n);
+    if (in_space_ && steps >= 0 && closes_still(v_n)) {
+        settings.turns = false;
+        const long more = map_.compliant_in_space(members_, contacts_, settings, v_n);
+        steps = more < 0 ? more : steps + more;
+    }
     // Friction and a wedge can press balls together without end: the cluster is then resolved as rigid.
     return steps < 0 ? map_.rigid(members_, contacts_, p.e_b, R) : steps;
 }

@@ -44,6 +44,7 @@ class Clusters : private Borrowed<ClustersMemory> {
   private:
     void collect_at(int a, int b, double v_n);
     void share_turning();
+    bool closes_still(double v_n) const;
     Box near_box(const ClusterBall& ball, double gap) const;
     ClusterBall member(int ball) const;
 
