@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -19,6 +20,11 @@ constexpr int kLongImpact = 1000;
 
 kernel::Ball kernel_ball(const Vec3& r, const Vec3& v, const Vec3& w) {
     return {{r.x(), r.y(), r.z()}, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()}};
+}
+
+/// [m^2/s^2] Per mass.
+double energy_twice(double R, const Velocities& ball) {
+    return ball.v.squaredNorm() + 0.4 * R * R * ball.w.squaredNorm();
 }
 
 Vec3 vec(const double (&x)[3]) {
@@ -213,13 +219,17 @@ void Resolver::cushion(const Contact& contact) {
     const Vec3 r = balls_.position(ball);
     Vec3 v = balls_.velocity(ball), w = balls_.spin(ball);
     const char* const model = touches[0].model->name;
-    const double up = flights_ && plan_.balls.e_h > 0.0 ? hop(touches[0], {v, w}) : 0.0;
+    const Velocities came{v, w};
+    const double up = flights_ && plan_.balls.e_h > 0.0 ? hop(touches[0], came) : 0.0;
     if (!bounce(plan_, touches, v, w))
         log_.fail(
             fmt::format("the cushion model {} found no solution for the impact of ball {}; use another one",
                         model, log_.id(ball)));
     const MotionParams& motion = balls_.motion(ball);
-    v.z() = up;
+    // A model in the plane may keep more of the speed than the law in space that throws the ball up:
+    // the hop takes what has been lost.
+    const double lost = energy_twice(motion.R, came) - energy_twice(motion.R, {v, w});
+    v.z() = std::min(up, std::sqrt(std::max(0.0, lost)));
     const Segment after = after_impact(ball, r, v, w);
     // A ball that rolls in slowly is decelerated before the impact, but the spin that it keeps drives it back to the
     // cushion and ends the bounce: the acceleration after the impact decides.
