@@ -66,6 +66,19 @@ TEST(Airborne, BouncesWithoutLossRepeatToTheBit) {
     }
 }
 
+// The judge allows what a slow contact of this ball adds, not that of a ball of [balls].
+TEST(Airborne, SlowContactsOfLargeBalls) {
+    for (const double R : {0.05, 0.06, 0.085725, 0.3}) {
+        Scene scene = empty_scene();
+        scene.table.cushions = {{"rail", {2.0, 1.0}, {-2.0, 1.0}, 0.036576}};
+        add_high_ball(scene, "a", 0.0, 0.0, 1e-9);
+        BallStart& ball = scene.ball.back();
+        ball.own = {R, scene.balls.m * std::pow(R / scene.balls.R, 3.0)};
+        ball.position = {0.0, 1.0 - R, R + 1e-9};
+        run_verified(scene);
+    }
+}
+
 // mathavan_2010 keeps more of the speed than the law in space that throws the ball up: 15 % came from nowhere.
 TEST(Airborne, AHopTakesNoMoreThanTheCushionLost) {
     int hops = 0;

@@ -105,8 +105,12 @@ class Checker {
         for (std::size_t k = event_ + 1; k-- > 0 && record_.events[k].time == time;) {
             const Event& e = record_.events[k];
             if (!e.slow) continue;
-            const double parting = parting_speed(R(static_cast<std::size_t>(e.a)), record_.gravity);
-            energy += mass(record_, e.a) * parting * parting;
+            // Two balls part at the speed of the larger one, and the heavier one may be the one that flies.
+            const int other = kind(e.type).partner == Partner::kBall ? e.b : e.a;
+            const double larger = std::max(record_.size(e.a).R, record_.size(other).R),
+                         heavier = std::max(mass(record_, e.a), mass(record_, other)),
+                         parting = parting_speed(larger, record_.gravity);
+            energy += heavier * parting * parting;
         }
         return energy;
     }

@@ -95,6 +95,16 @@ class Between {
         return ball_energy(record_, static_cast<int>(ball), state);
     }
 
+    // [J/kg] One slow contact of every ball, at the speed of the largest.
+    double slow_contacts() const {
+        double masses = 0.0, parting = 0.0;
+        for (std::size_t i = 0; i < pieces_.size(); ++i) {
+            masses += record_.size(static_cast<int>(i)).m / record_.balls.m;
+            parting = std::max(parting, parting_speed(R(i), record_.gravity));
+        }
+        return masses * parting * parting;
+    }
+
     void look(double from, double to) {
         for (std::size_t i = 0; i < pieces_.size(); ++i) begin(i, from, to - from);
         check_energy(from, to);
@@ -136,9 +146,7 @@ class Between {
         }
         if (from == times_.front()) first_energy_ = last_energy_ = start;
         // At the start stands what slow contacts of balls in the air have added; each of them is judged at its event.
-        const double parting = parting_speed(record_.balls.R, record_.gravity);
-        double added =
-            plan_.in_force(Effect::kAirborne) ? static_cast<double>(pieces_.size()) * parting * parting : 0.0;
+        double added = plan_.in_force(Effect::kAirborne) ? slow_contacts() : 0.0;
         for (const auto& [t, now] : {std::pair{from, start}, std::pair{half, middle}}) {
             if (now > last_energy_ + 1e-12 * first_energy_ + rounding_ + std::exchange(added, 0.0))
                 report("U4", t, "energy rises from {:.17g} to {:.17g} J/kg", last_energy_, now);
