@@ -39,7 +39,6 @@ class Resolver {
     // resolver_air.cpp
     bool is_free(int a, int b) const;
     void free_balls(int one, int two);
-    bool balances(int a, int b) const;
     void cushion_in_air(const Contact& contact);
     void pocket_in_air(const Contact& contact);
     double hop(const TableTouch& touch, const Velocities& before) const;

@@ -1,8 +1,5 @@
 // Impacts of balls in the air, and those after which balls leave the cloth.
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cstddef>
 #include <vector>
 
 #include "contact/pocket_edge.h"
@@ -15,8 +12,6 @@ namespace {
 
 // [R] A ball that has flown over a pocket and is not higher than this at its far side falls into it. pooltool's value.
 constexpr double kCatchHeight = 1.4;
-// [events] A pair that has had so many in a row to itself balances: the upper ball trembles on the lower one for ever. That is 10 s.
-constexpr std::size_t kMostTrembles = 20000;
 
 }  // namespace
 
@@ -33,17 +28,7 @@ void Resolver::go_on(int ball, const Vec3& r, Velocities after) {
         log_.event(EventType::kBallCloth, ball);
     }
     begin(ball, r, after.v, after.w);
-}
-
-/// Whether all has been quiet for long but for these two.
-bool Resolver::balances(int a, int b) const {
-    const std::vector<Event>& events = log_.events();
-    if (events.size() < kMostTrembles) return false;
-    const auto of_the_pair = [a, b](const Event& e) {
-        return e.type == EventType::kBallCloth ? e.a == a || e.a == b
-                                               : e.type == EventType::kBallBall && e.a == a && e.b == b;
-    };
-    return std::all_of(events.end() - kMostTrembles, events.end(), of_the_pair);
+    log_.watch(ball);
 }
 
 void Resolver::free_balls(int a, int b) {
@@ -82,10 +67,6 @@ void Resolver::free_balls(int a, int b) {
         return;
     const double parting = parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity);
     const bool slow = pair.balls.e_b * v_n < parting;
-    if (slow && balances(a, b))
-        log_.fail(fmt::format(
-            "balls {} and {} balance on each other; move one of them by a thousandth of a millimetre",
-            log_.id(a), log_.id(b)));
     {
         const Stopwatch watch(kernel_ns_);
         if (slow)
