@@ -79,6 +79,24 @@ TEST(Airborne, SlowContactsOfLargeBalls) {
     }
 }
 
+// One falls into the pocket while the other comes down on it: they overlapped by 9 mm, as the pair was looked at again when the upper
+// one lay.
+TEST(Airborne, DownOnABallThatFalls) {
+    Scene scene = empty_scene();
+    scene.table.pockets = {{"hole", {0.5, 0.0}, 0.2, 0.08}};
+    int met = 0;
+    for (const double height : {0.001, 0.005, 0.01, 0.02, 0.04}) {
+        for (const double speed : {1.0, 2.0, 4.0}) {
+            scene.ball.clear();
+            add_ball(scene, "falls", Vec3(0.31, 0.0, scene.balls.R), Vec3(-speed, 0.0, 0.0));
+            add_high_ball(scene, "flies", 0.2, 0.01, height, Vec3(0.5, 0.0, 0.0));
+            const Record record = run_verified(scene);
+            met += static_cast<int>(times_of(record, EventType::kBallBall).size());
+        }
+    }
+    EXPECT_GT(met, 10);
+}
+
 // mathavan_2010 keeps more of the speed than the law in space that throws the ball up: 15 % came from nowhere.
 TEST(Airborne, AHopTakesNoMoreThanTheCushionLost) {
     int hops = 0;

@@ -53,6 +53,11 @@ Clusters::Clusters(const Plan& plan, const Balls& balls, const Detector& detecto
       balls_(balls),
       detector_(detector) {}
 
+// Whether one of two balls falls into a pocket and has no contact with the other in the plane.
+bool Clusters::passes(int a, int b) const {
+    return flights_ && (balls_.sinks(a) || balls_.sinks(b)) && balls_.in_space(a, b);
+}
+
 ClusterBall Clusters::member(int ball) const {
     if (flights_ && flies(balls_.segment(ball).state)) {
         const Placed at = balls_.placed(ball);
@@ -111,7 +116,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
         detector_.balls_near(near_box(here, most), [&](int q) {
             const bool known = std::any_of(members_.begin(), members_.end(),
                                            [q](const ClusterBall& m) { return m.ball == q; });
-            if (known || !(plan_.sizes[q] == plan_.sizes[a])) return;
+            if (known || !(plan_.sizes[q] == plan_.sizes[a]) || passes(here.ball, q)) return;
             ++looks_;
             const ClusterBall candidate = member(q);
             const Gap near = gap_of(here, candidate);
@@ -130,7 +135,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
     for (std::size_t i = 0; i < members_.size(); ++i) {
         for (std::size_t j = i + 1; j < members_.size(); ++j) {
             const Gap near = gap_of(members_[i], members_[j]);
-            if (near.gap <= 2.0 * reach(near))
+            if (!passes(members_[i].ball, members_[j].ball) && near.gap <= 2.0 * reach(near))
                 contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap,
                                      nearness(near.gap, reach(near))});
         }

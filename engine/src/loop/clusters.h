@@ -47,6 +47,7 @@ class Clusters : private Borrowed<ClustersMemory> {
     bool closes_still(double v_n) const;
     Box near_box(const ClusterBall& ball, double gap) const;
     ClusterBall member(int ball) const;
+    bool passes(int a, int b) const;
 
     const Plan& plan_;
     const bool flights_;  // balls may leave the cloth

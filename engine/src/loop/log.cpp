@@ -50,7 +50,7 @@ void Log::resume(const Record& so_far) {
     so_far_ = &so_far;
     events_ = so_far.events;
     for (std::size_t i = 0; i < so_far.tracks.size(); ++i)
-        balls_.set(static_cast<int>(i), so_far.tracks[i].segments.back());
+        for (const Segment& s : so_far.tracks[i].segments) balls_.set(static_cast<int>(i), s);
     balls_.advance_to(so_far.duration);
     reserve();
 }

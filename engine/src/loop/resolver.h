@@ -34,6 +34,7 @@ class Resolver {
     void cushion(const Contact& contact);
     void pocket(const Contact& contact);
     void leave_pocket(const Contact& contact);
+    bool is_barred(int ball, const Vec3& place) const;
     void transition(int ball);
     Segment after_impact(int ball, const Vec3& r, const Vec3& v, const Vec3& w) const;
     // resolver_air.cpp
@@ -45,6 +46,7 @@ class Resolver {
     void land(int ball);
     void leave_table(int ball);
     void go_on(int ball, const Vec3& r, Velocities after);
+    void fall_on(int ball, const Vec3& r, const Velocities& after);
     void begin(int ball, const Vec3& r, const Vec3& v, const Vec3& w);
 
     const Plan& plan_;

@@ -135,9 +135,12 @@ class Checker {
 
     void check_penetration(const std::vector<BallState>& now, double t) {
         const auto seen = [&](std::size_t i) {
-            const MotionState state = now[i].state;
-            return SeenBall{now[i].position, R(i), flies(state), state == MotionState::kFalling,
-                            rounding_of(now[i].velocity, now[i].spin, R(i), t)};
+            const std::vector<Segment>& segments = record_.tracks[i].segments;
+            const auto next = std::upper_bound(segments.begin(), segments.end(), t,
+                                               [](double at, const Segment& s) { return at < s.start; });
+            const std::ptrdiff_t segment = std::max<std::ptrdiff_t>(0, next - segments.begin() - 1);
+            return see(record_, i, static_cast<std::size_t>(segment), now[i].position,
+                       rounding_of(now[i].velocity, now[i].spin, R(i), t), plan_.in_force(Effect::kAirborne));
         };
         for (std::size_t i = 0; i < now.size(); ++i) {
             if (is_gone(now[i].state)) continue;
@@ -185,7 +188,10 @@ class Checker {
             // instant cannot be told apart.
             const Segment *before1, *after1, *before2, *after2;
             if (!around(e.a, e.time, before1, after1) || !around(e.b, e.time, before2, after2)) continue;
-            const bool free = plan_.ball_ball->free || flies(before1->state) || flies(before2->state);
+            const auto is_free = [this](const Segment& s) {
+                return plan_.in_force(Effect::kAirborne) && is_off_cloth(s.state);
+            };
+            const bool free = plan_.ball_ball->free || is_free(*before1) || is_free(*before2);
             if (free && (hits_cloth(e.a, e.time) || hits_cloth(e.b, e.time))) continue;
             const auto velocity = [&](const Segment& s) {
                 return free ? placed_at(s, e.time - s.start, record_.gravity).velocity

@@ -79,8 +79,8 @@ class Between {
         const Vec2 r = place(ball, t);
         const double tau = std::min(t - s.start, s.duration);
         const double z = placed_at(s, tau, record_.gravity).position.z();
-        return {Vec3(r.x(), r.y(), z), R(ball), flies(s.state), s.state == MotionState::kFalling,
-                rounding_of(velocity_at(s, tau), s.w, R(ball), t)};
+        return see(record_, ball, pieces_[ball].segment, {r.x(), r.y(), z},
+                   rounding_of(velocity_at(s, tau), s.w, R(ball), t), plan_.in_force(Effect::kAirborne));
     }
 
     double energy(std::size_t ball, double t) const {
@@ -227,8 +227,7 @@ class Between {
 double ball_energy(const Record& record, int ball, const BallState& state) {
     if (is_gone(state.state)) return 0.0;
     const BallSize size = record.size(ball);
-    const bool off = state.state == MotionState::kFalling || state.state == MotionState::kAirborne;
-    const double fallen = off ? record.gravity * (state.position.z() - size.R) : 0.0;
+    const double fallen = is_off_cloth(state.state) ? record.gravity * (state.position.z() - size.R) : 0.0;
     return size.m / record.balls.m *
            (0.5 * state.velocity.squaredNorm() + 0.2 * size.R * size.R * state.spin.squaredNorm() + fallen);
 }
