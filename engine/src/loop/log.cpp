@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "carom/engine/airborne.h"
 #include "physics/motion.h"
 
 namespace carom {
@@ -17,6 +18,9 @@ namespace {
 
 // [-] Initial capacity for segments and events: enough for a break. It doubles when it is exceeded.
 constexpr std::size_t kRoom = 256;
+// [s] A ball in the air that has not left its place for so long balances: what stands off its support by a rounding slides off
+// within 2.5 s, 30 times sqrt(2 R/g).
+constexpr double kLongestBalance = 5.0;
 
 }  // namespace
 
@@ -28,6 +32,7 @@ Log::Log(const Plan& plan, const SimulateOptions& options, Balls& balls, LogMemo
     cluster_ball_.clear();
     cluster_end_.clear();
     touched_.clear();
+    stays_.assign(plan.in_force(Effect::kAirborne) ? plan.sizes.size() : 0, {0.0, Vec3::Zero()});
     reserve();
 }
 
@@ -45,7 +50,7 @@ void Log::resume(const Record& so_far) {
     so_far_ = &so_far;
     events_ = so_far.events;
     for (std::size_t i = 0; i < so_far.tracks.size(); ++i)
-        balls_.set(static_cast<int>(i), so_far.tracks[i].segments.back());
+        for (const Segment& s : so_far.tracks[i].segments) balls_.set(static_cast<int>(i), s);
     balls_.advance_to(so_far.duration);
     reserve();
 }
@@ -55,6 +60,30 @@ void Log::cluster(int a, int b, const std::vector<ClusterBall>& balls) {
     event(EventType::kBallCluster, a, b, static_cast<int>(before + cluster_end_.size()));
     cluster_ball_.insert(cluster_ball_.end(), balls.begin(), balls.end());
     cluster_end_.push_back(cluster_ball_.size());
+}
+
+void Log::watch(int ball) {
+    if (stays_.empty()) return;
+    const Segment& s = balls_.segment(ball);
+    Stay& stay = stays_[ball];
+    // It would have to rise by more than the lowest bounce to leave.
+    const double gravity = balls_.motion(ball).gravity, end = bounce_end(balls_.radius(ball), gravity);
+    const bool stays =
+        flies(s.state) && length3(s.v) < end && 2.0 * gravity * length3(s.r - stay.place) < end * end;
+    if (!stays) {
+        stay = {balls_.now(), s.r};
+        return;
+    }
+    if (!(balls_.now() - stay.since > kLongestBalance)) return;
+    const auto met = std::find_if(events_.rbegin(), events_.rend(), [ball](const Event& e) {
+        return e.type != EventType::kBallCloth &&
+               (e.a == ball || (kind(e.type).partner == Partner::kBall && e.b == ball));
+    });
+    constexpr const char* kMove = "; move one of them by a thousandth of a millimetre";
+    if (met != events_.rend() && kind(met->type).partner == Partner::kBall)
+        fail(fmt::format("balls {} and {} balance on each other{}", id(met->a), id(met->b), kMove));
+    fail(fmt::format("ball {} balances on a cushion or a jaw; move it by a thousandth of a millimetre",
+                     id(ball)));
 }
 
 void Log::fall(int ball, int pocket) {

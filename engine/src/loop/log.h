@@ -31,6 +31,12 @@ struct LogMemory {
     std::vector<ClusterBall> cluster_ball_;
     std::vector<std::size_t> cluster_end_;
     std::vector<int> touched_;
+    /// Of a ball in the air: where it has been, but for trembling, and since when [s].
+    struct Stay {
+        double since;
+        Vec3 place;
+    };
+    std::vector<Stay> stays_;
 };
 
 class Log : private Borrowed<LogMemory> {
@@ -53,6 +59,9 @@ class Log : private Borrowed<LogMemory> {
         events_.push_back({balls_.now(), type, ball, partner, detail});
         quiet_rounds_ = 0;
     }
+    /// The ball has begun a motion after an impact, and may fly. @throws SimulationError if it trembles in the air on what is
+    /// under it, and would for ever
+    void watch(int ball);
     /// The last event was a slow contact.
     void mark_slow() { events_.back().slow = true; }
     /// An event of a ball and a part of the table, or of two balls.

@@ -34,6 +34,7 @@ class Run {
   private:
     StopReason run(const Record* so_far);
     void start_balls();
+    void check_digits(int ball, double time);
     bool is_full() const;
     StopReason stop(double next);
 

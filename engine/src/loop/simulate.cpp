@@ -1,15 +1,26 @@
 // The event loop: find the next event -> advance -> resolve -> search the contacts of the balls whose motion changed.
 #include "carom/engine/simulate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 
+#include "contact/detect.h"
 #include "loop/run.h"
 #include "physics/cue.h"
 #include "physics/motion.h"
 
 namespace carom {
+
+namespace {
+
+// [R] A run ends when the digits of its clock leave more than this open in the place of a ball.
+constexpr double kLostShare = 1e-3;
+
+}  // namespace
 
 Run::Run(const Plan& plan, const SimulateOptions& options, RunBuffers::Memory& memory, Keep keep)
     : plan_(plan),
@@ -55,12 +66,31 @@ StopReason Run::run(const Record* so_far) {
         log_.begin_round();
         const Candidate next = detector_.next();
         if (next.time > stop_ || next.time == kNever) return stop(next.time);
+        if (next.contact.with != With::kNothing) {
+            for (const int ball : {next.contact.ball, next.contact.partner()})
+                if (ball >= 0) check_digits(ball, next.time);
+        }
         balls_.advance_to(next.time);
         resolver_.resolve(next.contact);
         detector_.update(log_.touched());
         log_.end_round();
     }
     return StopReason::kEvents;
+}
+
+// Without friction a slow ball can be under way for longer than the clock has digits for: it would pass through what it meets.
+void Run::check_digits(int ball, double time) {
+    const Segment& s = balls_.segment(ball);
+    const double R = balls_.radius(ball);
+    const double end =
+        kLostShare * R /
+        (kClosingUlp * std::numeric_limits<double>::epsilon() * (length3(s.v) + R * length3(s.w)));
+    if (!(time > end)) return;
+    balls_.advance_to(end);
+    log_.fail(fmt::format(
+        "after so long the place of ball {} is only known to {:.2g} m, and it has yet to meet something; "
+        "end the run before with [stop] time, or let friction do it",
+        log_.id(ball), kLostShare * R));
 }
 
 void Run::start_balls() {

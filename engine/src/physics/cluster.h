@@ -47,6 +47,7 @@ struct ClusterSettings {
     kernel::ContactPhaseFunction integrate;
     /// At a slip of u m/s the friction between balls is mu_b + mu_b_more exp(-mu_b_fall u).
     double mu_b_more = 0.0, mu_b_fall = 0.0;
+    bool turns = true;  ///< false: all normals stay as the contacts give them
 };
 
 /// Duration of a Hertz contact at the approach speed V, t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation 5).

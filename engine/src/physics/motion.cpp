@@ -107,7 +107,7 @@ Segment falling_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, d
     s.v = Vec3(v.x(), v.y(), -falls);
     s.w = w;
     s.a = s.dw = Vec2::Zero();
-    s.duration = std::max(0.0, (std::sqrt(2.0 * p.gravity * p.R) - falls) / p.gravity);
+    s.duration = std::max(0.0, (std::sqrt(2.0 * p.gravity * r.z()) - falls) / p.gravity);
     s.state = MotionState::kFalling;
     return s;
 }

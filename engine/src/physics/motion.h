@@ -19,7 +19,8 @@ MotionParams motion_params(const BallParams& balls, double gravity, double R);
 Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
 
 /// The segment of a ball that falls into a pocket at the speed `falls` [m/s]: it moves on straight, without the cloth, until its
-/// centre has sunk by its radius.
+/// centre is as low as the cloth.
+/// @param r  with the height at which the fall began, or would have begun: its centre is falls^2/2g lower
 Segment falling_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, double falls,
                         const MotionParams& params);
 

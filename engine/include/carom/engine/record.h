@@ -42,6 +42,10 @@ constexpr bool is_gone(MotionState state) {
 constexpr bool flies(MotionState state) {
     return state == MotionState::kAirborne || state == MotionState::kOut;
 }
+/// Whether the centre moves up or down: in flight, or falling into a pocket.
+constexpr bool is_off_cloth(MotionState state) {
+    return flies(state) || state == MotionState::kFalling;
+}
 
 /// One ball between two events that touch it. Times inside are relative to `start`.
 struct Segment {
