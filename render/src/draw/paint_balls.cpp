@@ -239,8 +239,8 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
         Floats cover = clamp(0.5F + (R - miss) / pixel, 0.0F, 1.0F);
         if (!any(cover > 0.0F)) return;
         const Floats rise = sqrt(max(R * R - miss2, 0.0F));
-        const Vec n = (perpendicular - dir * rise) *
-                      (1.0F / max(miss, R));  // R long inside, outside as far as the ray is from the centre
+        // R long inside, outside as far as the ray is from the centre
+        const Vec n = (perpendicular - dir * rise) * (1.0F / max(miss, R));
         const Vec p = middle + n * all(R);
         if (!plain) cover *= background.seen(first, count, (along - rise) * per_depth - 0.001F);
 
