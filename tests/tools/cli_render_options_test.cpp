@@ -174,6 +174,16 @@ TEST_F(CliRenderOptions, BothBackEndsGiveTheSameFile) {
     if (egl.status == 1 && egl.err.find("libegl1") != std::string::npos) GTEST_SKIP() << egl.err;
     ASSERT_EQ(egl.status, 0) << egl.err;
     EXPECT_TRUE(read_file(folder_.file("e0.png")) == picture({"--gl", "osmesa"}));
+    // Without OSMesa the default is EGL: files of its names that are no libraries stand in front of the real ones.
+    TemporaryFolder fake;
+    for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"})
+        fake.write(name, "no library");
+    ProcessOptions options;
+    options.environment = {{"LD_LIBRARY_PATH", fake.path().string()}};
+    const ProcessResult found =
+        carom({"render", record_, "-o", folder_.file("a%d.png"), "--at", "0.5"}, options);
+    ASSERT_EQ(found.status, 0) << found.err;
+    EXPECT_TRUE(read_file(folder_.file("e0.png")) == read_file(folder_.file("a0.png")));
     const ProcessResult unknown = carom({"render", record_, "--gl", "vulkan"});
     EXPECT_EQ(unknown.status, 2);
     EXPECT_NE(unknown.err.find("osmesa"), std::string::npos) << unknown.err;
@@ -188,6 +198,7 @@ TEST_F(CliRenderOptions, AMissingLibraryNamesItsPackage) {
     options.environment = {{"LD_LIBRARY_PATH", fake.path().string()}};
     expect_refused(1, "libosmesa6", {"--gl", "osmesa"}, options);
     expect_refused(1, "libegl1", {"--gl", "egl"}, options);
+    expect_refused(1, "libegl1", {}, options);
 }
 
 TEST_F(CliRenderOptions, PlacesThatCannotBeWrittenAreNamed) {

@@ -1,7 +1,6 @@
 // How long one solution of a group of resting contacts holds, and its segments.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "carom/engine/tolerances.h"
@@ -248,7 +247,7 @@ void write_segments(Group& g, double h) {
         const Vec2 ds = (b.s_end - b.s) / h;
         s.dw = Vec2(-ds.y(), ds.x()) / g.motion.R;
     }
-    interval = std::max(interval, kClockTicks * std::numeric_limits<double>::epsilon() * g.now);
+    interval = std::max(interval, kClockTicks * kEpsilon * g.now);
     for (std::size_t k = 0; k < g.bodies.size(); ++k) {
         const Body& b = g.bodies[k];
         Segment& s = g.group.balls[k].segment;
@@ -261,7 +260,7 @@ void write_segments(Group& g, double h) {
 }
 
 bool accelerates(const Group& g) {
-    constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+    constexpr double kRounding = 8.0 * kEpsilon;
     return std::any_of(g.bodies.begin(), g.bodies.end(), [](const Body& b) {
         return length(b.v_end - b.v) > kRounding * length(b.v) ||
                length(b.s_end - b.s) > kRounding * length(b.s);
@@ -301,8 +300,7 @@ double accurate_interval(const Group& g, double h) {
 
 void solve_interval(Group& g) {
     for (Body& b : g.bodies) b.guided = false;
-    const double shortest =
-        std::max(kShortestInterval, kClockTicks * std::numeric_limits<double>::epsilon() * g.now);
+    const double shortest = std::max(kShortestInterval, kClockTicks * kEpsilon * g.now);
     double h = std::max(shortest, std::min(first_attempt(g), kGrowth * g.group.last));
     double longest = h;
     int longer = 0;

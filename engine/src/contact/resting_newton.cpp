@@ -6,6 +6,7 @@
 
 #include "contact/complementarity.h"
 #include "contact/resting_group.h"
+#include "physics/motion.h"
 
 namespace carom::resting {
 
@@ -266,7 +267,7 @@ class Newton {
     bool is_solved(bool& harmless) {
         const double rounding = rate_rounding(g_), time = std::max(h_, kShortestInterval);
         double energy = 0.0;
-        for (const Body& b : g_.bodies) energy += dot(b.v, b.v) + 0.4 * dot(b.s, b.s);
+        for (const Body& b : g_.bodies) energy += dot(b.v, b.v) + kInertia * dot(b.s, b.s);
         bool solved = true;
         worst_ = 0.0;
         for (std::size_t k = 0; k < active_.size(); ++k) {

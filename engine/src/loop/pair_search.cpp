@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "loop/detector.h"
+#include "physics/nose_reach.h"
 
 namespace carom {
 
@@ -38,8 +39,7 @@ Box Detector::swept(int ball, double from, double duration) const {
     const bool whole = from == s.start;
     const Vec2 r = planar(whole ? s.r : position_at(s, from - s.start)),
                v = planar(whole ? s.v : velocity_at(s, from - s.start));
-    // A ball in the air may meet a nose at up to sqrt(2) R (nose_reach).
-    const double R = flights_ && flies(s.state) ? 1.5 * balls_.radius(ball) : balls_.radius(ball),
+    const double R = flights_ && flies(s.state) ? kNoseReach * balls_.radius(ball) : balls_.radius(ball),
                  margin = R * (1.0 + kBoxShare) + kBoxShare * (std::abs(r.x()) + std::abs(r.y()));
     Box box{};
     extend(r.x(), v.x(), s.a.x(), duration, margin, box.low_x, box.high_x);

@@ -11,7 +11,6 @@ namespace carom {
 
 namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 // Returns the time until |w_z| has decayed to 0.
 double spin_time(double w_z, const MotionParams& p) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "carom/engine/tolerances.h"
 #include "contact/detect.h"
 #include "physics/motion.h"
 #include "physics/nose_reach.h"
@@ -15,7 +16,7 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 }
 
 double rounding_of(const Vec3& v, const Vec3& w, double R, double t) {
-    return kClosingUlp * std::numeric_limits<double>::epsilon() * (length3(v) + R * length3(w)) * t;
+    return kClosingUlp * kEpsilon * (length3(v) + R * length3(w)) * t;
 }
 
 double allowed_depth(const SeenBall& ball) {

@@ -17,8 +17,6 @@ namespace carom {
 
 namespace {
 
-constexpr double kUlp = 2.220446049250313e-16;
-
 // Returns the mass over that of a ball without a mass of its own: 1 in most scenes.
 double mass(const Record& record, int ball) {
     return record.size(ball).m / record.balls.m;
@@ -223,7 +221,7 @@ class Checker {
                 cloth ? plan_.balls.mu_s * (plan_.balls.mu_b + plan_.balls.mu_b_more) * J_n : 0.0;
             // A straight shot meets that limit exactly, and an impact is solved to a tolerance.
             const double solved = cloth ? (m1 + m2) * velocity_error((v1 - v2).dot(n3)) : 0.0;
-            if (change.norm() > limit + solved + 64.0 * kUlp * scale)
+            if (change.norm() > limit + solved + 64.0 * kEpsilon * scale)
                 report("U5", "the impact changes the pair's momentum by {:.3g} m/s", change.norm());
             const double rounding = 1e-12 * scale;
             if (!cloth && (std::abs(dw1.dot(n3)) > rounding || std::abs(dw2.dot(n3)) > rounding ||

@@ -13,6 +13,7 @@
 #include "carom/engine/tolerances.h"
 #include "contact/roots.h"
 #include "physics/motion.h"
+#include "physics/nose_reach.h"
 #include "record/gaps.h"
 
 namespace carom {
@@ -170,8 +171,7 @@ class Between {
     }
 
     void check_table(std::size_t ball, double from, double to) {
-        // A ball in the air may touch a nose at sqrt(2) R.
-        const double near = 1.5 * R(ball) + pieces_[ball].reach;
+        const double near = kNoseReach * R(ball) + pieces_[ball].reach;
         const bool in_air = flies(segment(ball).state);
         for (const CushionLine& line : plan_.geometry.cushions) {
             if (std::abs(cross(line.direction, pieces_[ball].r - line.from)) > near) continue;
@@ -229,7 +229,8 @@ double ball_energy(const Record& record, int ball, const BallState& state) {
     const BallSize size = record.size(ball);
     const double fallen = is_off_cloth(state.state) ? record.gravity * (state.position.z() - size.R) : 0.0;
     return size.m / record.balls.m *
-           (0.5 * state.velocity.squaredNorm() + 0.2 * size.R * size.R * state.spin.squaredNorm() + fallen);
+           (0.5 * state.velocity.squaredNorm() + 0.5 * kInertia * size.R * size.R * state.spin.squaredNorm() +
+            fallen);
 }
 
 double height_rounding(const Record& record) {

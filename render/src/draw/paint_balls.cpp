@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "carom/render/look.h"
 #include "draw/shaders.h"
 #include "font/glyphs.h"
 
@@ -14,8 +15,12 @@ namespace {
 using namespace lanes;
 
 // Screen values to radiance and back, as in shaders/common.glsl.
-Vec from_screen(float r, float g, float b) {
-    return {all(r * r), all(g * g), all(b * b)};
+Vec from_screen(const look::Color& screen) {
+    const auto squared = [](double c) { return all(static_cast<float>(c) * static_cast<float>(c)); };
+    return {squared(screen[0]), squared(screen[1]), squared(screen[2])};
+}
+Floats number(double x) {
+    return all(static_cast<float>(x));
 }
 Floats to_screen(Floats c) {
     const Floats over = 1.0F + max(c - 0.5F, 0.0F);
@@ -71,29 +76,30 @@ class Skin {
         const float* q = ball.orientation;
         axis_ = {all(-q[0]), all(-q[1]), all(-q[2])};
         turn_ = all(q[3]);
-        const bool bright =
-            0.3F * ball.color_number[0] + 0.6F * ball.color_number[1] + 0.1F * ball.color_number[2] > 0.3F;
-        dots_ = bright ? from_screen(0.72F, 0.05F, 0.07F) : from_screen(0.93F, 0.90F, 0.82F);
+        const float* c = ball.color_number;
+        dots_ = from_screen(look::is_bright(c[0], c[1], c[2]) ? look::kRedDot : look::kPaleDot);
     }
 
     // At the normal n; w is the width of a pixel in radii. shine: how much of the mirror image of the lamp is seen; print must stay legible.
     Vec albedo(const Vec& n, Floats w, Floats& shine) const {
         const Vec b = n + cross(axis_, cross(axis_, n) + n * turn_) * all(2.0F);
         Vec base = base_;
-        const Vec ivory = from_screen(0.95F, 0.93F, 0.86F);
+        const Vec ivory = from_screen(look::kIvory);
         shine = all(1.0F);
-        if (pattern_ == BallPattern::kStripe) base = mix(ivory, base, inside(abs(b.x) - 0.60F, w));
+        if (pattern_ == BallPattern::kStripe)
+            base = mix(ivory, base, inside(abs(b.x) - number(look::kStripe), w));
         if (pattern_ == BallPattern::kDots) base = mix(base, dots_, dots(b, w));
         if (pattern_ == BallPattern::kHalves)
-            base = mix(base, mix(base, Vec{all(1.0F), all(1.0F), all(1.0F)}, all(0.65F)), inside(b.x, w));
+            base = mix(base, mix(base, Vec{all(1.0F), all(1.0F), all(1.0F)}, number(look::kPaleHalf)),
+                       inside(b.x, w));
         if (number_ <= 0) return base;
         // The number is at both ends of the body's z axis, upright for a camera whose right-hand side is +y.
-        const Floats spot = inside(sqrt(b.x * b.x + b.y * b.y) - 0.52F, w);
+        const Floats spot = inside(sqrt(b.x * b.x + b.y * b.y) - number(look::kSpot), w);
         if (!any(spot > 0.0F)) return base;
         base = mix(base, ivory, spot);
         const Floats ink = spot * number_ink(b.y, choose(b.z > 0.0F, -b.x, b.x), w);
         shine = 1.0F - 0.85F * ink;
-        return mix(base, Vec{all(0.012F), all(0.012F), all(0.012F)}, ink);
+        return mix(base, Vec{number(look::kInk), number(look::kInk), number(look::kInk)}, ink);
     }
 
   private:
@@ -102,7 +108,8 @@ class Skin {
         const Vec square = b * b;
         const Floats most = max(max(square.x, square.y), square.z);
         const Floats from_axis = sqrt(max(square.x + square.y + square.z - most, 0.0F));
-        const Floats radius = choose((square.z >= most) & (b.z > 0.0F), all(0.34F), all(0.17F));
+        const Floats radius =
+            choose((square.z >= most) & (b.z > 0.0F), number(look::kLargeDot), number(look::kDot));
         return inside(from_axis - radius, w);
     }
 
@@ -223,7 +230,7 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
     const float pixel_size = 2.0F * std::sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]) / view.size[1];
     const LampOnBalls lamp(view);
     const Skin skin(ball.instance, glyphs);
-    const Vec cloth = from_screen(0.055F, 0.50F, 0.345F), dim{all(0.10F), all(0.10F), all(0.10F)};
+    const Vec cloth = from_screen(look::kCloth), dim{all(0.10F), all(0.10F), all(0.10F)};
     const bool sunk = center[2] < 0.999F * R;
     const bool plain = ball.plain;
     const BallInstance instance = ball.instance;
@@ -239,8 +246,8 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
         Floats cover = clamp(0.5F + (R - miss) / pixel, 0.0F, 1.0F);
         if (!any(cover > 0.0F)) return;
         const Floats rise = sqrt(max(R * R - miss2, 0.0F));
-        const Vec n = (perpendicular - dir * rise) *
-                      (1.0F / max(miss, R));  // R long inside, outside as far as the ray is from the centre
+        // R long inside, outside as far as the ray is from the centre
+        const Vec n = (perpendicular - dir * rise) * (1.0F / max(miss, R));
         const Vec p = middle + n * all(R);
         if (!plain) cover *= background.seen(first, count, (along - rise) * per_depth - 0.001F);
 

@@ -14,6 +14,7 @@
 
 #include "base/fnv.h"
 #include "base/output_file.h"
+#include "carom/engine/tolerances.h"
 #include "carom/render/draw_list.h"
 #include "carom/render/kept_png.h"
 #include "carom/render/png.h"
@@ -25,8 +26,6 @@ namespace carom::render {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-constexpr int kLargestSheet = 16384;  // pixels, height
 
 void make_folder(const std::string& pattern) {
     const std::filesystem::path folder = std::filesystem::path(frame_path(pattern, 0)).parent_path();
@@ -266,10 +265,10 @@ void render_sheet(const Record& record, const SequenceOptions& options, int colu
             static_cast<int>(static_cast<long>(cell.size.width) * options.size.height / options.size.width);
     }
     if (!possible || cell.size.width < 14 || cell.size.height < 14 ||
-        rows > kLargestSheet / (cell.size.height + kGap)) {
+        rows > kMaxImageSize / (cell.size.height + kGap)) {
         throw RenderError(
             "a sheet needs at least one column and one row, 16 pixels for each, and a height of at most " +
-            std::to_string(kLargestSheet));
+            std::to_string(kMaxImageSize));
     }
     cell.overlay.clock = true;
     const Stage stage(record, cell);

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "carom/render/look.h"
 #include "font/glyphs.h"
 
 namespace carom::render {
@@ -17,9 +18,14 @@ namespace {
 
 using Color = std::array<float, 3>;
 
-constexpr Color kIvory{0.95F, 0.93F, 0.86F}, kRedDot{0.72F, 0.05F, 0.07F}, kPaleDot{0.93F, 0.90F, 0.82F};
-constexpr Color kInk{0.11F, 0.11F, 0.11F};
-constexpr float kSpot = 0.52F;  // [radii] of the ivory disc behind a number
+constexpr Color color_of(const look::Color& c) {
+    return {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])};
+}
+constexpr Color kIvory = color_of(look::kIvory),
+                kInk = color_of({look::kInkOnScreen, look::kInkOnScreen, look::kInkOnScreen});
+constexpr auto kSpot = static_cast<float>(look::kSpot), kStripe = static_cast<float>(look::kStripe),
+               kPaleHalf = static_cast<float>(look::kPaleHalf), kDot = static_cast<float>(look::kDot),
+               kLargeDot = static_cast<float>(look::kLargeDot);
 
 struct Place {
     float x, y, z;  // on the unit sphere, in the ball's frame
@@ -71,16 +77,16 @@ float number_ink(const std::vector<std::uint8_t>& atlas, int number, float x, fl
 
 Color pattern(const BallStyle& style, const Place& b, float w) {
     const Color& own = style.color;
-    if (style.pattern == BallPattern::kStripe) return mixed(kIvory, own, inside(std::abs(b.x) - 0.60F, w));
+    if (style.pattern == BallPattern::kStripe) return mixed(kIvory, own, inside(std::abs(b.x) - kStripe, w));
     if (style.pattern == BallPattern::kHalves)
-        return mixed(own, mixed(own, {1, 1, 1}, 0.65F), inside(b.x, w));
+        return mixed(own, mixed(own, {1, 1, 1}, kPaleHalf), inside(b.x, w));
     if (style.pattern != BallPattern::kDots) return own;
     const float x = std::abs(b.x), y = std::abs(b.y), z = std::abs(b.z);
     const bool z_axis = z >= x && z >= y;
     const float from_axis = z_axis ? std::hypot(x, y) : x > y ? std::hypot(y, z) : std::hypot(x, z);
-    const float luminance = 0.3F * own[0] * own[0] + 0.6F * own[1] * own[1] + 0.1F * own[2] * own[2];
-    const float radius = z_axis && b.z > 0.0F ? 0.34F : 0.17F;
-    return mixed(own, luminance > 0.3F ? kRedDot : kPaleDot, inside(from_axis - radius, w));
+    const bool bright = look::is_bright(own[0] * own[0], own[1] * own[1], own[2] * own[2]);
+    const float radius = z_axis && b.z > 0.0F ? kLargeDot : kDot;
+    return mixed(own, color_of(bright ? look::kRedDot : look::kPaleDot), inside(from_axis - radius, w));
 }
 
 }  // namespace

@@ -93,8 +93,8 @@ void add_option(CLI::App& app, const Option& row, const std::string& names, T& v
 /// Gives a command's table to CLI11. `named` becomes the command that the command line names.
 void fill(CLI::App& app, const Options& command, const Options*& named) {
     if (!command.footer.empty()) app.footer(command.footer);
-    app.require_subcommand(
-        0, 1);  // if none is named, run_command_line reports it with a better message than that of CLI11
+    // if none is named, run_command_line reports it with a better message than that of CLI11
+    app.require_subcommand(0, 1);
     for (const Option& row : command.rows) {
         const auto names = fmt::format("{}", fmt::join(row.names, ","));
         std::visit(

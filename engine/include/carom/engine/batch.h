@@ -106,8 +106,8 @@ struct BatchArrays {
     std::int64_t* events = nullptr;
     std::int32_t *first_hit = nullptr, *contacts = nullptr, *approach_cushions = nullptr;
     double *x = nullptr, *y = nullptr;
-    std::size_t place_stride =
-        1;  ///< from a ball's number to the next one's in x and in y: 2 where x and y alternate
+    /// from a ball's number to the next one's in x and in y: 2 where x and y alternate
+    std::size_t place_stride = 1;
     std::int32_t *pocket = nullptr, *fell = nullptr, *cushions = nullptr;
     std::uint64_t* hash = nullptr;
 };
@@ -132,11 +132,11 @@ struct Batch {
     std::vector<std::int64_t> events;     ///< n
     std::vector<std::int32_t> first_hit;  ///< n: the first ball that the struck ball meets, or -1
     std::vector<std::int32_t> contacts;   ///< n: how many balls it meets
-    std::vector<std::int32_t>
-        approach_cushions;             ///< n: how many cushions it meets before the second of them, or at all
-    std::vector<double> x, y;          ///< n x b [m], at the end
-    std::vector<std::int32_t> pocket;  ///< n x b: index of the pocket that holds the ball, kOffTable, or -1
-    std::vector<std::int32_t> fell;    ///< n x b: 0 for the ball that fell first, 1, ..., or -1
+    /// n: how many cushions it meets before the second of them, or at all
+    std::vector<std::int32_t> approach_cushions;
+    std::vector<double> x, y;            ///< n x b [m], at the end
+    std::vector<std::int32_t> pocket;    ///< n x b: index of the pocket that holds the ball, kOffTable, or -1
+    std::vector<std::int32_t> fell;      ///< n x b: 0 for the ball that fell first, 1, ..., or -1
     std::vector<std::int32_t> cushions;  ///< n x b: how often the ball met a cushion or a jaw
     std::vector<std::uint64_t> hash;     ///< n, if asked for: Outcome::hash
     struct Message {

@@ -150,8 +150,8 @@ struct Event {
     int b = -1;       ///< the other ball, or the index of the cushion, jaw or pocket; -1 if none
     int detail = -1;  ///< kBallCluster: index into Record::clusters; cushions and jaws: of the round nose in
                       ///< Plan::noses, or -1
-    bool slow =
-        false;  ///< of a ball in the air, so slow that it parts at a speed of its own: the energy may rise
+    /// of a ball in the air, so slow that it parts at a speed of its own: the energy may rise
+    bool slow = false;
     bool operator==(const Event&) const = default;
 };
 

@@ -326,8 +326,8 @@ extern const CushionModelInfo kHan2005;
 struct Physics {
     double gravity = 9.81;
     const BallBallModelInfo* ball_ball = &kMathavan;
-    const CushionModelInfo* cushion =
-        &kHan2005;  ///< straight noses; a ball preset brings the one that fits its game
+    /// straight noses; a ball preset brings the one that fits its game
+    const CushionModelInfo* cushion = &kHan2005;
     const CushionModelInfo* jaw = nullptr;  ///< round jaws; null: as the straight noses
     const CushionModelInfo* jaw_model() const { return jaw != nullptr ? jaw : cushion; }
     ClothSlipSign cloth_slip = ClothSlipSign::kConsistent;

@@ -27,8 +27,8 @@ struct SimulateOptions {
     /// is not called at all.
     std::function<void(std::size_t, double)> progress;
     int progress_rounds = 64;
-    bool hash =
-        false;  ///< for an outcome: Outcome::hash, which takes the segments that it has no other use for
+    /// for an outcome: Outcome::hash, which takes the segments that it has no other use for
+    bool hash = false;
 };
 
 /// A run that cannot go on: too many events in one simulated microsecond, or a kernel that failed. what()

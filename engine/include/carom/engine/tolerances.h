@@ -2,8 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 
 namespace carom {
+
+/// [-] The distance from 1 to the next double.
+inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// [m] Balls that overlap, or reach into a cushion, by at most this much at the start are taken to touch;
 /// deeper is an error. A thousandth of the smallest gap that can be set on a real table, and far above the

@@ -152,8 +152,8 @@ struct Verdict {
     std::vector<Foul> fouls;  ///< by rule; empty for a fair shot
     int points = 0;           ///< scored by the shot
     int penalty = 0;          ///< snooker: what the other player receives
-    std::vector<Option>
-        options;  ///< at least one. Where there are several, the first is what happens unless `chooser` takes another
+    /// at least one. Where there are several, the first is what happens unless `chooser` takes another
+    std::vector<Option> options;
     int chooser = -1;  ///< the player who chooses; -1 where there is one option
     const State& next() const { return options.front().state; }
     const std::vector<Respot>& respots() const { return options.front().respots; }

@@ -49,7 +49,7 @@ struct SequenceOptions {
     int table_samples = 16;
     /// zlib level 0..9: libpng encodes every frame as a whole. Default: only what changed is encoded (kept_png.h)
     std::optional<int> libpng_level;
-    Backend backend = Backend::kOsmesa;
+    Backend backend = Backend::kAuto;
     /// Number of threads that encode and write. 1: everything runs on the calling thread, so that the timings do not
     /// disturb each other. 0: one per core, or 1 with an empty pattern, which is used for measurements.
     int jobs = 0;

@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 struct ViewArgs {
     std::string input, second;  ///< a scene, or a record (.json); `second` may be empty
     std::string output = "shot.html";
-    std::string gl = "osmesa";
+    std::string gl = "auto";
     bool margin = true;
 };
 
