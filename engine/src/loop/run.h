@@ -34,11 +34,13 @@ class Run {
   private:
     StopReason run(const Record* so_far);
     void start_balls();
-    bool is_full() const;
+    /// Whether as many events came as may. @throws SimulationError where nobody asked to stop there
+    bool is_full();
     StopReason stop(double next);
 
     const Plan& plan_;
-    double stop_;  // [s] end of the simulated time
+    double stop_;        // [s] end of the simulated time
+    std::int64_t most_;  // events of which none follows
     Balls balls_;
     Log log_;
     RestingContacts resting_;
