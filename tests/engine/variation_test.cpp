@@ -312,6 +312,12 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         {"cue.speed=uniform(2,1)", "needs a <= b"},
         {"cue.speed=uniform(-1e308,1e308)", "b - a is too large"},
         {"cue.speed=uniform(1,nan)", "must be a finite number"},
+        {"cue.speed=uniform(9007199254740993,9007199254740993)",
+         "value 1 of uniform = 9007199254740993 has more digits than a number holds; write "
+         "9007199254740992.0"},
+        {"cue.speed=normal(1,9007199254740993)", "value 2 of normal = 9007199254740993 has more digits"},
+        {"cue.speed=list(9007199254740993)", "shot 0: cue.speed = 9007199254740993 is out of range"},
+        {"cue.speed=integer(1,9007199254740993)", "needs -1000000000 <= a <= b"},
         {"cue.speed=uniform(1,2", "expected uniform(a,b)"},
         {"cue.speed=uniform(1],v=[2)", "cannot read the values"},
         {"cue.speed=gauss(1,2)", "unknown distribution \"gauss\""},

@@ -1,6 +1,9 @@
 // Faults from outside: a full disk, a folder that takes nothing, a reader that leaves, signals, a run that
 // was killed. What stands afterwards is whole or absent, and the exit status says what happened.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/file_lock.h"
 #include "cli.h"
 
 #if defined(__SANITIZE_THREAD__)
@@ -158,6 +162,70 @@ TEST_F(Faults, AKilledRenderIsFinishedByResumeWithTheSameFrames) {
     again.push_back("--resume");
     ASSERT_EQ(carom(again).status, 0);
     for (int k = 0; k <= 100; ++k) EXPECT_EQ(read_file(frame(k)), whole[k]) << k;
+}
+
+// Over the frames of a longer film of another camera, killed after each frame. What there is never mixes two pictures.
+TEST_F(Faults, ARenderThatIsKilledOverOtherFramesIsFinishedByResumeWithItsOwn) {
+    const auto command = [this](const char* camera, const char* to) {
+        return std::vector<std::string>{"render", scene_,  "-o",   pattern(), "--fps",    "100",
+                                        "--size", "64x36", "--to", to,        "--camera", camera};
+    };
+    const auto folder = folder_.path() / "frames", others = folder_.path() / "others";
+    ASSERT_EQ(carom(command("top", "0.29")).status, 0);
+    std::vector<std::string> whole;
+    for (int k = 0; k < 30; ++k) whole.push_back(read_file(frame(k)));
+    ASSERT_EQ(carom(command("rail", "0.4")).status, 0);
+    fs::copy(folder, others);
+    const auto is_own = [&](int k) {
+        std::ifstream file(frame(k), std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(file), {}) == whole[k];
+    };
+    for (int stop = 0; stop < 30; ++stop) {
+        fs::remove_all(folder);
+        fs::copy(others, folder);
+        std::vector<std::string> arguments = command("top", "0.29");
+        arguments.insert(arguments.begin(), CAROM_PROGRAM);
+        Process process(arguments, ProcessOptions{});
+        for (int wait = 0; wait < 20000 && !is_own(stop); ++wait)
+            std::this_thread::sleep_for(std::chrono::microseconds(300));
+        process.send(SIGKILL);
+        process.finish("");
+        std::vector<std::string> again = command("top", "0.29");
+        again.push_back("--resume");
+        ASSERT_EQ(carom(again).status, 0) << stop;
+        std::size_t files = 0;
+        for (const auto& entry : fs::directory_iterator(folder)) files += entry.is_regular_file() ? 1 : 0;
+        EXPECT_EQ(files, whole.size()) << stop;
+        for (int k = 0; k < 30; ++k) EXPECT_EQ(read_file(frame(k)), whole[k]) << stop << " " << k;
+    }
+}
+
+TEST_F(Faults, TheNextRunRemovesWhatAKilledOneLeft) {
+    const std::string left = folder_.write(".carom.1.0.tmp", "half"),
+                      other = folder_.write(".carom.2.0.tmp", "");
+    const int writes = ::open(other.c_str(), O_RDWR);
+    ASSERT_EQ(::flock(writes, LOCK_EX), 0);
+    folder_.write(".carom.tmp.not", "mine");
+    ASSERT_EQ(carom({"simulate", scene_, "-o", folder_.file("r.json")}).status, 0);
+    EXPECT_FALSE(fs::exists(left));
+    EXPECT_TRUE(fs::exists(other)) << "another program writes it";
+    EXPECT_TRUE(fs::exists(folder_.file(".carom.tmp.not")));
+    ::close(writes);
+}
+
+TEST_F(Faults, TwoRendersDoNotShareFrames) {
+    const std::vector<std::string> command = {"render", scene_,  "-o",   pattern(),
+                                              "--size", "64x36", "--to", "0.2"};
+    fs::create_directory(folder_.path() / "frames");
+    {
+        const FileLock lock(pattern() + ".lock", true);
+        const ProcessResult result = carom(command);
+        EXPECT_EQ(result.status, 1);
+        EXPECT_NE(result.err.find("%05d.png.lock: another program is writing"), std::string::npos)
+            << result.err;
+        EXPECT_FALSE(fs::exists(frame(0)));
+    }
+    EXPECT_EQ(carom(command).status, 0);
 }
 
 TEST_F(Faults, ARecordThatIsTooLargeIsRefusedUnread) {

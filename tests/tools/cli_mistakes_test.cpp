@@ -109,7 +109,10 @@ TEST_F(Mistakes, ResumeKnowsWhichShotFramesAreOf) {
         all.insert(all.end(), more.begin(), more.end());
         return carom(all);
     };
-    EXPECT_EQ(render({"--resume"}).status, 1);
+    folder_.write("f1.png", "of nobody");
+    EXPECT_TRUE(contains(render({"--resume"}).err, "nothing says which shot the frames there are of"));
+    fs::remove(folder_.file("f1.png"));
+    ASSERT_EQ(render({"--resume"}).status, 0);  // all of it
     ASSERT_EQ(render({}).status, 0);
     EXPECT_TRUE(contains(render({"--resume"}).out, "0 frames: all are there"));
     const std::vector<std::vector<std::string>> others = {

@@ -2,6 +2,8 @@
 #include "base/output_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,7 +11,10 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -19,6 +24,7 @@ namespace {
 
 constexpr int kMostLinks = 40;    // as in the kernel
 constexpr int kMostNames = 1000;  // temporary files of one process in one folder
+constexpr std::string_view kTemporary = ".carom.", kTemporaryEnd = ".tmp";
 
 /// Number of a descriptor, -1 for what is none.
 int descriptor(std::string_view path) {
@@ -30,6 +36,28 @@ int descriptor(std::string_view path) {
     int number = -1;
     const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), number);
     return error == std::errc() && end == path.data() + path.size() ? number : -1;
+}
+
+/// Removes what killed programs left in a folder: temporary files that nobody has locked. Once for each folder, for one may hold many
+/// files.
+void remove_left(const std::filesystem::path& folder) {
+    static std::mutex mutex;
+    static std::set<std::filesystem::path> seen;
+    {
+        const std::lock_guard guard(mutex);
+        if (!seen.insert(folder).second) return;
+    }
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with(kTemporary) || !name.ends_with(kTemporaryEnd)) continue;
+        const int fd = ::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        if (fd < 0) continue;
+        struct stat opened {};
+        if (::fstat(fd, &opened) == 0 && S_ISREG(opened.st_mode) && ::flock(fd, LOCK_EX | LOCK_NB) == 0)
+            ::unlink(entry.path().c_str());
+        ::close(fd);
+    }
 }
 
 }  // namespace
@@ -73,13 +101,21 @@ void OutputFile::open_temporary() {
     struct stat there {};
     const bool replaces = ::stat(target_.c_str(), &there) == 0;
     const std::filesystem::path folder = std::filesystem::path(target_).parent_path();
+    remove_left(folder.empty() ? "." : folder);
     for (int k = 0; k < kMostNames; ++k) {
         // Short, because the name of the file may be as long as a name can be; of this process, for other programs write here, too.
-        temporary_ =
-            (folder / (".carom." + std::to_string(::getpid()) + "." + std::to_string(k) + ".tmp")).string();
+        temporary_ = (folder / fmt::format("{}{}.{}{}", kTemporary, ::getpid(), k, kTemporaryEnd)).string();
         const int fd = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (fd < 0 && errno == EEXIST) continue;
+        // Locked as long as it is written, so that others see that it is not left over; one who saw it before that removed it.
+        struct stat opened {};
+        if (fd >= 0 && ::flock(fd, LOCK_EX | LOCK_NB) == 0 && ::fstat(fd, &opened) == 0 &&
+            opened.st_nlink == 0) {
+            ::close(fd);
+            continue;
+        }
         if (fd >= 0 && replaces && ::fchmod(fd, there.st_mode & 07777) != 0) errno = 0;  // not ours to change
+        lock_ = fd < 0 ? -1 : ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
         file_ = fd < 0 ? nullptr : ::fdopen(fd, "wb");
         break;
     }
@@ -91,6 +127,7 @@ void OutputFile::open_temporary() {
 OutputFile::~OutputFile() {
     if (file_ != nullptr) std::fclose(file_);
     if (!temporary_.empty()) std::remove(temporary_.c_str());
+    if (lock_ >= 0) ::close(lock_);
 }
 
 void OutputFile::fail(const char* what) {

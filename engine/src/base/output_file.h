@@ -39,6 +39,8 @@ class OutputFile {
     std::string target_;     ///< after following symbolic links
     std::string temporary_;  ///< empty if the target is written to directly
     std::FILE* file_ = nullptr;
+    int lock_ =
+        -1;  ///< of the temporary file, until it has its name: what nobody has locked is left over, and goes
 };
 
 }  // namespace carom

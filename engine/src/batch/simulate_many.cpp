@@ -280,9 +280,17 @@ BatchArrays Batch::arrays() {
     return out;
 }
 
+void check_shots(std::size_t shots) {
+    if (shots > kMostBatchShots)
+        throw std::invalid_argument("shots = " + std::to_string(shots) +
+                                    " is out of range; it must be at most " +
+                                    std::to_string(kMostBatchShots));
+}
+
 std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
                                           std::span<const BatchColumn> columns, kernel::Isa isa,
                                           const BatchOptions& options, const BatchArrays& out) {
+    check_shots(shots);
     if (!options.absent.empty() && options.absent.size() != shots * scene.ball.size())
         throw std::invalid_argument("absent: expected a value for every ball of every shot");
     const ColumnShots play{scene, columns, numbers_of(scene, shots, columns), options.absent, isa};
@@ -292,6 +300,7 @@ std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
 std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint64_t first, std::size_t shots,
                                           kernel::Isa isa, const BatchOptions& options,
                                           const BatchArrays& out, std::vector<std::string>& values) {
+    check_shots(shots);
     const std::size_t keys = variation.keys().size();
     values.assign(shots * keys, {});
     const auto play = [&](Player& player, std::size_t shot, const SimulateOptions& how) {
@@ -307,6 +316,7 @@ std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint6
 
 Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const BatchColumn> columns,
                     kernel::Isa isa, const BatchOptions& options) {
+    check_shots(shots);
     Batch batch(shots, scene.ball.size(), options.hash);
     const BatchArrays out = batch.arrays();
     batch.messages = simulate_many(scene, shots, columns, isa, options, out);

@@ -35,11 +35,13 @@ class Run {
     StopReason run(const Record* so_far);
     void start_balls();
     void check_digits(int ball, double time);
-    bool is_full() const;
+    /// Whether as many events came as may. @throws SimulationError where nobody asked to stop there
+    bool is_full();
     StopReason stop(double next);
 
     const Plan& plan_;
-    double stop_;  // [s] end of the simulated time
+    double stop_;        // [s] end of the simulated time
+    std::int64_t most_;  // events of which none follows
     Balls balls_;
     Log log_;
     RestingContacts resting_;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "carom/engine/tolerances.h"
 #include "contact/detect.h"
 #include "loop/run.h"
 #include "physics/cue.h"
@@ -25,6 +26,7 @@ constexpr double kLostShare = 1e-3;
 Run::Run(const Plan& plan, const SimulateOptions& options, RunBuffers::Memory& memory, Keep keep)
     : plan_(plan),
       stop_(std::min(plan.scene.stop.time.value_or(kNever), options.until.value_or(kNever))),
+      most_(std::min<std::int64_t>(plan.scene.stop.events.value_or(kUsualEvents), kMostEvents)),
       balls_(plan, memory.balls),
       log_(plan, options, balls_, memory.log, keep),
       resting_(plan, balls_, log_, memory.resting),
@@ -111,9 +113,11 @@ void Run::start_balls() {
     }
 }
 
-bool Run::is_full() const {
-    const auto most = plan_.scene.stop.events;
-    return most && static_cast<std::int64_t>(log_.events().size()) >= *most;
+bool Run::is_full() {
+    if (static_cast<std::int64_t>(log_.events().size()) < most_) return false;
+    if (plan_.scene.stop.events == most_) return true;
+    log_.fail(plan_.scene.stop.events ? "no run may have more events"
+                                      : "add [stop] with events if more shall come, or with time");
 }
 
 // Called if the next event is later than the end of the simulated time, or if there is none.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <stdexcept>
 
 #include "base/record_hash.h"
 #include "carom/engine/math.h"
@@ -168,6 +169,10 @@ Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
 }
 
 Scene scene_after(const Scene& scene, const Record& record) {
+    if (!std::equal(scene.ball.begin(), scene.ball.end(), record.tracks.begin(), record.tracks.end(),
+                    [](const BallStart& ball, const BallTrack& track) { return ball.id == track.id; }))
+        throw std::invalid_argument(
+            "the scene has other balls than the record; give the scene of the record");
     Scene after = scene;
     after.cue.reset();
     after.ball.clear();

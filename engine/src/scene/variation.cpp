@@ -12,6 +12,7 @@
 
 #include "base/draws.h"
 #include "base/fnv.h"
+#include "base/toml_number.h"
 #include "carom/engine/tolerances.h"
 #include "scene/distribution.h"
 #include "scene/keys.h"
@@ -99,19 +100,23 @@ void write(const Drawn& value, std::string& text) {
     }
     if (const auto* whole = std::get_if<std::int64_t>(&value)) return add(*whole);
     const toml::node& node = *std::get<const toml::node*>(value);
-    if (node.is_string()) return add(*node.value<std::string>());
-    if (node.is_floating_point()) return add(*node.value<double>());
+    if (const auto* words = node.as_string()) return add(words->get());
+    if (const auto* x = node.as_floating_point()) return add(x->get());
     std::ostringstream out;
     node.visit([&out](const auto& v) { out << v; });
     text = out.str();
 }
 
-/// The drawn number, if it is one.
+/// The drawn number, if it is one that a double holds.
 std::optional<double> number_of(const Drawn& value) {
     if (const auto* number = std::get_if<double>(&value)) return *number;
     if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
     const toml::node& node = *std::get<const toml::node*>(value);
-    return node.is_number() ? node.value<double>() : std::nullopt;
+    try {
+        return detail::number_in(node);
+    } catch (const std::invalid_argument&) {
+        return std::nullopt;
+    }
 }
 
 bool is_whole(const Drawn& value) {

@@ -146,6 +146,11 @@ struct Batch {
     std::vector<Message> messages;  ///< in the order of the shots
 };
 
+/// [-] Most shots of one batch: beyond it sizes of arrays would overflow.
+inline constexpr std::size_t kMostBatchShots = std::size_t{1} << 31;
+/// @throws std::invalid_argument for more shots than that
+void check_shots(std::size_t shots);
+
 /// Plays `shots` shots that differ in the numbers of some columns. Shot i has the results of simulate() for the scene with these
 /// numbers, bit for bit, whatever the number of threads. A shot that is invalid or fails has its status, and the others are played.
 /// @throws std::invalid_argument for a key that names no number, a key that is there twice, or a column of another length

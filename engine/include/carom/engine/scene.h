@@ -416,7 +416,9 @@ struct Stop {
 };
 inline constexpr Field<Stop> kStopFields[] = {
     field<&Stop::time>("time", at_least(0.0, kMaxTime, "s"), "end after this much time"),
-    field<&Stop::events>("events", at_least(0.0, kAnyInteger), "end after this many events"),
+    field<&Stop::events>("events", at_least(0.0, kAnyInteger),
+                         "end after this many events; more than 10 million are an error",
+                         {.standard = "more than 1 million are an error"}),
 };
 
 inline constexpr const char* kCameras[] = {"top", "rail", "player", "follow"};
