@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -18,9 +19,9 @@ namespace {
 
 // [-] Initial capacity for segments and events: enough for a break. It doubles when it is exceeded.
 constexpr std::size_t kRoom = 256;
-// [s] A ball in the air that has not left its place for so long balances: what stands off its support by a rounding slides off
-// within 2.5 s, 30 times sqrt(2 R/g).
-constexpr double kLongestBalance = 5.0;
+// [sqrt(2 R/g)] A ball in the air that has not left its place for so long balances: what stands off its support by a
+// rounding slides off within half of it. 5 s of a pool ball.
+constexpr double kLongestBalance = 65.0;
 
 }  // namespace
 
@@ -74,7 +75,8 @@ void Log::watch(int ball) {
         stay = {balls_.now(), s.r};
         return;
     }
-    if (!(balls_.now() - stay.since > kLongestBalance)) return;
+    const double longest = kLongestBalance * std::sqrt(2.0 * balls_.radius(ball) / gravity);
+    if (!(balls_.now() - stay.since > longest)) return;
     const auto met = std::find_if(events_.rbegin(), events_.rend(), [ball](const Event& e) {
         return e.type != EventType::kBallCloth &&
                (e.a == ball || (kind(e.type).partner == Partner::kBall && e.b == ball));

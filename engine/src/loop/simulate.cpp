@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <memory>
 
 #include "carom/engine/tolerances.h"
@@ -20,6 +19,8 @@ namespace {
 
 // [R] A run ends when the digits of its clock leave more than this open in the place of a ball.
 constexpr double kLostShare = 1e-3;
+// [s] Before this the clock has digits enough for any speed that a scene may have, and nothing is looked at.
+constexpr double kDigitsAreMany = 1e3;
 
 }  // namespace
 
@@ -68,7 +69,7 @@ StopReason Run::run(const Record* so_far) {
         log_.begin_round();
         const Candidate next = detector_.next();
         if (next.time > stop_ || next.time == kNever) return stop(next.time);
-        if (next.contact.with != With::kNothing) {
+        if (next.time > kDigitsAreMany && next.contact.with != With::kNothing) {
             for (const int ball : {next.contact.ball, next.contact.partner()})
                 if (ball >= 0) check_digits(ball, next.time);
         }
@@ -86,7 +87,7 @@ void Run::check_digits(int ball, double time) {
     const double R = balls_.radius(ball);
     const double end =
         kLostShare * R /
-        (kClosingUlp * std::numeric_limits<double>::epsilon() * (length3(s.v) + R * length3(s.w)));
+        (kClosingUlp * kEpsilon * (length3(s.v) + R * length3(s.w)));
     if (!(time > end)) return;
     balls_.advance_to(end);
     log_.fail(fmt::format(
