@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from carom import _carom, _program
+from carom import _carom
 from carom._arguments import checked
 from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
 
@@ -219,8 +219,8 @@ class Record:
 
     def page(self, second: Record | None = None) -> str:
         """The page of `carom view`, as HTML that loads nothing: it plays the shot, with events, trails and charts, and another one
-        over or beside it. Raises RuntimeError where the program cannot run."""
-        return _program.page(*(shot._native.text() for shot in (self, second) if shot is not None))
+        over or beside it."""
+        return self._native.page(None if second is None else second._native)
 
     def hash(self) -> str:
         """64 bits of all bits of segments and events, as 16 hexadecimal digits: equal on every machine."""

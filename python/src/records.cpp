@@ -1,4 +1,5 @@
 // Records: views of their memory, and what can be asked of them.
+#include <nlohmann/json.hpp>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -18,6 +19,7 @@
 #include "carom/engine/simulate.h"
 #include "carom/render/draw_list.h"
 #include "native.h"
+#include "page/shot_page.h"
 
 namespace carom::python {
 namespace {
@@ -185,6 +187,14 @@ void add_records(nb::module_& m) {
                  const nb::gil_scoped_release no_gil;
                  return record_json(*r.record);
              })
+        .def(
+            "page",
+            [](const NativeRecord& r, const NativeRecord* second) {
+                const nb::gil_scoped_release no_gil;
+                return tools::shot_page(*r.record, second == nullptr ? nullptr : second->record.get(), nullptr,
+                                        {"a shot", "record.page()", CAROM_VERSION});
+            },
+            nb::arg("second").none())
         .def_prop_ro("scene",
                      [](const NativeRecord& r) -> std::optional<NativeScene> {
                          if (r.scene == nullptr) return std::nullopt;
