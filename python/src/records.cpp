@@ -1,9 +1,9 @@
 // Records: views of their memory, and what can be asked of them.
-#include <nlohmann/json.hpp>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -191,8 +191,8 @@ void add_records(nb::module_& m) {
             "page",
             [](const NativeRecord& r, const NativeRecord* second) {
                 const nb::gil_scoped_release no_gil;
-                return tools::shot_page(*r.record, second == nullptr ? nullptr : second->record.get(), nullptr,
-                                        {"a shot", "record.page()", CAROM_VERSION});
+                return tools::shot_page(*r.record, second == nullptr ? nullptr : second->record.get(),
+                                        nullptr, {"a shot", "record.page()", CAROM_VERSION});
             },
             nb::arg("second").none())
         .def_prop_ro("scene",

@@ -1,6 +1,8 @@
 // One run of the simulation: its parts and the loop that uses them (simulate.cpp).
 #pragma once
 
+#include <cstdint>
+
 #include "loop/balls.h"
 #include "loop/detector.h"
 #include "loop/log.h"

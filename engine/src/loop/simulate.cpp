@@ -85,9 +85,7 @@ StopReason Run::run(const Record* so_far) {
 void Run::check_digits(int ball, double time) {
     const Segment& s = balls_.segment(ball);
     const double R = balls_.radius(ball);
-    const double end =
-        kLostShare * R /
-        (kClosingUlp * kEpsilon * (length3(s.v) + R * length3(s.w)));
+    const double end = kLostShare * R / (kClosingUlp * kEpsilon * (length3(s.v) + R * length3(s.w)));
     if (!(time > end)) return;
     balls_.advance_to(end);
     log_.fail(fmt::format(

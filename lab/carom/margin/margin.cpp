@@ -1,6 +1,7 @@
 // carom-lab margin: the command.
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string>
 
 #include "base/console.h"
 #include "base/options.h"

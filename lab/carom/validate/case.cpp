@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <span>
+#include <stdexcept>
 
 #include "base/console.h"
 #include "base/toml_number.h"

@@ -28,6 +28,7 @@ struct SweepRows {
 /// with invalid values and one that fails have a row, too. @throws Interrupted
 SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa);
 /// The same, shared out among threads. @throws Interrupted, std::system_error where the system gives no threads
-SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa, int threads);
+SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa,
+                    int threads);
 
 }  // namespace carom::tools
