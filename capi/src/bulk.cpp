@@ -186,14 +186,6 @@ carom_status carom_record_states(const carom_record* record, size_t count, const
         if (count > 0) need({times, rvw});
         if (std::any_of(times, times + count, [](double t) { return std::isnan(t); }))
             throw BadArgument("a time is not a number");
-        const int balls = static_cast<int>(record->record.tracks.size());
-        for (size_t k = 0; k < count; ++k) {
-            for (int ball = 0; ball < balls; ++ball) {
-                const carom::BallState s = record->record.state_at(ball, times[k]);
-                for (const carom::Vec3* row : {&s.position, &s.velocity, &s.spin})
-                    rvw = std::copy_n(row->data(), 3, rvw);
-                if (states != nullptr) *states++ = static_cast<uint8_t>(s.state);
-            }
-        }
+        record->record.states_at({times, count}, rvw, states);
     });
 }

@@ -65,17 +65,9 @@ int ball_count(const NativeRecord& r) {
 /// Nine numbers and a kind of motion for every ball at every time. Empty outputs are not wanted.
 void states(const NativeRecord& r, const Flat<const double>& times, const Flat<double>& rvw,
             const Flat<std::uint8_t>& kinds) {
-    double* at = rvw.size() > 0 ? rvw.data() : nullptr;
-    std::uint8_t* kind = kinds.size() > 0 ? kinds.data() : nullptr;
     const nb::gil_scoped_release no_gil;
-    for (std::size_t k = 0; k < times.size(); ++k) {
-        for (int ball = 0; ball < ball_count(r); ++ball) {
-            const BallState s = r.record->state_at(ball, times.data()[k]);
-            if (kind != nullptr) *kind++ = static_cast<std::uint8_t>(s.state);
-            if (at == nullptr) continue;
-            for (const Vec3* row : {&s.position, &s.velocity, &s.spin}) at = std::copy_n(row->data(), 3, at);
-        }
-    }
+    r.record->states_at({times.data(), times.size()}, rvw.size() > 0 ? rvw.data() : nullptr,
+                        kinds.size() > 0 ? kinds.data() : nullptr);
 }
 
 void orientations(const NativeRecord& r, const Flat<const double>& times, const Flat<double>& out) {

@@ -64,8 +64,10 @@ std::string fallen(const std::vector<BallStart>& balls, const std::int32_t* fell
     for (std::size_t i = 0; i < balls.size(); ++i)
         if (fell[i] >= 0) order[static_cast<std::size_t>(fell[i])] = &balls[i].id;
     std::string text;
-    for (std::size_t k = 0; k < order.size() && order[k] != nullptr; ++k)
-        text += (k > 0 ? ";" : "") + *order[k];
+    for (std::size_t k = 0; k < order.size() && order[k] != nullptr; ++k) {
+        if (k > 0) text += ';';
+        text += *order[k];
+    }
     return text;
 }
 

@@ -143,6 +143,18 @@ BallState Record::state_at(int ball, double t) const {
     return state;
 }
 
+void Record::states_at(std::span<const double> times, double* rvw, std::uint8_t* kinds) const {
+    for (const double t : times) {
+        for (int ball = 0; ball < static_cast<int>(tracks.size()); ++ball) {
+            const BallState s = state_at(ball, t);
+            if (kinds != nullptr) *kinds++ = static_cast<std::uint8_t>(s.state);
+            if (rvw == nullptr) continue;
+            for (const Vec3* row : {&s.position, &s.velocity, &s.spin})
+                rvw = std::copy_n(row->data(), 3, rvw);
+        }
+    }
+}
+
 Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
     Orientations& made = *aside_.orientations;
     std::call_once(made.once, [this, &made] {

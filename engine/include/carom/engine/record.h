@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -217,6 +218,10 @@ class Record {
     /// State of a ball at time t: the last segment that starts at or before t, in closed form. t before 0
     /// gives the start, t past the duration the state at the duration.
     BallState state_at(int ball, double t) const;
+
+    /// The same of every ball at many times, time after time: position, velocity and spin in nine numbers, and the kind of motion. Null: not
+    /// wanted.
+    void states_at(std::span<const double> times, double* rvw, std::uint8_t* kinds) const;
 
     /// Orientation (body to table) at time t, starting from the identity, by the integral of the angular
     /// velocity; exact where the axis is fixed, else by fourth-order Magnus steps of at most 0.2 rad (1e-7
