@@ -39,7 +39,7 @@ def render(
     fps: frames per second of the shot, from its start to its end; as [render] if it is left out
     times: instead of fps, the times [s] to draw, in any order
     overlays: of "trails", "events", "spin", "ghost" and "clock"
-    backend: the library that draws; "auto" takes OSMesa where it is installed, else EGL
+    backend: the library that draws; "auto" takes EGL, or else OSMesa
 
     Memory does not grow with the number of frames. The first frame takes the longest: the table is drawn once. All frames are drawn by
     the thread that asks for the first.
@@ -69,7 +69,7 @@ def render(
 def _frames(
     record: Record, camera: str, width: int, height: int, fps: float, times: NDArray[np.float64] | None, overlays: str, backend: str
 ) -> Iterator[NDArray[np.uint8]]:
-    drawing = _carom.Frames(record._native, camera, width, height, backend, overlays)
+    drawing = _open(record, camera, width, height, backend, overlays)
     if times is None:
         count = _carom.frame_count(0.0, record.duration, fps)
         moments: Iterator[float] = (_carom.frame_time(0.0, k, fps) for k in range(count))
@@ -79,3 +79,14 @@ def _frames(
         frame = np.empty((height, width, 3), np.uint8)
         drawing.draw(time, frame.reshape(-1))
         yield frame
+
+
+def _open(record: Record, camera: str, width: int, height: int, backend: str, overlays: str) -> _carom.Frames:
+    problems = []
+    # EGL first, and not the default of the program: OSMesa hangs or crashes where drawings live in several threads.
+    for name in ("egl", "osmesa") if backend == "auto" else (backend,):
+        try:
+            return _carom.Frames(record._native, camera, width, height, name, overlays)
+        except RuntimeError as error:
+            problems.append(str(error))
+    raise RuntimeError("; ".join(problems))
