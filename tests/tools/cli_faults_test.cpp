@@ -205,6 +205,20 @@ TEST_F(Faults, ARenderThatIsKilledOverOtherFramesIsFinishedByResumeWithItsOwn) {
     }
 }
 
+// The turns of a ball that spins a million radians a second: minutes of work.
+TEST_F(Faults, ASignalEndsAnExport) {
+    const std::string spins = folder_.write(
+        "spins.toml",
+        "[[ball]]\nid = \"a\"\nposition = [0.6, 0.6]\nspin = [1e6, 1e5, 1e6]\n[stop]\nevents = 5000\n");
+    Process process({CAROM_PROGRAM, "export", spins, "-o", folder_.file("spins.glb")}, ProcessOptions{});
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    process.send(SIGTERM);
+    const auto sent = std::chrono::steady_clock::now();
+    EXPECT_EQ(process.finish("").status, 143);
+    EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(5));
+    EXPECT_FALSE(fs::exists(folder_.file("spins.glb")));
+}
+
 TEST_F(Faults, TheNextRunRemovesWhatAKilledOneLeft) {
     const std::string left = folder_.write(".carom.1.0.tmp", "half"),
                       other = folder_.write(".carom.2.0.tmp", "");

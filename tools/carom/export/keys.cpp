@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "console.h"
+
 namespace carom::tools {
 namespace {
 
@@ -82,9 +84,11 @@ std::vector<PositionKey> sampled_position_keys(const Record& record, int ball, d
         append(keys, piece.from, piece.first, true);
         if (!moves(piece)) continue;
         const double first = std::floor(piece.from * fps) + 1.0;
-        for (double k = first; k / fps < piece.to; ++k)
+        for (double k = first; k / fps < piece.to; ++k) {
+            throw_if_interrupted();
             if (static_cast<float>(k / fps) > keys.back().time)
                 append(keys, k / fps, record.state_at(ball, k / fps), true);
+        }
         append(keys, piece.to, piece.last, false);
     }
     append(keys, record.duration, record.state_at(ball, record.duration), false);
@@ -116,7 +120,10 @@ std::vector<RotationKey> rotation_keys(const Record& record, int ball) {
             std::max(fastest * lasts / kLargestTurn, std::sqrt(change * lasts / (8.0 * kLargestError))), 1.0,
             kMostKeys));
         add(piece.from);
-        for (double k = 1.0; k <= count; ++k) add(piece.from + lasts * k / count);
+        for (double k = 1.0; k <= count; ++k) {
+            throw_if_interrupted();
+            add(piece.from + lasts * k / count);
+        }
     }
     return keys;
 }
