@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "carom/engine/verify.h"
 #include "console.h"
@@ -115,6 +116,14 @@ std::string summary(const Record& record, const std::string& scene) {
                        record.partner_id(event), event.time);
     }
     if (pocketed == 0) fmt::format_to(line, "  none\n");
+    const char* title = "\noff the table (m)\n";
+    for (const Event& event : record.events) {
+        if (event.type != EventType::kBallOut) continue;
+        const Vec3 there = record.state_at(event.a, event.time).position;
+        fmt::format_to(line, "{}  {:<6} left at {:.6f}, {:.6f}, {:.6f} high, at {:.4f} s\n",
+                       std::exchange(title, ""), record.tracks.at(event.a).id, there.x(), there.y(),
+                       there.z(), event.time);
+    }
     fmt::format_to(line, "\nballs at the end (m)\n");
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         const BallState s = record.state_at(static_cast<int>(i), record.duration);

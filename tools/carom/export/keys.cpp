@@ -28,7 +28,11 @@ std::vector<Piece> pieces_of(const Record& record, int ball) {
     for (std::size_t i = 0; i < segments.size(); ++i) {
         const Segment& s = segments[i];
         const double next = i + 1 < segments.size() ? segments[i + 1].start : record.duration;
-        const double to = std::min(next, record.duration), own_end = std::min(to, s.start + s.duration);
+        // On the floor, and not a rounding above it.
+        const double floor = until_floor(s, record.size(ball).R, record.gravity);
+        double end = s.start + std::min(s.duration, floor);
+        if (end - s.start < floor) end = std::nextafter(end, std::numeric_limits<double>::infinity());
+        const double to = std::min(next, record.duration), own_end = std::min(to, end);
         // Where a segment ends by itself before the next one begins, the ball stays as it is.
         for (const auto& [a, b] : {std::pair(s.start, own_end), std::pair(own_end, to)}) {
             if (!(static_cast<float>(b) > static_cast<float>(a))) continue;
