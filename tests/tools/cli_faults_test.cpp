@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/file_lock.h"
+#include "carom/engine/printable.h"
 #include "cli.h"
 
 #if defined(__SANITIZE_THREAD__)
@@ -217,6 +218,32 @@ TEST_F(Faults, ASignalEndsAnExport) {
     EXPECT_EQ(process.finish("").status, 143);
     EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(5));
     EXPECT_FALSE(fs::exists(folder_.file("spins.glb")));
+}
+
+// A file may have any name but for "/" and 0. What is written is text all the same.
+TEST_F(Faults, NamesThatAreNoTextAreWrittenAsText) {
+    const std::string odd = folder_.file("b\xff\x01<.toml"), svg = folder_.file("o.svg"),
+                      page = folder_.file("o.html");
+    fs::copy_file(scene_, odd);
+    const std::vector<std::vector<std::string>> commands = {
+        {"simulate", odd},
+        {"compare", odd, odd, "--plot", svg},
+        {"compare", odd, odd, "--json"},
+        {"view", odd, "-o", page},
+        {"margin", odd, "--no-render", "--json"},
+        {"margin", odd, "--no-render", "--plot", svg, "--html", page},
+        {"accuracy", odd, "--plot", svg, "--html", page}};
+    for (const std::vector<std::string>& command : commands) {
+        const ProcessResult result = carom(command);
+        EXPECT_EQ(result.status, 0) << command[0] << result.err;
+        std::string all = result.out;
+        for (const std::string& file : {svg, page})
+            if (fs::exists(file)) all += read_file(file);
+        EXPECT_TRUE(is_utf8(all)) << command[0];
+        EXPECT_EQ(all.find('\x01'), std::string::npos) << command[0];
+        fs::remove(svg);
+        fs::remove(page);
+    }
 }
 
 TEST_F(Faults, TheNextRunRemovesWhatAKilledOneLeft) {

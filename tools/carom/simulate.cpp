@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "carom/engine/printable.h"
 #include "carom/engine/verify.h"
 #include "console.h"
 #include "options.h"
@@ -217,7 +218,7 @@ int run(const SimulateArgs& args) {
     if (args.hash)
         print(record.hash() + "\n");
     else if (!taken)
-        print(summary(record, args.scene));
+        print(summary(record, harmless(args.scene)));
     if (args.list) print(event_list(record));
     if (args.profile) print(profile_report(record));
     return status;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "carom/engine/printable.h"
 #include "compare/difference.h"
 #include "compare/picture.h"
 #include "console.h"
@@ -215,8 +216,8 @@ int run(const CompareArgs& args) {
     check_plot_path(args.plot);
     const Record a = shot_to_compare(args.a), b = shot_to_compare(args.b);
     const ShotDifference d = difference(a, b);
-    if (!args.plot.empty()) write_plot(ways_plot(a, args.a, b, args.b), args.plot);
-    const ComparedShot shot_a{args.a, a}, shot_b{args.b, b};
+    if (!args.plot.empty()) write_plot(ways_plot(a, harmless(args.a), b, harmless(args.b)), args.plot);
+    const ComparedShot shot_a{harmless(args.a), a}, shot_b{harmless(args.b), b};
     print(args.json ? difference_json(shot_a, shot_b, d, args.tolerance)
                     : difference_text(shot_a, shot_b, d, args.tolerance));
     return d.within(args.tolerance) ? kOk : kFailed;

@@ -1,5 +1,6 @@
 // carom margin: the measurement. The stages of a frame are those of margin.h.
 #include "margin/margin.h"
+#include "carom/engine/printable.h"
 
 #include <fmt/format.h>
 
@@ -221,10 +222,10 @@ int run(const MarginArgs& args) {
     if (margin.rendered) margin.size = draw_options(last.record, args, fps).size;
     margin.timing = cost_of_timing(plan);
     write_report(args.csv, margin_csv(margin, last));
-    if (!args.plot.empty()) write_plot(margin_plot(margin, last, args.scene), args.plot);
-    if (!args.html.empty()) write_html_report(margin_report(margin, last, args.scene), args.html);
+    if (!args.plot.empty()) write_plot(margin_plot(margin, last, harmless(args.scene)), args.plot);
+    if (!args.html.empty()) write_html_report(margin_report(margin, last, harmless(args.scene)), args.html);
     if (!args.trace.empty()) write_report(args.trace, margin_trace(last, fps));
-    print(args.json ? margin_json(margin, last) : margin_text(margin, last, args.scene));
+    print(args.json ? margin_json(margin, last) : margin_text(margin, last, harmless(args.scene)));
     return kOk;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "carom/engine/printable.h"
 #include "console.h"
 #include "margin/margin.h"
 #include "options.h"
@@ -44,7 +45,7 @@ MeasuredShot measured_scene(const ViewArgs& args) {
     runs.push_back(one_run(plan, asked, settings.fps, "the margin of every frame:"));
     Margin margin = combine(runs, settings.fps, true);
     margin.size = settings.size();
-    Json chart = margin_chart(margin, runs.front(), args.input);
+    Json chart = margin_chart(margin, runs.front(), harmless(args.input));
     return {std::move(runs.front().record), std::move(chart)};
 }
 
@@ -64,7 +65,7 @@ MeasuredShot read_record_shot(const ViewArgs& args) {
     const double fps = record.render.fps;
     runs.front().frames = costs_by_frame(record, 0.0, fps, checked_frame_count(0.0, record.duration, fps));
     for (const FrameCost& frame : runs.front().frames) add_simulation(runs.front(), frame);
-    Json chart = margin_chart(combine(runs, fps, false), runs.front(), args.input);
+    Json chart = margin_chart(combine(runs, fps, false), runs.front(), harmless(args.input));
     return {std::move(record), std::move(chart)};
 }
 
@@ -86,7 +87,7 @@ int run(const ViewArgs& args) {
     const MeasuredShot shot = first_shot(args);
     std::optional<Record> second;
     if (!args.second.empty()) second = read_shot(args.second, {});
-    const std::string title = second ? args.input + " and " + args.second : args.input;
+    const std::string title = harmless(second ? args.input + " and " + args.second : args.input);
     Json page = page_json(title, lead_of(shot.record));
     page.update(shot_json(shot.record));
     page["margin"] = shot.margin;
