@@ -215,6 +215,39 @@ TEST(Airborne, ABallLeavesTheTable) {
     EXPECT_TRUE(scene_after(scene, r).ball.empty());
 }
 
+TEST(Airborne, ABallThatLeftTheTableComesToRestOnTheFloor) {
+    Scene scene = empty_scene();
+    scene.table = make_table("nine_foot");
+    add_high_ball(scene, "a", 0.635, 2.3, 0.02, Vec3(0.0, 4.0, 1.5), Vec3(3.0, 2.0, 1.0));
+    add_ball(scene, "b", 0.3, 0.3, 0.0, 2.0);
+    const Plan plan = plan_of(scene);
+    RunBuffers buffers;
+    Outcome outcome;
+    Record r;
+    simulate(plan, buffers, outcome, r);
+    const Event* out = first(r, EventType::kBallOut);
+    ASSERT_NE(out, nullptr);
+    const double floor = scene.balls.R - kFloorDepth;
+    const BallState end = r.state_at(0, r.duration);
+    EXPECT_EQ(end.position.z(), floor);
+    EXPECT_EQ(end.velocity, Vec3::Zero());
+    EXPECT_EQ(end.spin, Vec3::Zero());
+    EXPECT_EQ(outcome.balls[0].position, end.position);
+    double landed = r.duration;
+    for (double t = r.duration; t > out->time; t -= 1e-3) {
+        const BallState state = r.state_at(0, t);
+        EXPECT_GE(state.position.z(), floor) << t;
+        if (state.position.z() == floor) landed = t;
+    }
+    // Free fall from where it flew over the rail.
+    const BallState left = r.state_at(0, out->time);
+    const double g = r.gravity, up = left.velocity.z(), height = left.position.z() - floor;
+    const double falls = (up + std::sqrt(up * up + 2.0 * g * height)) / g;
+    EXPECT_NEAR(landed, out->time + falls, 1e-3);
+    EXPECT_NEAR(end.position.y(), left.position.y() + 4.0 * falls, 1e-12);
+    EXPECT_TRUE(r.orientation_at(0, r.duration).isApprox(r.orientation_at(0, landed), 1e-12));
+}
+
 // An island in the middle: without a bed, whoever flies over a cushion of it is out.
 TEST(Airborne, ABedSaysWhereTheTableEnds) {
     Scene scene = empty_scene();

@@ -51,6 +51,8 @@ TEST(FrameCount, RefusesWhatHasNoAnswer) {
     EXPECT_THROW(frame_count(0.0, 1.0, std::nan("")), RenderError);
     EXPECT_THROW(frame_count(0.0, infinity, 60.0), RenderError);
     EXPECT_THROW(frame_count(-infinity, 1.0, 60.0), RenderError);
+    // Where the next frame is at the same instant, counting them would not end.
+    for (const double late : {1e16, 1e17, 1e300}) EXPECT_THROW(frame_count(late, late, 60.0), RenderError);
 }
 
 TEST(FramePath, FillsInTheNumber) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "base/file_lock.h"
+#include "carom/engine/printable.h"
 #include "cli.h"
 
 #if defined(__SANITIZE_THREAD__)
@@ -199,6 +200,46 @@ TEST_F(Faults, ARenderThatIsKilledOverOtherFramesIsFinishedByResumeWithItsOwn) {
         for (const auto& entry : fs::directory_iterator(folder)) files += entry.is_regular_file() ? 1 : 0;
         EXPECT_EQ(files, whole.size()) << stop;
         for (int k = 0; k < 30; ++k) EXPECT_EQ(read_file(frame(k)), whole[k]) << stop << " " << k;
+    }
+}
+
+// The turns of a ball that spins a million radians a second: minutes of work.
+TEST_F(Faults, ASignalEndsAnExport) {
+    const std::string spins = folder_.write(
+        "spins.toml",
+        "[[ball]]\nid = \"a\"\nposition = [0.6, 0.6]\nspin = [1e6, 1e5, 1e6]\n[stop]\nevents = 5000\n");
+    Process process({CAROM_PROGRAM, "export", spins, "-o", folder_.file("spins.glb")}, ProcessOptions{});
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    process.send(SIGTERM);
+    const auto sent = std::chrono::steady_clock::now();
+    EXPECT_EQ(process.finish("").status, 143);
+    EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(5));
+    EXPECT_FALSE(fs::exists(folder_.file("spins.glb")));
+}
+
+// A file may have any name but for "/" and 0. What is written is text all the same.
+TEST_F(Faults, NamesThatAreNoTextAreWrittenAsText) {
+    const std::string odd = folder_.file("b\xff\x01<.toml"), svg = folder_.file("o.svg"),
+                      page = folder_.file("o.html");
+    fs::copy_file(scene_, odd);
+    const std::vector<std::vector<std::string>> commands = {
+        {"simulate", odd},
+        {"compare", odd, odd, "--plot", svg},
+        {"compare", odd, odd, "--json"},
+        {"view", odd, "-o", page},
+        {"margin", odd, "--no-render", "--json"},
+        {"margin", odd, "--no-render", "--plot", svg, "--html", page},
+        {"accuracy", odd, "--plot", svg, "--html", page}};
+    for (const std::vector<std::string>& command : commands) {
+        const ProcessResult result = carom(command);
+        EXPECT_EQ(result.status, 0) << command[0] << result.err;
+        std::string all = result.out;
+        for (const std::string& file : {svg, page})
+            if (fs::exists(file)) all += read_file(file);
+        EXPECT_TRUE(is_utf8(all)) << command[0];
+        EXPECT_EQ(all.find('\x01'), std::string::npos) << command[0];
+        fs::remove(svg);
+        fs::remove(page);
     }
 }
 

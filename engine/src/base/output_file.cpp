@@ -71,22 +71,26 @@ std::FILE* own_stream(const std::string& path) {
     return fd < 0 ? nullptr : ::fdopen(fd, "wb");
 }
 
+std::string file_of(const std::string& path) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    if (const fs::path real = fs::canonical(path, error); !error) return real.string();
+    fs::path file = path;
+    for (int links = 0; links < kMostLinks && fs::is_symlink(file, error); ++links) {
+        const fs::path to = fs::read_symlink(file, error);
+        if (error) break;
+        file = file.parent_path() / to;
+    }
+    const fs::path folder = fs::canonical(file.has_parent_path() ? file.parent_path() : ".", error);
+    return error ? file.string() : (folder / file.filename()).string();
+}
+
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(path_) {
     namespace fs = std::filesystem;
     file_ = own_stream(path_);
     if (file_ != nullptr) return;
+    target_ = file_of(path_);
     std::error_code error;
-    if (fs::exists(path_, error)) {
-        const fs::path real = fs::canonical(path_, error);
-        if (!error) target_ = real.string();
-    }
-    // A link to a file that is not there yet is followed, too.
-    for (int links = 0; !fs::exists(target_, error) && links < kMostLinks && fs::is_symlink(target_, error);
-         ++links) {
-        const fs::path to = fs::read_symlink(target_, error);
-        if (error) break;
-        target_ = to.is_absolute() ? to.string() : (fs::path(target_).parent_path() / to).string();
-    }
     if (fs::exists(target_, error) && !fs::is_regular_file(target_, error)) {
         file_ = std::fopen(target_.c_str(), "wb");
         if (file_ == nullptr) fail("cannot open for writing");

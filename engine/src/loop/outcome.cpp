@@ -79,7 +79,8 @@ void Log::outcome(StopReason why, Outcome& out) const {
     for (int i = 0; i < balls_.count(); ++i) {
         const Segment& s = balls_.segment(i);
         out.balls[i].position =
-            placed_at(s, std::min(balls_.now() - s.start, s.duration), plan_.gravity).position;
+            placed_at(s, std::min(balls_.now() - s.start, s.duration), plan_.gravity, balls_.radius(i))
+                .position;
     }
     int fallen = 0;
     for (const Event& e : events_) {

@@ -50,6 +50,14 @@ inline Placed placed_at(const Segment& segment, double tau, double gravity) {
     return p;
 }
 
+/// The same of a ball of radius R that may have left the table: on the floor it stays.
+inline Placed placed_at(const Segment& segment, double tau, double gravity, double R) {
+    const double floor = until_floor(segment, R, gravity);
+    if (tau < floor) return placed_at(segment, tau, gravity);
+    const Vec3 there = position_at(segment, floor);
+    return {Vec3(there.x(), there.y(), R - kFloorDepth), Vec3::Zero()};
+}
+
 /// The segment of a ball that flies until it comes down on the cloth: a parabola, without friction. r_z is at least R.
 Segment airborne_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
 

@@ -135,10 +135,11 @@ BallState Record::state_at(int ball, double t) const {
     const double tau = std::min(t - s.start, s.duration);
     BallState state;
     state.state = s.state;
-    const Placed placed = placed_at(s, tau, gravity);
+    const double R = size(ball).R;
+    const Placed placed = placed_at(s, tau, gravity, R);
     state.position = placed.position;
     state.velocity = placed.velocity;
-    state.spin = spin_at(s, tau, size(ball).R);
+    state.spin = tau < until_floor(s, R, gravity) ? spin_at(s, tau, R) : Vec3::Zero();
     state.pocket = s.state == MotionState::kPocketed ? track.pocket : -1;
     return state;
 }
@@ -177,7 +178,8 @@ Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
     t = std::clamp(t, 0.0, duration);
     const std::size_t i = segment_index(track.segments, t);
     const Segment& s = track.segments[i];
-    return segment_turn(s, std::min(t - s.start, s.duration), made.largest_step) * made.at_start[ball][i];
+    const double turns = std::min(s.duration, until_floor(s, size(ball).R, gravity));
+    return segment_turn(s, std::min(t - s.start, turns), made.largest_step) * made.at_start[ball][i];
 }
 
 Scene scene_after(const Scene& scene, const Record& record) {

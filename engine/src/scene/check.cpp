@@ -70,7 +70,8 @@ void check_reach(const Section& top, const Scene& scene) {
         // How deep a ball is in a nose at this horizontal distance.
         const auto depth_at = [&](double distance, double height) {
             const double inset = nose_inset(scene.physics.cushion_touch, R, height);
-            if (ball.height == 0.0) return R - inset - distance;
+            // Inside the circle of a jaw there is no cloth to come down on, however high it starts.
+            if (ball.height == 0.0 || distance < 0.0) return R - inset - distance;
             return nose_reach(R, height, inset) - length(Vec2(distance, ball.position.z() - height));
         };
         for (const Cushion& c : scene.table.cushions) {

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -267,6 +268,17 @@ inline Vec3 velocity_at(const Segment& s, double tau) {
     return {s.v.x() + tau * s.a.x(), s.v.y() + tau * s.a.y(), 0.0};
 }
 Vec3 spin_at(const Segment& segment, double tau, double R);
+
+/// [m] How far the floor lies below the cloth, where a ball that has left the table comes to rest: the bed of a table is 29 1/4 to 31
+/// inches high (WPA Tournament Table & Equipment Specifications, 2), 0.743 to 0.787 m.
+inline constexpr double kFloorDepth = 0.76;
+
+/// Time from the start of a segment until a ball of radius R lies on the floor [s]; infinite for one that has not left the table.
+inline double until_floor(const Segment& s, double R, double gravity) {
+    if (s.state != MotionState::kOut || !(gravity > 0.0)) return std::numeric_limits<double>::infinity();
+    const double v = s.v.z(), height = std::max(0.0, s.r.z() + (kFloorDepth - R));
+    return (v + std::sqrt(v * v + 2.0 * gravity * height)) / gravity;
+}
 
 /// The scene for the next shot: that of the record with its balls where and as they are at the end, without the balls in
 /// pockets, without a cue. Whoever plays says who is struck, and puts fallen balls back. One that is falling does so

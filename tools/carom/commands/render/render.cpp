@@ -159,11 +159,11 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
         };
     }
     options.backend = render::backend_from_name(args.gl);
-    const long frames = checked_frame_count(options.from, options.to.value_or(record.duration), options.fps);
-    if (frames < 1 || (args.at && *args.at > record.duration)) {
+    if (options.from > record.duration && !args.to) {
         throw UsageError(fmt::format("{} {}: the shot is over after {} s", args.at ? "--at" : "--from",
                                      options.from, record.duration));
     }
+    const long frames = checked_frame_count(options.from, options.to.value_or(record.duration), options.fps);
     if (args.frame && *args.frame >= frames) {
         throw UsageError(fmt::format("--frame {}: the last frame is {}", *args.frame, frames - 1));
     }

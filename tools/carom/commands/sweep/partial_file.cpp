@@ -33,7 +33,7 @@ PartialFile::PartialFile(const std::string& path, std::uint64_t id, const Seen& 
         return;
     }
     std::error_code error;
-    if (const fs::path real = fs::canonical(path, error); !error) target_ = real.string();
+    target_ = file_of(path);
     if (fs::is_directory(target_, error)) {
         errno = EISDIR;
         fail("cannot write");

@@ -12,6 +12,7 @@
 #include "base/margin.h"
 #include "base/options.h"
 #include "base/setup.h"
+#include "carom/engine/printable.h"
 #include "page/shot_page.h"
 #include "report/margin_chart.h"
 #include "report/table.h"
@@ -43,7 +44,7 @@ MeasuredShot measured_scene(const ViewArgs& args) {
     runs.push_back(one_run(plan, &drawn, settings.fps, "the margin of every frame:"));
     Margin margin = combine(runs, settings.fps, true);
     margin.size = settings.size();
-    Json chart = margin_chart(margin, runs.front(), args.input);
+    Json chart = margin_chart(margin, runs.front(), harmless(args.input));
     return {std::move(runs.front().record), std::move(chart)};
 }
 
@@ -63,7 +64,7 @@ MeasuredShot read_record_shot(const ViewArgs& args) {
     const double fps = record.render.fps;
     runs.front().frames = costs_by_frame(record, 0.0, fps, checked_frame_count(0.0, record.duration, fps));
     for (const FrameCost& frame : runs.front().frames) add_simulation(runs.front(), frame);
-    Json chart = margin_chart(combine(runs, fps, false), runs.front(), args.input);
+    Json chart = margin_chart(combine(runs, fps, false), runs.front(), harmless(args.input));
     return {std::move(record), std::move(chart)};
 }
 
