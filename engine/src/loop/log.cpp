@@ -26,7 +26,13 @@ constexpr double kLongestBalance = 65.0;
 }  // namespace
 
 Log::Log(const Plan& plan, const SimulateOptions& options, Balls& balls, LogMemory& memory, Keep keep)
-    : Borrowed(memory), plan_(plan), options_(options), balls_(balls), geometry_(plan.geometry), keep_(keep) {
+    : Borrowed(memory),
+      plan_(plan),
+      options_(options),
+      balls_(balls),
+      geometry_(plan.geometry),
+      keep_(keep),
+      struck_(struck_ball(plan.scene)) {
     if (options.profile && keep == Keep::kRecord) costs_.emplace();
     events_.clear();
     segments_.clear();

@@ -73,9 +73,11 @@ struct Outcome {
     std::int64_t events = 0;  ///< as many as the record would have
     int clusters = 0;         ///< of these events
     int struck = -1;  ///< the ball that the cue strikes, or else the first one that moves at the start; or -1
-    int first_hit = -1;         ///< the ball that it meets first: in a cluster the nearest one; or -1
-    int contacts = 0;           ///< balls that it meets, each of them once
-    int approach_cushions = 0;  ///< its contacts with cushions and jaws before the second of them, or all
+    int first_hit = -1;  ///< the ball that it meets first: in a cluster the nearest one; or -1
+    int contacts = 0;    ///< balls that it meets, each of them once
+    /// Its contacts with cushions and jaws before the second of them, or all; not with one that it was frozen to from the start and
+    /// has not left (still_frozen)
+    int approach_cushions = 0;
     std::vector<BallOutcome> balls;  ///< in the order of Scene::ball
     std::uint64_t hash = 0;          ///< Record::hash() as a number, if SimulateOptions::hash asked for it
     bool operator==(const Outcome&) const = default;

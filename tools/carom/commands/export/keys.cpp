@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "console.h"
+#include "base/console.h"
 
 namespace carom::tools {
 namespace {
