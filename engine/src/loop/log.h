@@ -31,16 +31,13 @@ struct LogMemory {
     std::vector<ClusterBall> cluster_ball_;
     std::vector<std::size_t> cluster_end_;
     std::vector<int> touched_;
-<<<<<<< HEAD
     /// Of a ball in the air: where it has been, but for trembling, and since when [s].
     struct Stay {
         double since;
         Vec3 place;
     };
     std::vector<Stay> stays_;
-=======
     std::vector<Segment> of_struck_;  // by outcome()
->>>>>>> w2
 };
 
 /// The ball that the cue strikes, or else the first one that moves at the start; or -1.
