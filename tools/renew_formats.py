@@ -1,12 +1,10 @@
 #!/usr/bin/env python3
 """Writes anew what docs/ says about file formats and the command line from the program's own tables:
-docs/reference/command_line.md, docs/reference/scene.schema.json, the parts of docs/reference/record.schema.json that have rows, and the
-tables of docs/reference/scene_format.md between the marks <!-- begin NAME --> and <!-- end NAME -->.
+docs/reference/command_line.md, docs/reference/scene.schema.json, docs/reference/record.schema.json, and the tables of docs/reference/scene_format.md between the marks <!-- begin NAME --> and <!-- end NAME -->.
 
     cmake --build --preset release --target carom_program
     tools/renew_formats.py [BUILD_FOLDER]
 """
-import json
 import pathlib
 import re
 import subprocess
@@ -24,15 +22,7 @@ def main():
     (ROOT / "docs/reference/command_line.md").write_text(describe("command-line"))
     (ROOT / "docs/reference/scene.schema.json").write_text(describe("scene-schema"))
 
-    path = ROOT / "docs/reference/record.schema.json"
-    schema = json.loads(path.read_text())
-    for pointer, part in json.loads(describe("record-schema")).items():
-        *way, last = pointer.split("/")[1:]
-        place = schema
-        for key in way:
-            place = place[key]
-        place[last] = part
-    path.write_text(json.dumps(schema, indent=2, ensure_ascii=False) + "\n")
+    (ROOT / "docs/reference/record.schema.json").write_text(describe("record-schema"))
 
     path = ROOT / "docs/reference/scene_format.md"
     page = path.read_text()

@@ -28,7 +28,7 @@ shots = {
         ball=[{"id": "cue", "position": [0.6, 0.5]}], rack={"game": "eight_ball"}, cue={"speed": 8, "aim_deg": 90.1}
     ),
 }
-report = carom.accuracy(shots["a cut"], march=[100, 1000, 10000, 100000], runs=1)
+report = carom.accuracy(shots["a cut"], march=(100, 1000, 10000, 100000), runs=1)
 plt.figure(figsize=(8, 4.5), layout="constrained")
 for method in ("march", "tolerance"):
     rows = [row for row in report["rows"] if row["method"] == method]

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <regex>
 #include <string>
@@ -46,7 +47,7 @@ std::vector<Block> blocks_of(const std::string& page) {
             comment.clear();
         } else if (inside) {
             blocks.back().text += line + '\n';
-        } else if (starts_with(line, "<!-- ")) {
+        } else if (starts_with(line, "<!-- ") && !starts_with(line, "<!-- figure: ")) {
             comment = line;
         } else if (!line.empty()) {
             comment.clear();
@@ -142,7 +143,51 @@ std::string reason_not_to_run(const Clone& clone, const std::string& condition) 
     return package + " is not installed";
 }
 
+/// What is wrong with the figures of a page: a comment <!-- figure: TEXT ; COMMAND --> says that TEXT stands in the paragraph
+/// behind it, and that COMMAND prints it. @param run  returns what a command prints
+std::vector<std::string> figure_faults(const std::string& page,
+                                       const std::function<std::string(const std::string&)>& run) {
+    std::vector<std::string> faults;
+    const std::vector<std::string> lines = lines_of(page);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const std::string value = comment_value(lines[i], "figure");
+        const std::size_t semicolon = value.find(" ; ");
+        if (value.empty()) continue;
+        const std::string text = value.substr(0, semicolon);
+        std::string paragraph;
+        std::size_t at = i + 1;
+        while (at < lines.size() && (lines[at].empty() || starts_with(lines[at], "<!-- "))) ++at;
+        for (; at < lines.size() && !lines[at].empty(); ++at) paragraph += lines[at] + " ";
+        if (semicolon == value.npos)
+            faults.push_back(lines[i] + ": expected <!-- figure: TEXT ; COMMAND -->");
+        else if (!contains(paragraph, text))
+            faults.push_back(text + " does not stand in the paragraph behind its comment");
+        else if (!contains(run(value.substr(semicolon + 3)), text))
+            faults.push_back(text + " is not what the command prints: " + value.substr(semicolon + 3));
+    }
+    return faults;
+}
+
+TEST(Figures, AFalseOneIsSeen) {
+    const auto run = [](const std::string& command) { return command == "c" ? "gain 2.02" : "nothing"; };
+    EXPECT_EQ(figure_faults("<!-- figure: 2.02 ; c -->\n\nA gain of 2.02\nis small.\n", run).size(), 0u);
+    EXPECT_EQ(figure_faults("<!-- figure: 2.02 ; c -->\nA gain of 2.03.\n\n2.02\n", run).size(), 1u);
+    EXPECT_EQ(figure_faults("<!-- figure: 2.03 ; c -->\nA gain of 2.03.\n", run).size(), 1u);
+    EXPECT_EQ(figure_faults("<!-- figure: 2.03 -->\nA gain of 2.03.\n", run).size(), 1u);
+}
+
 class Docs : public testing::TestWithParam<std::string> {};
+
+TEST_P(Docs, FiguresAreWhatTheProgramPrints) {
+    const Clone clone;
+    for (const std::string& fault :
+         figure_faults(read_page(GetParam()), [&clone](const std::string& command) {
+             const ProcessResult result = clone.run(command);
+             EXPECT_EQ(result.status, 0) << command << "\n" << result.err;
+             return result.out;
+         }))
+        ADD_FAILURE() << fault;
+}
 
 TEST_P(Docs, CommandsWorkAsPrinted) {
     const std::vector<Block> blocks = blocks_of(read_page(GetParam()));

@@ -264,7 +264,9 @@ std::string record_schema() {
                         {"/definitions/pocket", object_of(kPocketFields, {}, kRecord)},
                         {"/definitions/track/properties/radius", size["radius"]},
                         {"/definitions/track/properties/mass", size["mass"]}};
-    return parts.dump(2) + "\n";
+    Json schema = Json::parse(describe_files().front().text);
+    for (const auto& [pointer, part] : parts.items()) schema.at(Json::json_pointer(pointer)) = part;
+    return schema.dump(2) + "\n";
 }
 
 std::string scene_format() {

@@ -2,12 +2,19 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "page/page.h"
 
 namespace carom::tools {
 
+/// record.schema.json, which the build puts into the program.
+const std::vector<PageFile>& describe_files();
+
 /// A JSON Schema of scene files: docs/reference/scene.schema.json.
 std::string scene_schema();
-/// What docs/reference/record.schema.json has from the tables: an object with a JSON pointer for each part of it.
+/// A JSON Schema of record files: docs/reference/record.schema.json. Its fixed text stands beside this file, with null for what comes
+/// from the tables.
 std::string record_schema();
 /// The tables of docs/reference/scene_format.md, each between the marks <!-- begin NAME --> and <!-- end NAME -->.
 std::string scene_format();

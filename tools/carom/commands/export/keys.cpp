@@ -36,8 +36,10 @@ std::vector<Piece> pieces_of(const Record& record, int ball) {
         // Where a segment ends by itself before the next one begins, the ball stays as it is.
         for (const auto& [a, b] : {std::pair(s.start, own_end), std::pair(own_end, to)}) {
             if (!(static_cast<float>(b) > static_cast<float>(a))) continue;
-            // The state at its end is that just before: at the end itself the next segment is in force.
-            pieces.push_back({a, b, record.state_at(ball, a), record.state_at(ball, std::nextafter(b, a))});
+            // The state at its end is that just before: at the end itself the next segment is in force, or the floor.
+            double before = std::nextafter(b, a);
+            while (a == s.start && before > a && before - s.start >= floor) before = std::nextafter(before, a);
+            pieces.push_back({a, b, record.state_at(ball, a), record.state_at(ball, before)});
         }
     }
     return pieces;
