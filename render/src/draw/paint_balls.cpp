@@ -32,8 +32,8 @@ struct LampOnBalls {
         half_y = endless ? 0.5F * height : view.lamp_half[1];
     }
 
-    // Light on a ball: the centre of the lamp is accurate enough. The 0.6 stands for its size, light past the terminator; the square lets the
-    // light end without an edge.
+    // Light on a ball: the centre of the lamp is accurate enough. The 0.6 stands for its size, light past the
+    // terminator; the square lets the light end without an edge.
     Floats light(const Vec& p, const Vec& n) const {
         const Vec to = endless ? Vec{all(0.0F), all(0.0F), all(height)} : Vec{x - p.x, y - p.y, height - p.z};
         const Floats inverse = inversesqrt(dot(to, to));
@@ -57,7 +57,8 @@ struct LampOnBalls {
     float x, y, half_x = 0.0F, half_y = 0.0F;
 };
 
-// Share of the light at normal n that reaches the ball past its neighbours: each hides (r / d)^2 cos of the sky.
+// Share of the light at normal n that reaches the ball past its neighbours: each hides (r / d)^2 cos of the
+// sky.
 Floats past_neighbours(const BallInstance& ball, const Vec& n) {
     const float R = ball.center_radius[3];
     Floats open = all(1.0F);
@@ -102,9 +103,11 @@ void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
     const View& view = canvas.view();
     const float *center = ball.instance.center_radius, R = center[3];
     const float strength = std::clamp(center[2] / R, 0.0F, 1.0F);  // a ball that falls has no shadow left
-    // The shadow of a ball in the air is wider, in proportion to the height of its centre, and so farther off.
+    // The shadow of a ball in the air is wider, in proportion to the height of its centre, and so farther
+    // off.
     const float lift = std::max(center[2] / R, 1.0F), unit = 1.0F / (R * lift);
-    // Centre of the lamp's shadow relative to the point of contact, in radii: limited to 0.65, so that the whole shadow lies within the reach.
+    // Centre of the lamp's shadow relative to the point of contact, in radii: limited to 0.65, so that the
+    // whole shadow lies within the reach.
     const bool endless = view.lamp_endless > 0.5F;
     float away_x = endless ? 0.0F : (center[0] - view.lamp[0]) / (view.lamp[2] - center[2]);
     float away_y = endless ? 0.0F : (center[1] - view.lamp[1]) / (view.lamp[2] - center[2]);
@@ -120,8 +123,8 @@ void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
                                  std::size_t first, int count, const Vec& ray) {
         const Floats way = -eye_z / ray.z;  // to the plane of the cloth
         const Floats px = (ray.x * way + from_x) * unit, py = (ray.y * way + from_y) * unit;
-        // Share of the sky hidden by a sphere that rests on a plane: (1 + d^2)^(-3/2) at d radii from the contact. The polynomial differs by less
-        // than 0.03 up to 2 radii and ends.
+        // Share of the sky hidden by a sphere that rests on a plane: (1 + d^2)^(-3/2) at d radii from the
+        // contact. The polynomial differs by less than 0.03 up to 2 radii and ends.
         const Floats near = max(1.0F - (px * px + py * py) * (1.0F / (kReach * kReach)), 0.0F);
         if (!any(near > 0.0F)) return;
         const Floats hidden = near * near * near;

@@ -42,7 +42,8 @@ class Skin {
           number_(number),
           glyphs_(glyphs) {}
 
-    // At the normal n; w is the width of a pixel in radii. shine: how much of the mirror image of the lamp is seen; print must stay legible.
+    // At the normal n; w is the width of a pixel in radii. shine: how much of the mirror image of the lamp is
+    // seen; print must stay legible.
     Vec albedo(const Vec& n, Floats w, Floats& shine) const {
         const Vec b = n + cross(axis_, cross(axis_, n) + n * turn_) * all(2.0F);
         Vec base = colors_.base;
@@ -75,7 +76,8 @@ class Skin {
         return inside(from_axis - radius, w);
     }
 
-    // Coverage by the digits; x and y are in radii of the ball, upright. Of two digits side by side each pixel reads one.
+    // Coverage by the digits; x and y are in radii of the ball, upright. Of two digits side by side each
+    // pixel reads one.
     Floats number_ink(Floats x, Floats y, Floats w) const {
         const bool two = number_ > 9;
         const float box_x = two ? 0.215F : 0.33F, box_y = two ? 0.41F : 0.48F;  // half a cell of the atlas
