@@ -13,7 +13,7 @@ using Lookup = void* (*)(const char* name);
 
 class Context {
   public:
-    explicit Context(Lookup lookup) : lookup_(lookup) {}
+    explicit Context(Lookup finder) : lookup_(finder) {}
     virtual ~Context() = default;
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
