@@ -219,26 +219,22 @@ TEST_F(Faults, ASignalEndsAnExport) {
 
 // A file may have any name but for "/" and 0. What is written is text all the same.
 TEST_F(Faults, NamesThatAreNoTextAreWrittenAsText) {
-    const std::string odd = folder_.file("b\xff\x01<.toml"), svg = folder_.file("o.svg"),
-                      page = folder_.file("o.html");
+    const std::string odd = folder_.file("b\xff\x01<.toml"), page = folder_.file("o.html");
     fs::copy_file(scene_, odd);
-    const std::vector<std::vector<std::string>> commands = {
-        {"simulate", odd},
-        {"compare", odd, odd, "--plot", svg},
-        {"compare", odd, odd, "--json"},
-        {"view", odd, "-o", page},
-        {"margin", odd, "--no-render", "--json"},
-        {"margin", odd, "--no-render", "--plot", svg, "--html", page},
-        {"accuracy", odd, "--plot", svg, "--html", page}};
+    const std::vector<std::vector<std::string>> commands = {{"simulate", odd},
+                                                            {"compare", odd, odd},
+                                                            {"compare", odd, odd, "--json"},
+                                                            {"view", odd, "-o", page},
+                                                            {"margin", odd, "--no-render", "--json"},
+                                                            {"margin", odd, "--no-render"},
+                                                            {"accuracy", odd, "--repeat", "1"}};
     for (const std::vector<std::string>& command : commands) {
         const ProcessResult result = carom(command);
         EXPECT_EQ(result.status, 0) << command[0] << result.err;
         std::string all = result.out;
-        for (const std::string& file : {svg, page})
-            if (fs::exists(file)) all += read_file(file);
+        if (fs::exists(page)) all += read_file(page);
         EXPECT_TRUE(is_utf8(all)) << command[0];
         EXPECT_EQ(all.find('\x01'), std::string::npos) << command[0];
-        fs::remove(svg);
         fs::remove(page);
     }
 }

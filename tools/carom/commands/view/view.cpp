@@ -81,9 +81,9 @@ int run(const ViewArgs& args) {
     const MeasuredShot shot = first_shot(args);
     std::optional<Record> second;
     if (!args.second.empty()) second = read_shot(args.second, {});
-    const std::string title = second ? args.input + " and " + args.second : args.input;
+    const std::string title = harmless(second ? args.input + " and " + args.second : args.input);
     const std::string html = shot_page(shot.record, second ? &*second : nullptr, shot.margin,
-                                       {title, command_line(), program_version()});
+                                       {title, harmless(command_line()), program_version()});
     write_report(args.output, html);
     print(fmt::format("{}: {}, {} kB\n", args.output, shot_lead(shot.record), (html.size() + 500) / 1000));
     return kOk;
