@@ -38,7 +38,8 @@ std::vector<Piece> pieces_of(const Record& record, int ball) {
             if (!(static_cast<float>(b) > static_cast<float>(a))) continue;
             // The state at its end is that just before: at the end itself the next segment is in force, or the floor.
             double before = std::nextafter(b, a);
-            while (a == s.start && before > a && before - s.start >= floor) before = std::nextafter(before, a);
+            while (a == s.start && before > a && before - s.start >= floor)
+                before = std::nextafter(before, a);
             pieces.push_back({a, b, record.state_at(ball, a), record.state_at(ball, before)});
         }
     }
