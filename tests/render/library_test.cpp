@@ -14,7 +14,7 @@ namespace {
 
 TEST(SharedLibrary, AMissingOneNamesItsPackage) {
     try {
-        SharedLibrary({"libCaromIsNotThere.so.8", "libCaromIsNotThere.so"}, "libosmesa6");
+        const SharedLibrary missing({"libCaromIsNotThere.so.8", "libCaromIsNotThere.so"}, "libosmesa6");
         FAIL();
     } catch (const RenderError& error) {
         const std::string message = error.what();
