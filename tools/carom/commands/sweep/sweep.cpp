@@ -141,7 +141,7 @@ Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& rang
     for (std::uint64_t done = from; done < range.last;) {
         const Clock::time_point start = Clock::now();
         const std::uint64_t last = begun;
-        std::future<SweepRows> ready = std::move(next);
+        std::future<SweepRows> ready = std::exchange(next, {});
         if (begun < range.last) begin_next();
         const SweepRows rows = ready.get();
         file.append(rows.text);
