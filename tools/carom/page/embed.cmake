@@ -1,8 +1,7 @@
-# Writes scripts and styles into a C++ file: cmake -DFOLDER=... -DFUNCTION=page_files -DOUTPUT=page_files.cpp -P embed.cmake
+# Writes files into a C++ file: cmake -DFILES="a.js;b.css" -DFUNCTION=page_files -DOUTPUT=page_files.cpp -P embed.cmake
 set(text "// Made by tools/carom/page/embed.cmake.\n#include \"page/page.h\"\n\n")
 string(APPEND text "namespace carom::tools {\n\nconst std::vector<PageFile>& ${FUNCTION}() {\n    static const std::vector<PageFile> files = {\n")
-file(GLOB sources ${FOLDER}/*.js ${FOLDER}/*.css)
-foreach(path IN LISTS sources)
+foreach(path IN LISTS FILES)
   get_filename_component(name ${path} NAME)
   file(READ ${path} source)
   file(SHA256 ${path} hash)

@@ -7,16 +7,25 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
 #include "carom/engine/scene.h"
+#include "page/page.h"
 
 namespace carom::tools {
+
+/// The pages of docs/reference that the build put into the program.
+const std::vector<PageFile>& format_files();
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -205,11 +214,25 @@ std::string effects_lines() {
     return text;
 }
 
-std::string block(const char* name, const char* header, const std::string& lines) {
+/// A page of docs/reference as it was when the program was built.
+std::string published(std::string_view name) {
+    for (const PageFile& file : format_files())
+        if (file.name == name) return file.text;
+    throw std::logic_error(fmt::format("{} is not in the program", name));
+}
+
+/// Replaces what a page has between the marks of this name by a table.
+void put_table(std::string& page, const char* name, const char* header, const std::string& lines) {
+    const std::string begin = fmt::format("<!-- begin {} -->\n", name),
+                      end = fmt::format("<!-- end {} -->", name);
+    const std::size_t from = page.find(begin), to = page.find(end);
+    if (from == page.npos || to == page.npos || to < from)
+        throw std::logic_error(fmt::format("the page has no marks of the table {}", name));
     std::string rule = "|";
     for (std::size_t i = 1; header[i] != '\0'; ++i)
         if (header[i] == '|') rule += "---|";
-    return fmt::format("<!-- begin {} -->\n{}\n{}\n{}<!-- end {} -->\n", name, header, rule, lines, name);
+    const std::size_t first = from + begin.size();
+    page.replace(first, to - first, fmt::format("{}\n{}\n{}", header, rule, lines));
 }
 
 }  // namespace
@@ -256,33 +279,38 @@ std::string record_schema() {
     Json render = object_of(kRenderFields, RenderSettings{}, kRecord);
     render["dependencies"] = {{"eye", {"target"}}, {"target", {"eye"}}};
     const Json size = object_of(kSizeFields, BallSize{}, kRecord)["properties"];
-    const Json parts = {{"/properties/render", render},
-                        {"/properties/table", table},
-                        {"/properties/balls", object_of(kBallFields, BallParams{}, kRecord)},
-                        {"/definitions/cushion", object_of(kCushionFields, {}, kRecord)},
-                        {"/definitions/jaw", object_of(kJawFields, {}, kRecord)},
-                        {"/definitions/pocket", object_of(kPocketFields, {}, kRecord)},
-                        {"/definitions/track/properties/radius", size["radius"]},
-                        {"/definitions/track/properties/mass", size["mass"]}};
-    return parts.dump(2) + "\n";
+    Json schema = Json::parse(published("record.schema.json"));
+    for (const auto& [pointer, part] : std::initializer_list<std::pair<const char*, Json>>{
+             {"/properties/render", render},
+             {"/properties/table", table},
+             {"/properties/balls", object_of(kBallFields, BallParams{}, kRecord)},
+             {"/definitions/cushion", object_of(kCushionFields, {}, kRecord)},
+             {"/definitions/jaw", object_of(kJawFields, {}, kRecord)},
+             {"/definitions/pocket", object_of(kPocketFields, {}, kRecord)},
+             {"/definitions/track/properties/radius", size["radius"]},
+             {"/definitions/track/properties/mass", size["mass"]}})
+        schema.at(Json::json_pointer(pointer)) = part;
+    return schema.dump(2) + "\n";
 }
 
 std::string scene_format() {
     constexpr const char* kHeader = "| key | default | values | meaning |";
-    return block("table", kHeader, lines_of(kTableFields, make_table(kStandardTable))) +
-           block("outline", "| list | key | default | values | meaning |",
-                 lines_of(kCushionFields, {}, "`[[table.cushion]]`") +
-                     lines_of(kJawFields, {}, "`[[table.jaw]]`") +
-                     lines_of(kPocketFields, {}, "`[[table.pocket]]`")) +
-           block("balls", "| key | pool (default) | snooker | carom | values | meaning |", balls_lines()) +
-           block("ball", kHeader,
-                 lines_of(kBallStartFields, BallStart{}) + lines_of(kSizeFields, BallSize{})) +
-           block("rack", kHeader, lines_of(kRackFields, Rack{})) +
-           block("cue", kHeader, lines_of(kCueFields, Cue{})) +
-           block("physics", kHeader, lines_of(kPhysicsFields, Physics{})) +
-           block("effects", "| key | skipped when | keys it belongs to |", effects_lines()) +
-           block("stop", kHeader, lines_of(kStopFields, Stop{})) +
-           block("render", kHeader, lines_of(kRenderFields, RenderSettings{}));
+    std::string page = published("scene_format.md");
+    put_table(page, "table", kHeader, lines_of(kTableFields, make_table(kStandardTable)));
+    put_table(page, "outline", "| list | key | default | values | meaning |",
+              lines_of(kCushionFields, {}, "`[[table.cushion]]`") +
+                  lines_of(kJawFields, {}, "`[[table.jaw]]`") +
+                  lines_of(kPocketFields, {}, "`[[table.pocket]]`"));
+    put_table(page, "balls", "| key | pool (default) | snooker | carom | values | meaning |", balls_lines());
+    put_table(page, "ball", kHeader,
+              lines_of(kBallStartFields, BallStart{}) + lines_of(kSizeFields, BallSize{}));
+    put_table(page, "rack", kHeader, lines_of(kRackFields, Rack{}));
+    put_table(page, "cue", kHeader, lines_of(kCueFields, Cue{}));
+    put_table(page, "physics", kHeader, lines_of(kPhysicsFields, Physics{}));
+    put_table(page, "effects", "| key | skipped when | keys it belongs to |", effects_lines());
+    put_table(page, "stop", kHeader, lines_of(kStopFields, Stop{}));
+    put_table(page, "render", kHeader, lines_of(kRenderFields, RenderSettings{}));
+    return page;
 }
 
 }  // namespace carom::tools

@@ -7,9 +7,10 @@ namespace carom::tools {
 
 /// A JSON Schema of scene files: docs/reference/scene.schema.json.
 std::string scene_schema();
-/// What docs/reference/record.schema.json has from the tables: an object with a JSON pointer for each part of it.
+/// A JSON Schema of records: docs/reference/record.schema.json, its parts that are tables in the program written anew.
 std::string record_schema();
-/// The tables of docs/reference/scene_format.md, each between the marks <!-- begin NAME --> and <!-- end NAME -->.
+/// The page of scene files: docs/reference/scene_format.md, its tables between <!-- begin NAME --> and <!-- end NAME -->
+/// written anew.
 std::string scene_format();
 
 }  // namespace carom::tools
