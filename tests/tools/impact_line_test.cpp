@@ -255,6 +255,26 @@ TEST(ImpactLine, ANormalMayBeRounded) {
         EXPECT_NEAR(rounded["v"][i].get<double>(), exact["v"][i].get<double>(), 1e-15);
 }
 
+// Every key of a line, of its params and of its answer stands in the row of its kind.
+TEST(ImpactLine, TheHelpListsTheKeys) {
+    const std::string help = impact_keys();
+    for (const Json& line : {ball_ball_line(), cushion_line()}) {
+        const std::string kind = "\n  \"kind\": " + line["kind"].dump() + " (";
+        const std::size_t from = help.find(kind);
+        ASSERT_NE(from, help.npos) << kind;
+        std::string row = help.substr(from + kind.size(), help.find('\n', from + 1) - from - kind.size());
+        std::replace_if(
+            row.begin(), row.end(), [](char c) { return c == ';' || c == ','; }, ' ');
+        Json keys = Json::parse(answer_impact(line.dump(), settings()).json);
+        keys.update(line);
+        keys.update(line["params"]);
+        keys.erase("kind");
+        keys.erase("params");
+        for (const auto& item : keys.items())
+            EXPECT_NE((row + " ").find(" " + item.key() + " "), row.npos) << item.key() << " in " << row;
+    }
+}
+
 TEST(ImpactLine, SaysWhatIsWrong) {
     EXPECT_EQ(error_of(""), "this is not JSON (at byte 1)");
     EXPECT_EQ(error_of("[1, 2]"), "expected an object");

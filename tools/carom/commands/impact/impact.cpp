@@ -126,6 +126,7 @@ void add_impact(Options& program) {
     tolerance.in(kernel::kTightestTolerance, kernel::kLoosestTolerance);
     tolerance.excludes = "--substeps";
     add_cloth_slip(command, args.cloth_slip, "Sign of the cloth slip inside the impact (mathavan)");
+    command.footer = impact_keys();
 }
 
 }  // namespace carom::tools

@@ -3,12 +3,16 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <initializer_list>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "carom/engine/airborne.h"
 #include "carom/engine/cushion.h"
@@ -36,13 +40,59 @@ const Json& need(const Json& object, const char* key) {
     return *it;
 }
 
+/// What a kind of line holds beside "kind", "id" and "params": names with a space between them.
+struct LineKind {
+    const char* kind;
+    bool airborne;  ///< the line says "airborne": true
+    const char *meaning, *keys, *params;
+    const char* optional;  ///< params that may be left out
+    const char* answer;
+};
+constexpr const char *kTwoStates = "r1 v1 w1 r2 v2 w2", *kTwoAnswers = "v1 w1 v2 w2 steps ns";
+constexpr LineKind kBallBall = {
+    "ball_ball", false, "two balls on the cloth", kTwoStates, "R m mu_s1 mu_s2 mu_b e_b", "m2", kTwoAnswers};
+constexpr LineKind kBallBallInAir = {
+    "ball_ball", true,       "two balls, one of them in the air", kTwoStates, "R1 R2 m1 m2 mu_b e_b",
+    "",          kTwoAnswers};
+constexpr LineKind kCushion = {
+    "cushion", false, "a ball on the cloth and a cushion", "model normal v w", "R m mu_s e_c f_c height",
+    "",        "v w"};
+constexpr LineKind kCushionInAir = {
+    "cushion", true, "a ball in the air and a nose", "model normal offset v w", "R e_c f_c", "", "v w"};
+constexpr LineKind kCloth = {
+    "cloth", false, "a ball that comes down on the cloth", "v w", "R mu_s mu_sp e_t gravity", "", "v w"};
+
+constexpr struct {
+    const char *keys, *meaning;
+} kMeanings[] = {
+    {"r, v, w", "centre, velocity and angular velocity before the impact, [x, y, z]; in the answer after it"},
+    {"R, m", "radius and mass; m2 is the mass of ball 2 if it differs, and excludes --substeps"},
+    {"mu_s, mu_b, e_b, ...", "as in [balls] of a scene file; mu_s1 and mu_s2 are mu_s under each ball"},
+    {"model", "a cushion model, as in [physics] of a scene file"},
+    {"normal", "horizontal, from the cushion into the table, [x, y] of length 1"},
+    {"offset", "from the line of the nose to the ball's centre, [along the normal, up]"},
+    {"height", "of the nose above the cloth"},
+    {"id", "any value; the answer repeats it"},
+    {"steps, ns", "steps of the kernel, and its time in nanoseconds"},
+    {"error", "in place of an answer: what is wrong with the line"}};
+
+std::vector<std::string> words_of(std::string text) {
+    std::istringstream in(std::move(text));
+    return {std::istream_iterator<std::string>(in), {}};
+}
+
 /// Refuses a key that is not read: a misspelt key would silently give another result.
-void refuse_unknown(const Json& object, std::initializer_list<const char*> known) {
-    for (const auto& item : object.items()) {
-        bool found = false;
-        for (const char* key : known) found = found || item.key() == key;
-        if (!found) throw LineError(fmt::format("unknown key \"{}\"", item.key().substr(0, 40)));
-    }
+void refuse_unknown(const Json& object, const std::string& known) {
+    const std::vector<std::string> names = words_of(known);
+    for (const auto& item : object.items())
+        if (std::find(names.begin(), names.end(), item.key()) == names.end())
+            throw LineError(fmt::format("unknown key \"{}\"", item.key().substr(0, 40)));
+}
+
+void refuse_unknown(const Json& line, const Json& params, const LineKind& kind) {
+    const bool may_fly = kind.airborne || kind.kind != std::string_view(kCloth.kind);
+    refuse_unknown(line, fmt::format("kind id params {} {}", may_fly ? "airborne" : "", kind.keys));
+    refuse_unknown(params, fmt::format("{} {}", kind.params, kind.optional));
 }
 
 double number(const Json& json, const char* key) {
@@ -113,9 +163,8 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// Two balls of which one or both fly: one free impact, in closed form.
 Json free_balls(const Json& line) {
-    refuse_unknown(line, {"kind", "id", "airborne", "params", "r1", "v1", "w1", "r2", "v2", "w2"});
     const Json& params = params_of(line);
-    refuse_unknown(params, {"R1", "R2", "m1", "m2", "mu_b", "e_b"});
+    refuse_unknown(line, params, kBallBallInAir);
     FreePair pair{};
     pair.size1 = {parameter(params, "R1", 0.0, kUnbounded, true),
                   parameter(params, "m1", 0.0, kUnbounded, true)};
@@ -136,9 +185,8 @@ Json free_balls(const Json& line) {
 
 /// A ball that comes down on the cloth.
 Json cloth(const Json& line) {
-    refuse_unknown(line, {"kind", "id", "params", "v", "w"});
     const Json& params = params_of(line);
-    refuse_unknown(params, {"R", "mu_s", "mu_sp", "e_t", "gravity"});
+    refuse_unknown(line, params, kCloth);
     BallParams balls{};
     balls.R = parameter(params, "R", 0.0, kUnbounded, true);
     balls.mu_s = parameter(params, "mu_s", 0.0, kUnbounded);
@@ -156,9 +204,8 @@ Json cloth(const Json& line) {
 
 Json ball_ball(const Json& line, const ImpactSettings& settings) {
     if (is_airborne(line)) return free_balls(line);
-    refuse_unknown(line, {"kind", "id", "airborne", "params", "r1", "v1", "w1", "r2", "v2", "w2"});
     const Json& params = params_of(line);
-    refuse_unknown(params, {"R", "m", "m2", "mu_s1", "mu_s2", "mu_b", "e_b"});
+    refuse_unknown(line, params, kBallBall);
     kernel::ImpactParams p{};
     p.R = parameter(params, "R", 0.0, kUnbounded, true);
     p.m = parameter(params, "m", 0.0, kUnbounded, true);
@@ -230,10 +277,9 @@ Vec2 unit_normal(const Json& line) {
 
 /// A ball in the air at a nose, whose line it is off by D horizontally and by q in height.
 Json nose_in_air(const Json& line) {
-    refuse_unknown(line, {"kind", "id", "airborne", "model", "params", "normal", "offset", "v", "w"});
     const CushionModelInfo& model = model_of(line);
     const Json& params = params_of(line);
-    refuse_unknown(params, {"R", "e_c", "f_c"});
+    refuse_unknown(line, params, kCushionInAir);
     BallParams balls{};
     const double R = parameter(params, "R", 0.0, kUnbounded, true);
     balls.e_c = parameter(params, "e_c", 0.0, 1.0);
@@ -250,10 +296,9 @@ Json nose_in_air(const Json& line) {
 
 Json cushion(const Json& line) {
     if (is_airborne(line)) return nose_in_air(line);
-    refuse_unknown(line, {"kind", "id", "airborne", "model", "params", "normal", "v", "w"});
     const CushionModelInfo& model = model_of(line);
     const Json& params = params_of(line);
-    refuse_unknown(params, {"R", "m", "mu_s", "e_c", "f_c", "height"});
+    refuse_unknown(line, params, kCushion);
     CushionContact contact{};
     contact.R = parameter(params, "R", 0.0, kUnbounded, true);
     contact.m = parameter(params, "m", 0.0, kUnbounded, true);
@@ -305,6 +350,19 @@ Json compute(std::string_view text, const ImpactSettings& settings) {
 }
 
 }  // namespace
+
+std::string impact_keys() {
+    std::string text = "A line is a JSON object; answers come in the order of the lines. Units are SI.";
+    for (const LineKind& kind : {kBallBall, kBallBallInAir, kCushion, kCushionInAir, kCloth}) {
+        std::string params = kind.params;
+        if (*kind.optional != '\0') params += fmt::format(", optional {}", kind.optional);
+        text += fmt::format("\n  \"kind\": \"{}\"{} ({}): {}; \"params\": {}; answer: {}", kind.kind,
+                            kind.airborne ? ", \"airborne\": true" : "", kind.meaning, kind.keys, params,
+                            kind.answer);
+    }
+    for (const auto& [keys, meaning] : kMeanings) text += fmt::format("\n  {}: {}", keys, meaning);
+    return text;
+}
 
 ImpactAnswer impact_error(const std::string& what) {
     const Json json = {{"error", what}};
