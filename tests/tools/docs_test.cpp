@@ -315,7 +315,7 @@ TEST(DocsReader, SeesAFalseFigure) {
     EXPECT_EQ(figures[0].paragraph, "After 3.5 s there are 7 balls.");
     EXPECT_EQ(figures[1].command, "echo 7 balls");
     EXPECT_EQ(figures[2].paragraph, "* 4 s");
-    EXPECT_EQ(figures[2].line, 7u);
+    EXPECT_EQ(figures[2].line, 8u);
     EXPECT_EQ(figure_fault(figures[0], "it takes 3.5 s\n"), "");
     EXPECT_NE(figure_fault(figures[0], "it takes 3.6 s\n"), "");
     EXPECT_NE(figure_fault(figures[0], "it takes 13.5 s\n"), "");
