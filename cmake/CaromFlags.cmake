@@ -54,6 +54,14 @@ function(carom_without_stack_protector)
   endif()
 endfunction()
 
+# Parses the headers that most sources of TARGET include once. Sources of hardened builds have options of their own, which a
+# precompiled header would not fit.
+function(carom_precompile target)
+  if(NOT CAROM_HARDENED)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
 # What fuzz targets run: libFuzzer has to see which branches of TARGET an input takes.
 function(carom_fuzzed target)
   if(carom_fuzz)

@@ -57,7 +57,7 @@ HEADERS = {
 # The standard itself says that the second brings the first.
 BROUGHT = {"exception": {"stdexcept"}, "string_view": {"string"}, "utility": {"algorithm", "map", "memory", "optional", "tuple", "vector"}}
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-FOLDERS = [ROOT / folder for folder in ("kernel/include", "engine/include", "render/include", "capi/include", "kernel", "kernel/src",
+FOLDERS = [ROOT / folder for folder in ("kernel/include", "engine/include", "render/include", "capi/include", "kernel", "kernel/src", "lab", "lab/carom",
                                         "engine/src", "render/src", "capi/src", "tools/carom", "tests")]
 INCLUDE = re.compile(r'^#include [<"]([^>"]+)[>"]', re.MULTILINE)
 NO_CODE = re.compile(r'//[^\n]*|"(?:[^"\\\n]|\\.)*"')

@@ -110,7 +110,7 @@ class Tidy:
         database = [{"directory": str(folder), "file": str(source), "arguments": arguments}]
         (folder / "compile_commands.json").write_text(json.dumps(database, indent=1))
         command = ["clang-tidy", "--quiet", f"--config-file={ROOT / '.clang-tidy'}", "-p", str(folder)]
-        if group.files[0].is_relative_to(ROOT / "tests"):
+        if any(group.files[0].is_relative_to(ROOT / folder) for folder in ("tests", "lab/tests")):
             command.append(f"--checks={LEFT_OUT_IN_TESTS}")
         return subprocess.run(
             [*command, str(source)],

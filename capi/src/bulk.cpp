@@ -78,16 +78,17 @@ carom_status carom_simulate_many(const carom_scene* scene, size_t shots, size_t 
         if (key_count > 0 && shots > 0) need({values});
         if (std::isnan(until)) throw BadArgument("until is not a number");
         if (threads < 0) throw BadArgument("threads is negative; 0 takes one for each core");
-        std::vector<carom::BatchColumn> columns;
-        for (size_t k = 0; k < key_count; ++k) {
-            need({keys[k]});
-            columns.push_back({keys[k], std::span(values + (shots > 0 ? k * shots : 0), shots)});
-        }
         carom::BatchOptions options;
         options.threads = threads;
         options.hash = hashes != 0;
         if (until >= 0.0) options.simulate.until = until;
         try {
+            carom::check_shots(shots);  // of which there may be no array
+            std::vector<carom::BatchColumn> columns;
+            for (size_t k = 0; k < key_count; ++k) {
+                need({keys[k]});
+                columns.push_back({keys[k], std::span(values + (shots > 0 ? k * shots : 0), shots)});
+            }
             b.batch = carom::simulate_many(scene->scene, shots, columns, chosen_isa(), options);
         } catch (const std::invalid_argument& error) {
             throw BadArgument(error.what());
@@ -185,14 +186,6 @@ carom_status carom_record_states(const carom_record* record, size_t count, const
         if (count > 0) need({times, rvw});
         if (std::any_of(times, times + count, [](double t) { return std::isnan(t); }))
             throw BadArgument("a time is not a number");
-        const int balls = static_cast<int>(record->record.tracks.size());
-        for (size_t k = 0; k < count; ++k) {
-            for (int ball = 0; ball < balls; ++ball) {
-                const carom::BallState s = record->record.state_at(ball, times[k]);
-                for (const carom::Vec3* row : {&s.position, &s.velocity, &s.spin})
-                    rvw = std::copy_n(row->data(), 3, rvw);
-                if (states != nullptr) *states++ = static_cast<uint8_t>(s.state);
-            }
-        }
+        record->record.states_at({times, count}, rvw, states);
     });
 }

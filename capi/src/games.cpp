@@ -134,6 +134,7 @@ carom_status carom_judge(const carom_game_state* state, const carom_record* reco
             said = {text_of(call->ball), text_of(call->pocket), call->safety != 0, call->push_out != 0};
         const games::State before = state_of(*state);
         v.game = before.game;
+        v.record = record->record.hash();
         v.verdict = asked([&] { return games::judge(before, record->record, said); });
     });
 }
@@ -195,6 +196,8 @@ carom_status carom_next_shot(const carom_record* record, const carom_verdict* ve
     return made(scene, [&](carom_scene& s) {
         need({record, cue});
         const games::Option& of = option_of(verdict, option);
+        if (verdict->record != record->record.hash())
+            throw BadArgument("the verdict is of another record; give the record that was judged");
         std::optional<carom::Vec2> put;
         if (place != nullptr) put = carom::Vec2(place[0], place[1]);
         const carom::Cue strike = carom::c::cue_of(games::cue_ball(of.state), *cue);

@@ -1,6 +1,8 @@
 // What the opaque handles of the C interface hold.
 #pragma once
 
+#include <string>
+
 #include "carom/engine/batch.h"
 #include "carom/engine/record.h"
 #include "carom/games/rules.h"
@@ -17,6 +19,7 @@ struct carom_record {
 struct carom_verdict {
     carom::games::Verdict verdict;
     carom::games::Game game;
+    std::string record;  // hash of the record that was judged
 };
 
 struct carom_batch {

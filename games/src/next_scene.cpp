@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/printable.h"
 #include "carom/games/rules.h"
 #include "carom/games/shot.h"
 #include "facts.h"
@@ -16,6 +17,15 @@ namespace {
 bool is_back(const Option& option, const std::string& ball) {
     return std::any_of(option.respots.begin(), option.respots.end(),
                        [&](const Respot& r) { return r.ball == ball; });
+}
+
+/// The ball of an option. @throws std::invalid_argument where the record has none: the option is of another one
+int ball_of(const Record& record, const std::string& id) {
+    const int index = index_of(record, id);
+    if (index < 0)
+        throw std::invalid_argument("the record has no ball " + in_quotes(id) +
+                                    "; give the record that the option was judged by");
+    return index;
 }
 
 /// Puts a ball of the shot before back onto the cloth.
@@ -37,8 +47,9 @@ const char* cue_ball(const State& state) {
 
 bool may_place(const Record& record, const Option& option, const Vec2& place) {
     const std::string cue = cue_ball(option.state);
-    const int index = index_of(record, cue);
-    if (index < 0 || !in_area(record.table, option.state.in_hand, place)) return false;
+    const int index = ball_of(record, cue);
+    for (const Respot& back : option.respots) ball_of(record, back.ball);
+    if (!in_area(record.table, option.state.in_hand, place)) return false;
     const double R = record.size(index).R;
     const Vec2 from = place - record.table.corner;
     if (from.x() < R || from.y() < R || from.x() > record.table.width - R ||
@@ -52,7 +63,7 @@ bool may_place(const Record& record, const Option& option, const Vec2& place) {
             others.push_back({planar(end.position), record.size(ball).R, 0.0});
     }
     for (const Respot& back : option.respots)
-        others.push_back({back.place, record.size(index_of(record, back.ball)).R, 0.0});
+        others.push_back({back.place, record.size(ball_of(record, back.ball)).R, 0.0});
     return is_free(place, R, others);
 }
 
@@ -62,9 +73,9 @@ Scene table_after(const Scene& scene, const Record& record, const Option& option
         throw std::invalid_argument("the balls are racked anew; take the scene of a new break");
     if (option.state.over) throw std::invalid_argument("the game is over; there is no next shot");
     const std::string cue = cue_ball(option.state);
-    const int index = index_of(record, cue);
-    if (!place && !is_back(option, cue) && index >= 0 &&
-        is_gone(record.state_at(index, record.duration).state))
+    const int index = ball_of(record, cue);
+    for (const Respot& back : option.respots) ball_of(record, back.ball);
+    if (!place && !is_back(option, cue) && is_gone(record.state_at(index, record.duration).state))
         throw std::invalid_argument("the cue ball is in hand; say where it is placed");
     if (place && !may_place(record, option, *place))
         throw std::invalid_argument(std::string("the cue ball may not be placed there (in hand: ") +

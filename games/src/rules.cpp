@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "facts.h"
@@ -57,6 +58,15 @@ constexpr FoulRules kFoulRules[] = {
 
 void check(const State& state) {
     if (state.turn != 0 && state.turn != 1) throw std::invalid_argument("turn is a player, 0 or 1");
+    const std::pair<const char*, int> numbers[] = {{"points", state.points[0]},
+                                                   {"points", state.points[1]},
+                                                   {"fouls", state.fouls[0]},
+                                                   {"fouls", state.fouls[1]},
+                                                   {"target", state.target}};
+    for (const auto& [what, number] : numbers)
+        if (number < 0 || number > kMostPoints)
+            throw std::invalid_argument(std::string(what) + " = " + std::to_string(number) +
+                                        " is out of range; it must be 0 to " + std::to_string(kMostPoints));
     if (state.over) throw std::invalid_argument("the game is over; begin a new one");
 }
 
@@ -69,7 +79,6 @@ State new_game(Game game, int first, int target) {
     state.target = target;
     state.in_hand = rules_of(game).start;
     check(state);
-    if (target < 0) throw std::invalid_argument("target is negative; 0 has no end");
     return state;
 }
 

@@ -7,38 +7,11 @@
 #include <string_view>
 #include <vector>
 
+#include "carom/engine/frozen.h"
 #include "carom/engine/tolerances.h"
 
 namespace carom::games {
 namespace {
-
-// [ball radii] A ball that moved by less than this off a cushion has not left it: the rounding of places, and far below what
-// anyone could see.
-constexpr double kStillFrozen = 1e-9;
-
-Vec2 place_of(const Record& record, int ball, double time) {
-    return planar(record.state_at(ball, time).position);
-}
-
-/// The point of the table's part that is nearest to a place.
-Vec2 nearest_point(const Record& record, const Event& event, const Vec2& place) {
-    const auto part = static_cast<std::size_t>(event.b);
-    if (kind(event.type).partner == Partner::kJaw) return record.table.jaws[part].center;
-    const Cushion& c = record.table.cushions[part];
-    const Vec2 line = c.to - c.from;
-    return c.from + std::clamp(dot(place - c.from, line) / line.squaredNorm(), 0.0, 1.0) * line;
-}
-
-/// Whether a ball meets a part of the table that it touched at the start and has not left.
-bool still_frozen(const Record& record, const Event& event) {
-    const Vec2 start = place_of(record, event.a, 0.0);
-    const Vec2 away = start - nearest_point(record, event, start);
-    if (away.isZero(0.0)) return false;
-    const Vec2 along = away / length(away);
-    const double from = dot(along, start), slack = kStillFrozen * record.size(event.a).R;
-    const double here = dot(along, place_of(record, event.a, event.time));
-    return here >= from - slack && farthest(record, event.a, along, event.time) <= from + slack;
-}
 
 /// The balls that `ball` meets in an event of balls: those nearest to it.
 std::vector<int> met_in(const Record& record, const Event& event, int ball) {
@@ -98,18 +71,8 @@ int index_of(const Record& record, std::string_view id) {
 }
 
 double farthest(const Record& record, int ball, const Vec2& along, double time) {
-    double most = dot(along, place_of(record, ball, 0.0));
-    const std::vector<Segment>& segments = record.tracks[static_cast<std::size_t>(ball)].segments;
-    for (std::size_t i = 0; i < segments.size() && segments[i].start <= time; ++i) {
-        const Segment& s = segments[i];
-        const double next = i + 1 < segments.size() ? segments[i + 1].start : record.duration;
-        const double whole = std::min({std::min(next, time) - s.start, s.duration});
-        const double v = dot(along, planar(s.v)), a = dot(along, s.a);
-        // The ends, and where it turns back.
-        for (const double tau : {0.0, whole, a < 0.0 ? std::clamp(-v / a, 0.0, whole) : whole})
-            most = std::max(most, dot(along, planar(position_at(s, tau))));
-    }
-    return most;
+    return carom::farthest(record.tracks[static_cast<std::size_t>(ball)].segments, along,
+                           std::min(time, record.duration));
 }
 
 Shot shot_of(const Record& record) {
@@ -124,7 +87,10 @@ Shot shot_of(const Record& record) {
         if (event.type == EventType::kBallOut) shot.out.push_back(event.a);
         if (of.phase != EventPhase::kImpact && of.phase != EventPhase::kHold) continue;
         if (of.partner == Partner::kCushion || of.partner == Partner::kJaw)
-            shot.touches.push_back({event.time, event.a, -1, !still_frozen(record, event)});
+            shot.touches.push_back(
+                {event.time, event.a, -1,
+                 !still_frozen(record.table, event, record.tracks[static_cast<std::size_t>(event.a)].segments,
+                               record.size(event.a).R)});
         if (of.partner != Partner::kBall || shot.struck < 0) continue;
         std::vector<int> met = met_in(record, event, shot.struck);
         add_simultaneous(record, event, shot.struck, met);

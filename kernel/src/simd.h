@@ -120,8 +120,9 @@ using Mask = decltype(Pack<N>{} < Pack<N>{});
 // The same number in all lanes.
 template <int N>
 CAROM_INLINE Pack<N> broadcast(double x) {
+    // not a sum, in which -0 would become +0
     if constexpr (N <= kRegisterLanes)
-        return x - Pack<N>{};  // not a sum, in which -0 would become +0
+        return x - Pack<N>{};
     else
         return {broadcast<N / 2>(x), broadcast<N / 2>(x)};
 }

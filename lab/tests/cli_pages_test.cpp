@@ -1,5 +1,8 @@
 // The reports of carom-lab as pages, in a browser.
 #include "lab_cli.h"
+
+#include <string>
+#include <vector>
 #include "tools/browser.h"
 
 namespace carom::test {

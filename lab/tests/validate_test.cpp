@@ -126,6 +126,7 @@ TEST(ValidationCases, AWrongFileIsAnErrorAtItsPlace) {
         {"\"start\"", "\"noon\"", "noon is none of start, hit, "},
         {"0.1 }", "0 }", "uncertainty has to be greater than 0"},
         {"value = 1.0, ", "", "value is missing"},
+        {"value = 1.0", "value = 9007199254740993", "value = 9007199254740993 has more digits than a number"},
         {"[\"within\"]", "[\"good\"]", "x.toml:13:11: a claim is \"within\" or the value that is computed"},
         {"[\"within\"]", "[1.0, 2.0]", "2 claims for 1 numbers"},
         {"[\"within\"]", "[]", "claims has to be a list that is not empty"},

@@ -9,12 +9,17 @@ Long calls run without the GIL, and Ctrl-C ends them. Results have the same bits
 
 from carom import games, kernel, plot, sweep
 from carom._carom import VERSION as __version__
-from carom._errors import SceneError, SimulationError
+from carom._errors import SceneError
 from carom._program import accuracy, margin
 from carom._record import Event, Record, TablePlan
 from carom._scene import Scene
 from carom._render import render
-from carom._simulate import Shots, ShotStatus, simulate, simulate_many
+from carom._show import picture, shown
+from carom._simulate import Shots, ShotStatus, SimulationError, simulate, simulate_many
+
+# Notebooks show a record by these; a record itself knows nothing of plots.
+setattr(Record, "_repr_html_", shown)
+setattr(Record, "_repr_png_", picture)
 
 __all__ = [
     "Event",

@@ -2,12 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from carom import _carom
-    from carom._record import Record
-
 
 class SceneError(ValueError):
     """A scene, or a record's file, that is wrong. `str()` is "file:line:column: what is wrong and what to do"; the place is left
@@ -33,26 +27,3 @@ class SceneError(ValueError):
     def __str__(self) -> str:
         place = "" if self.line is None else f":{self.line}:{self.column}"
         return f"{self.file}{place}: {self.message}"
-
-
-class SimulationError(RuntimeError):
-    """A run that cannot go on, or one whose record breaks a law (`verify=True`). `str()` says why.
-
-    record: what happened until then, or None where nothing was kept
-    """
-
-    record: Record | None
-
-    def __init__(self, message: str, record: Record | None = None) -> None:
-        super().__init__(message, record)
-        self.record = record
-
-    def __str__(self) -> str:
-        return str(self.args[0])
-
-
-def simulation_error(message: str, native: _carom.Record | None) -> SimulationError:
-    """For the extension module."""
-    from carom._record import Record
-
-    return SimulationError(message, None if native is None else Record._of(native))

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from carom._record import Record
-    from carom._scene import Scene
+from carom._arguments import checked
+from carom._scene import SceneLike, as_scene
 
 _PROGRAM = os.path.join(os.path.dirname(__file__), "bin", "carom")
 
@@ -30,7 +30,7 @@ def _column(values: list[str]) -> Any:
 
 def _run(command: Sequence[str], folder: str) -> str:
     """What the program prints, run in a folder whose name is left out of its messages."""
-    import subprocess
+    import subprocess  # as csv and tempfile: `import carom` is fast without them
 
     done = subprocess.run(
         [_PROGRAM, *command], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False
@@ -42,31 +42,20 @@ def _run(command: Sequence[str], folder: str) -> str:
     return done.stdout
 
 
-def page(record: Record, second: Record | None) -> str:
-    """The page of `carom view`."""
-    import tempfile
-
-    with tempfile.TemporaryDirectory(prefix="carom-") as folder:
-        shots = {"shot.json": record} | ({"second.json": second} if second is not None else {})
-        for name, shot in shots.items():
-            shot.save(os.path.join(folder, name))
-        _run(["view", *shots, "--no-margin", "-o", "shot.html"], folder)
-        with open(os.path.join(folder, "shot.html"), encoding="utf-8") as file:
-            return file.read()
+def _write(path: str, text: str) -> None:
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
 
 
-def _report(arguments: Sequence[str], scene: Scene | None, table: bool) -> dict[str, Any]:
+def _report(arguments: Sequence[str], scene: SceneLike, table: bool) -> dict[str, Any]:
     """Runs a command with --json, and with --csv where `table` says so: then its columns stand under "table"."""
     import csv
-    import json
     import tempfile
 
     with tempfile.TemporaryDirectory(prefix="carom-") as folder:
         command = [*arguments, "--json"]
-        if scene is not None:
-            with open(os.path.join(folder, "scene.toml"), "w", encoding="utf-8") as file:
-                file.write(scene.source)
-            command.append("scene.toml")
+        _write(os.path.join(folder, "scene.toml"), as_scene(scene).source)
+        command.append("scene.toml")
         rows = os.path.join(folder, "table.csv")
         if table:
             command += ["--csv", rows]
@@ -78,15 +67,16 @@ def _report(arguments: Sequence[str], scene: Scene | None, table: bool) -> dict[
         return result
 
 
+@checked
 def margin(
-    scene: Scene, *, runs: int = 5, fps: float | None = None, size: tuple[int, int] | None = None, render: bool = True, backend: str = "egl"
+    scene: SceneLike, *, runs: int = 5, fps: float | None = None, size: tuple[int, int] | None = None, render: bool = True, backend: str = "auto"
 ) -> dict[str, Any]:
     """What every frame of a shot costs against 1/fps: the report of `carom margin` as data (docs/guide/margin.md).
 
     runs: every frame counts with its median over so many
     fps, size: as [render] of the scene if they are left out
     render: whether frames are drawn, read back, encoded and written, too
-    backend: "egl" or "osmesa"
+    backend: "osmesa", "egl", or "auto": OSMesa where it is installed, else EGL
 
     Returns the keys of `carom margin --json`, times in ms, and "table": for every column an array with a number for each frame. Wall
     times: another load on the machine is in them. Raises ValueError for bad input, RuntimeError where nothing can draw.
@@ -101,35 +91,28 @@ def margin(
     return _report(options, scene, table=True)
 
 
+@checked
 def accuracy(
-    scene: Scene | None = None,
+    scene: SceneLike,
     *,
     target: float | None = None,
     march: Sequence[int] | None = None,
     tolerances: Sequence[float] | None = None,
     runs: int = 5,
-    box2d: bool = False,
 ) -> dict[str, Any]:
-    """What accuracy costs: the report of `carom accuracy` as data (docs/guide/accuracy.md), for a shot, or, without a scene, for
-    single impacts.
+    """What accuracy costs a shot: the report of `carom accuracy` as data (docs/guide/accuracy.md).
 
-    target: of a shot, the error allowed at the end [m], which decides what is recommended
-    march, tolerances: of a shot, the settings to compare
+    target: the error allowed at the end [m], which decides what is recommended
+    march, tolerances: the settings to compare
     runs: interleaved rounds; minimum, median and maximum are over them
-    box2d: of a shot, also the same in Box2D
 
     Returns the keys of `carom accuracy --json`: "rows" and more. Raises ValueError for bad input.
     """
-    options = ["accuracy"] if scene is not None else ["accuracy", "kernel"]
-    options += ["--repeat", str(runs)]
-    if scene is None and (target is not None or march is not None or tolerances is not None or box2d):
-        raise ValueError("target, march, tolerances and box2d are for a scene; give one")
+    options = ["accuracy", "--repeat", str(runs)]
     if target is not None:
         options += ["--target", repr(float(target))]
     if march is not None:
         options += ["--march", ",".join(str(int(n)) for n in march)]
     if tolerances is not None:
         options += ["--tolerance", ",".join(repr(float(e)) for e in tolerances)]
-    if box2d:
-        options.append("--box2d")
     return _report(options, scene, table=False)

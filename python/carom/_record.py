@@ -7,16 +7,15 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from carom import _carom, _toml
-from carom._errors import SceneError
+from carom import _carom
+from carom._arguments import checked
+from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
 
 if TYPE_CHECKING:
     from typing import Self
 
     import pandas
     from numpy.typing import ArrayLike, NDArray
-
-    from carom._scene import Scene
 
 
 def _dtype(members: list[tuple[str, str, int]], size: int) -> np.dtype[np.void]:
@@ -51,6 +50,7 @@ class TablePlan(NamedTuple):
     pockets: list[tuple[str, float, float, float]]
 
 
+@checked
 class Record:
     """What happened in a shot: motion segments in closed form, and events. Immutable.
 
@@ -172,7 +172,7 @@ class Record:
         self._native.orientations(times, turned.reshape(-1))
         return turned
 
-    def final_scene(self, *, scene: Scene | None = None, cue: Any = None) -> Scene:
+    def final_scene(self, *, scene: SceneLike | None = None, cue: Any = None) -> Scene:
         """The scene for the next shot: the balls where and as they are at the end, without those in pockets.
 
         scene: the one that was played; needed for a record that was loaded from a file, which has no physics
@@ -181,13 +181,8 @@ class Record:
         Raises ValueError without a scene, and SceneError where the result is none: no ball is left, or the one that is struck is gone
         or still moves.
         """
-        from carom._scene import Scene, _placeless, _section
-
-        section = "" if cue is None else _toml.document({"cue": _section(cue, "preset")}, "scene")
-        try:
-            return Scene._of(self._native.scene_after(None if scene is None else scene._native, section))
-        except SceneError as error:
-            raise _placeless(error) from None
+        played = None if scene is None else as_scene(scene)._native
+        return scene_with_cue(cue, lambda section: self._native.scene_after(played, section))
 
     def to_pandas(self, what: Literal["events", "segments"] = "events") -> pandas.DataFrame:
         """The events, or the motion segments of all balls, as a DataFrame; a copy. Needs pandas (extra [notebook]).
@@ -197,28 +192,35 @@ class Record:
 
         Raises ValueError for anything else.
         """
-        from carom import _tables
-
         if what not in ("events", "segments"):
             raise ValueError(f"what={what!r}: expected events or segments")
-        return _tables.events(self) if what == "events" else _tables.segments(self)
+        try:
+            import pandas
+        except ImportError as error:
+            raise ImportError("to_pandas needs pandas: pip install 'carom-billiards[notebook]'") from error
+
+        def named(numbers: NDArray[Any], names: tuple[str, ...]) -> pandas.Categorical:
+            return pandas.Categorical.from_codes(numbers.astype(np.int16), list(names))
+
+        if what == "events":
+            view, listed = self.events, self.event_list()
+            columns: dict[str, Any] = {"time": view["time"], "type": named(view["type"], self.EVENT_TYPES)}
+            columns |= {"a": [event.a for event in listed], "b": [event.b for event in listed]}
+            return pandas.DataFrame(columns | {name: view[name] for name in ("detail", "slow")})
+        segments = np.concatenate(self.segments)
+        columns = {"ball": np.repeat(np.array(self.ids, dtype=object), [len(of_ball) for of_ball in self.segments])}
+        for name in _SEGMENT.names or ():
+            values = segments[name]
+            if name == "state":
+                columns[name] = named(values, self.MOTIONS)
+            else:
+                columns |= {name: values} if values.ndim == 1 else dict(zip((name + axis for axis in "xyz"), values.T))
+        return pandas.DataFrame(columns)
 
     def page(self, second: Record | None = None) -> str:
         """The page of `carom view`, as HTML that loads nothing: it plays the shot, with events, trails and charts, and another one
-        over or beside it. Raises RuntimeError where the program cannot run."""
-        from carom import _program
-
-        return _program.page(self, second)
-
-    def _repr_html_(self) -> str:
-        from carom import _show
-
-        return _show.shown(self)
-
-    def _repr_png_(self) -> bytes | None:
-        from carom import _show
-
-        return _show.picture(self)
+        over or beside it."""
+        return self._native.page(None if second is None else second._native)
 
     def hash(self) -> str:
         """64 bits of all bits of segments and events, as 16 hexadecimal digits: equal on every machine."""
@@ -245,8 +247,6 @@ class Record:
 
     def _scene(self) -> Scene | None:
         """The scene that was played; None for a record from a file."""
-        from carom._scene import Scene
-
         return None if self._native.scene is None else Scene._of(self._native.scene)
 
     def __repr__(self) -> str:
@@ -268,6 +268,11 @@ def _again(text: str, scene: Scene | None) -> Record:
 def _output(out: NDArray[np.float64] | None, shape: tuple[int, ...]) -> NDArray[np.float64]:
     if out is None:
         return np.empty(shape)
-    if out.shape != shape or out.dtype != np.float64 or not out.flags.c_contiguous or not out.flags.writeable:
-        raise ValueError(f"out: expected a writable contiguous array of float64 with the shape {shape}")
+    check_output("out", out, shape, np.dtype(np.float64))
     return out
+
+
+def check_output(name: str, out: Any, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
+    """Whether a caller's array can be filled. Raises ValueError."""
+    if not isinstance(out, np.ndarray) or out.shape != shape or out.dtype != dtype or not out.flags.c_contiguous or not out.flags.writeable:
+        raise ValueError(f"{name}: expected a writable contiguous array of {dtype} with the shape {shape}")

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from carom import _carom
+from carom._arguments import checked
 from carom._record import Record
-from carom._scene import Scene
+from carom._scene import SceneLike
 from carom._simulate import simulate
 
 if TYPE_CHECKING:
@@ -19,8 +20,9 @@ if TYPE_CHECKING:
 _LARGEST = 16384
 
 
+@checked
 def render(
-    shot: Scene | Record,
+    shot: SceneLike | Record,
     *,
     camera: str = "scene",
     size: tuple[int, int] | None = None,
@@ -31,7 +33,7 @@ def render(
 ) -> Iterator[NDArray[np.uint8]]:
     """Draws a shot without a display: an iterator of frames, (height, width, 3) sRGB with the top row first, each the caller's own.
 
-    shot: a record, or a scene that is then simulated
+    shot: a record, or a scene, as `simulate` takes it, that is then simulated
     camera: "top", "rail", "player" or "follow"; "scene" is what [render] of the scene says
     size: (width, height) in pixels; as [render] if it is left out
     fps: frames per second of the shot, from its start to its end; as [render] if it is left out
@@ -44,7 +46,7 @@ def render(
 
     Raises RuntimeError where no library can draw; the message names the packages. Raises ValueError for what does not exist.
     """
-    record = simulate(shot) if isinstance(shot, Scene) else shot
+    record = shot if isinstance(shot, Record) else simulate(shot)
     width, height = record.picture_size if size is None else size
     if not (1 <= width <= _LARGEST and 1 <= height <= _LARGEST):
         raise ValueError(f"size={size}: expected 1 to {_LARGEST} pixels on each side")
@@ -55,7 +57,7 @@ def render(
     if moments is not None and np.isnan(moments).any():
         raise ValueError("a time is not a number")
     unknown = set(overlays) - {"trails", "events", "spin", "ghost", "clock"}
-    if isinstance(overlays, str) or unknown:
+    if unknown:
         raise ValueError(f"overlays: expected a list of trails, events, spin, ghost and clock, not {overlays!r}")
     if camera not in ("scene", "top", "rail", "player", "follow"):
         raise ValueError(f"camera={camera!r}: expected scene, top, rail, player or follow")
@@ -81,6 +83,7 @@ def _frames(
 
 def _open(record: Record, camera: str, width: int, height: int, backend: str, overlays: str) -> _carom.Frames:
     problems = []
+    # EGL first, and not the default of the program: OSMesa hangs or crashes where drawings live in several threads.
     for name in ("egl", "osmesa") if backend == "auto" else (backend,):
         try:
             return _carom.Frames(record._native, camera, width, height, name, overlays)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from carom import _carom, _toml
+from carom._arguments import checked, may_be
 from carom._errors import SceneError
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ def _section(value: str | Mapping[str, Any], key: str) -> Mapping[str, Any]:
     return {key: value} if isinstance(value, str) else value
 
 
+@checked
 class Scene:
     """A table, its balls, perhaps a shot. Immutable and valid.
 
@@ -161,8 +163,30 @@ class Scene:
         return f"<carom.Scene {self.file}: {', '.join(self.ids[:4])}{', ...' if len(self.ids) > 4 else ''}>"
 
 
+#: What functions take that play a scene: one that was read, the path of its file, or its tree.
+SceneLike: TypeAlias = Scene | str | os.PathLike[str] | Mapping[str, Any]
+may_be("SceneLike", "Scene | str | PathLike | Mapping")
+
+
+def as_scene(scene: SceneLike) -> Scene:
+    if isinstance(scene, Scene):
+        return scene
+    return Scene.from_dict(scene) if isinstance(scene, Mapping) else Scene.load(scene)
+
+
 def _from_tree(tree: Mapping[str, Any], name: str) -> _carom.Scene:
     try:
         return _carom.parse_scene(_toml.document(tree, name), name)
+    except SceneError as error:
+        raise _placeless(error) from None
+
+
+def scene_with_cue(cue: str | Mapping[str, Any] | None, make: Callable[[str], _carom.Scene], **standard: Any) -> Scene:
+    """The scene that `make` makes with the section [cue] of this cue, or without one.
+
+    standard: what the cue has where it does not say anything else
+    """
+    try:
+        return Scene._of(make("" if cue is None else _toml.document({"cue": standard | dict(_section(cue, "preset"))}, "scene")))
     except SceneError as error:
         raise _placeless(error) from None

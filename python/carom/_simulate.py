@@ -5,17 +5,17 @@ from __future__ import annotations
 import enum
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from carom import _carom
-from carom._record import Record
+from carom._arguments import checked
+from carom._record import Record, check_output
+from carom._scene import Scene, SceneLike, as_scene
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
-
-    from carom._scene import Scene
 
 #: The columns of `simulate_many(cue=...)`.
 _CUE_KEYS = ("cue.speed", "cue.aim_deg", "cue.elevation_deg", "cue.offset.side", "cue.offset.height")
@@ -28,16 +28,39 @@ def _limits(until: float | None, max_events: int | None) -> None:
         raise ValueError(f"max_events={max_events}: expected at least 0")
 
 
-def simulate(scene: Scene, *, until: float | None = None, max_events: int | None = None, verify: bool = False) -> Record:
+@checked
+def simulate(scene: SceneLike, *, until: float | None = None, max_events: int | None = None, verify: bool = False) -> Record:
     """Plays one shot to rest, to a time [s] or to a number of events.
 
+    scene: or the path of its file, or its tree as for `Scene.from_dict`
     verify: check the laws of mechanics after every event
 
     Raises SimulationError, with the record so far, for a run that cannot go on or breaks a law; never hangs. Raises SceneError
     where [effects] leaves out what the scene needs, and ValueError for a limit that is none.
     """
     _limits(until, max_events)
-    return Record._of(_carom.simulate(scene._native, until, max_events, verify))
+    return Record._of(_carom.simulate(as_scene(scene)._native, until, max_events, verify))
+
+
+class SimulationError(RuntimeError):
+    """A run that cannot go on, or one whose record breaks a law (`verify=True`). `str()` says why.
+
+    record: what happened until then, or None where nothing was kept
+    """
+
+    record: Record | None
+
+    def __init__(self, message: str, record: Record | None = None) -> None:
+        super().__init__(message, record)
+        self.record = record
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+def simulation_error(message: str, native: _carom.Record | None) -> SimulationError:
+    """For the extension module."""
+    return SimulationError(message, None if native is None else Record._of(native))
 
 
 class ShotStatus(enum.IntEnum):
@@ -51,6 +74,7 @@ class ShotStatus(enum.IntEnum):
     FAILED = 5  # the simulation could not go on
 
 
+@checked
 class Shots(NamedTuple):
     """n shots of b balls, in the order of `scene.ids`. A shot without a result has its status, NaN as duration and places, 0 events,
     -1 and 0 elsewhere, and a message."""
@@ -73,58 +97,29 @@ class Shots(NamedTuple):
         """Where balls are that are still on the table: (n, b, 2) [m], NaN for the others; a copy, for `simulate_many(xy=...)`."""
         return np.where((self.pocket != -1)[:, :, None], np.nan, self.xy)
 
-    def _native(self) -> _carom.ShotArrays:
-        return _carom.ShotArrays(
-            self.status,
-            self.duration,
-            self.events,
-            self.first_hit,
-            self.contacts,
-            self.approach_cushions,
-            self.xy.reshape(-1),
-            self.pocket.reshape(-1),
-            self.fell.reshape(-1),
-            self.cushions.reshape(-1),
-            np.empty(0, np.uint64) if self.hash is None else self.hash,
-        )
+    def _native(self) -> Any:
+        """The arrays as the extension module takes them."""
+        arrays = [array.reshape(-1) for array in self if isinstance(array, np.ndarray)]
+        return tuple(arrays if self.hash is not None else [*arrays, np.empty(0, np.uint64)])
 
     @classmethod
     def empty(cls, shots: int, balls: int, *, hashes: bool = False) -> Shots:
         """Arrays for `simulate_many(out=...)`."""
-        n, b = shots, balls
+        one, each = (shots,), (shots, balls)
         return cls(
-            np.empty(n, np.uint8),
-            np.empty(n),
-            np.empty(n, np.int64),
-            np.empty(n, np.int32),
-            np.empty(n, np.int32),
-            np.empty(n, np.int32),
-            np.empty((n, b, 2)),
-            np.empty((n, b), np.int32),
-            np.empty((n, b), np.int32),
-            np.empty((n, b), np.int32),
-            np.empty(n, np.uint64) if hashes else None,
-            {},
+            status=np.empty(one, np.uint8),
+            duration=np.empty(one),
+            events=np.empty(one, np.int64),
+            first_hit=np.empty(one, np.int32),
+            contacts=np.empty(one, np.int32),
+            approach_cushions=np.empty(one, np.int32),
+            xy=np.empty((*each, 2)),
+            pocket=np.empty(each, np.int32),
+            fell=np.empty(each, np.int32),
+            cushions=np.empty(each, np.int32),
+            hash=np.empty(one, np.uint64) if hashes else None,
+            messages={},
         )
-
-
-class _Columns:
-    """The values that differ from shot to shot; all lists have one length."""
-
-    def __init__(self, shots: int | None) -> None:
-        self.shots = shots
-        self.columns: list[tuple[str, NDArray[np.float64]]] = []
-
-    def count(self, name: str, n: int) -> None:
-        if self.shots is None:
-            self.shots = n
-        if self.shots != n:
-            raise ValueError(f"{name}: {n} values for {self.shots} shots; give one for each")
-
-    def add(self, name: str, keys: list[str], values: NDArray[np.float64]) -> None:
-        self.count(name, len(values))
-        turned = np.ascontiguousarray(values.reshape(len(values), len(keys)).T)
-        self.columns += zip(keys, turned)
 
 
 def _array(name: str, values: ArrayLike, shape: tuple[int, ...], words: str) -> NDArray[np.float64]:
@@ -134,8 +129,9 @@ def _array(name: str, values: ArrayLike, shape: tuple[int, ...], words: str) -> 
     return array
 
 
+@checked
 def simulate_many(
-    scene: Scene,
+    scene: SceneLike,
     *,
     cue: ArrayLike | None = None,
     xy: ArrayLike | None = None,
@@ -150,6 +146,7 @@ def simulate_many(
     """Plays n shots that differ in numbers. Shot i has the bits of `simulate` for the scene with these numbers, whatever the number
     of threads; one that fails has its status and does not raise for the others.
 
+    scene: as for `simulate`
     cue: (n, 5): speed [m/s], aim_deg, elevation_deg, side, height; the scene has to have a cue
     xy: (n, balls, 2) places at the start [m]; a ball with NaN twice is left out of its shot
     params: (n,) for each key, such as "balls.mu_s", "physics.gravity", "ball.cue.velocity.y", "cue.offset.side"
@@ -165,6 +162,7 @@ def simulate_many(
     _limits(until, max_events)
     if threads < 0:
         raise ValueError(f"threads={threads}: expected at least 0")
+    scene = as_scene(scene)
     ids = scene.ids
     n, columns, absent = _columns_of(scene, cue, xy, params, shots)
     into = Shots.empty(n, len(ids), hashes=hashes) if out is None else _checked(out, n, len(ids), hashes)
@@ -177,42 +175,30 @@ def _columns_of(
 ) -> tuple[int, list[tuple[str, NDArray[np.float64]]], NDArray[np.uint8]]:
     """How many shots, the values that differ from shot to shot, and which balls are left out: as the extension module takes them."""
     ids = scene.ids
-    columns = _Columns(shots)
     absent = np.empty(0, np.uint8)
-    if cue is not None:
-        columns.add("cue", list(_CUE_KEYS), _array("cue", cue, (5,), "(n, 5)"))
+    given = [] if cue is None else [("cue", [*_CUE_KEYS], _array("cue", cue, (5,), "(n, 5)"))]
     if xy is not None:
-        keys = [f"ball.{ball}.position.{axis}" for ball in ids for axis in "xy"]
         places = _array("xy", xy, (len(ids), 2), f"(n, {len(ids)}, 2)")
-        columns.add("xy", keys, places)
+        given.append(("xy", [f"ball.{ball}.position.{axis}" for ball in ids for axis in "xy"], places))
         gone = np.isnan(places).all(axis=2)
         if gone.any():
             absent = gone.astype(np.uint8).reshape(-1)
-    for key, values in (params or {}).items():
-        columns.add(key, [key], _array(key, values, (), "(n,)"))
-    n = columns.shots
+    given += [(key, [key], _array(key, values, (), "(n,)")) for key, values in (params or {}).items()]
+    n = next((len(values) for _, _, values in given), None) if shots is None else shots
     if n is None:
         raise ValueError("there is nothing that says how many shots: give cue, xy, params or shots")
     if n < 0:
         raise ValueError(f"shots={n}: expected at least 0")
-    return n, columns.columns, absent
+    columns: list[tuple[str, NDArray[np.float64]]] = []
+    for name, keys, values in given:
+        if len(values) != n:
+            raise ValueError(f"{name}: {len(values)} values for {n} shots; give one for each")
+        columns += zip(keys, np.ascontiguousarray(values.reshape(n, len(keys)).T))
+    return n, columns, absent
 
 
 def _checked(out: Shots, n: int, balls: int, hashes: bool) -> Shots:
     for name, wanted in Shots.empty(0, balls, hashes=hashes)._asdict().items():
-        if name == "messages":
-            continue
-        given = getattr(out, name)
-        if wanted is None:
-            out = out._replace(hash=None)
-            continue
-        shape = (n, *wanted.shape[1:])
-        if (
-            given is None
-            or given.shape != shape
-            or given.dtype != wanted.dtype
-            or not given.flags.c_contiguous
-            or not given.flags.writeable
-        ):
-            raise ValueError(f"out.{name}: expected a writable contiguous array of {wanted.dtype} with the shape {shape}")
-    return out
+        if isinstance(wanted, np.ndarray):
+            check_output(f"out.{name}", getattr(out, name), (n, *wanted.shape[1:]), wanted.dtype)
+    return out if hashes else out._replace(hash=None)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom import _carom
+from carom._arguments import checked
 from carom._record import _output
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ def _states(rvw: ArrayLike, inner: tuple[int, ...]) -> NDArray[np.float64]:
     return states
 
 
+@checked
 def ball_ball(
     rvw: ArrayLike,
     *,
@@ -87,6 +89,7 @@ def _unit(normal: ArrayLike, count: int) -> NDArray[np.float64]:
     return np.ascontiguousarray(np.where(np.abs(length - 1.0) <= 4.0 * _EPSILON, normals, normals / length))
 
 
+@checked
 def ball_cushion(
     rvw: ArrayLike,
     normal: ArrayLike,

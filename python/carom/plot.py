@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom._arguments import checked
 from carom._record import Record
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ _HOLE = "#26221f"
 _POINTS = 13
 
 
+@checked
 def table(record: Record, *, at: float | None = None, trails: bool = True, ax: Axes | None = None) -> Axes:
     """A plan of the table, as the camera "top" sees it: y to the right, x downwards, both in m.
 
@@ -52,6 +54,7 @@ def table(record: Record, *, at: float | None = None, trails: bool = True, ax: A
     return axes
 
 
+@checked
 def speeds(record: Record, *, ax: Axes | None = None) -> Axes:
     """Speed [m/s] of every ball that moves, over time [s]."""
     axes: Axes = _axes(ax, (9.0, 4.0))
@@ -63,6 +66,7 @@ def speeds(record: Record, *, ax: Axes | None = None) -> Axes:
     return axes
 
 
+@checked
 def energy(record: Record, *, ax: Axes | None = None) -> Axes:
     """Kinetic energy [J] of all balls over time [s]: of their travel, m v^2 / 2, and on top of their rotation, m R^2 w^2 / 5."""
     axes: Axes = _axes(ax, (9.0, 4.0))

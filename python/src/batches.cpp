@@ -2,25 +2,23 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <string_view>
-#include <unordered_map>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "batches.h"
 #include "carom/engine/batch.h"
+#include "carom/engine/sweep_columns.h"
 #include "carom/engine/variation.h"
 #include "native.h"
 
@@ -38,101 +36,79 @@ std::vector<Failure> many(const NativeScene& native, std::size_t shots, const st
 }
 
 struct NativeSweep {
+    explicit NativeSweep(Variation of) : variation(std::move(of)), columns(sweep_columns(variation)) {}
     Variation variation;
+    std::vector<SweepColumn> columns;
 };
 
 NativeSweep make_sweep(const NativeScene& scene, const std::vector<std::string>& rules, std::uint64_t seed) {
     try {
-        return {Variation::from_text(scene.source, scene.scene->file, rules, seed)};
+        return NativeSweep(Variation::from_text(scene.source, scene.scene->file, rules, seed));
     } catch (const VariationError& error) {
         throw nb::value_error(error.what());
     }
 }
 
-/// The place of a key among those of a sweep, and where its draws go.
-using FloatDraws = std::pair<std::size_t, Flat<double>>;
-using WholeDraws = std::pair<std::size_t, Flat<std::int64_t>>;
-/// Of a list: for every shot the place of its text among the texts that came, in the order in which they came first.
-using ListDraws = std::pair<std::size_t, Flat<std::int32_t>>;
-
-/// Reads the draws of one key, which are every `keys`-th of `texts`; a draw is written so that it reads back to the same bits.
+/// An array of numpy's that has the values of a list.
 template <class T>
-void read_draws(const std::vector<std::string>& texts, std::size_t key, std::size_t keys, T* out) {
-    for (std::size_t i = key; i < texts.size(); i += keys)
-        std::from_chars(texts[i].data(), texts[i].data() + texts[i].size(), *out++);
+nb::any array_of(std::vector<T>&& list) {
+    auto* const kept = new std::vector<T>(std::move(list));
+    const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+    return nb::borrow<nb::any>(
+        nb::cast(nb::ndarray<nb::numpy, T, nb::ndim<1>>(kept->data(), {kept->size()}, owner)));
 }
 
-std::vector<std::string> read_list_draws(const std::vector<std::string>& texts, std::size_t key,
-                                         std::size_t keys, std::int32_t* out) {
-    std::vector<std::string> names;
-    std::unordered_map<std::string_view, std::int32_t> places;
-    for (std::size_t i = key; i < texts.size(); i += keys) {
-        const auto [place, is_new] = places.emplace(texts[i], static_cast<std::int32_t>(names.size()));
-        if (is_new) names.push_back(texts[i]);
-        *out++ = place->second;
-    }
-    return names;
+/// A column: its array, and the texts where it has the places of texts.
+std::pair<nb::any, std::vector<std::string>> column_of(ValueKind kind, ColumnValues&& values) {
+    if (kind == ValueKind::kNumber) return {array_of(std::move(values.numbers)), {}};
+    if (kind == ValueKind::kWhole) return {array_of(std::move(values.wholes)), {}};
+    return {array_of(std::move(values.places)), std::move(values.texts)};
 }
 
-/// @return why shots have no result, and the texts of each of `lists`
-std::pair<std::vector<Failure>, std::vector<std::vector<std::string>>> sweep_shots(
+/// @return why shots have no result, and the columns
+std::pair<std::vector<Failure>, std::vector<std::pair<nb::any, std::vector<std::string>>>> sweep_shots(
     const NativeSweep& sweep, std::uint64_t first, std::size_t shots, int threads, const ShotArrays& out,
-    const std::vector<FloatDraws>& floats, const std::vector<WholeDraws>& wholes,
-    const std::vector<ListDraws>& lists, std::uint64_t hash_every) {
+    std::uint64_t hash_every) {
     const kernel::Isa isa = chosen_isa();
-    const std::size_t keys = sweep.variation.keys().size();
-    std::vector<std::vector<std::string>> names;
-    std::vector<Failure> failures =
-        played(out, sweep.variation.base().ball.size(), threads,
-               [&](BatchOptions& options, const BatchArrays& into) {
-                   options.hash_every = std::max<std::uint64_t>(hash_every, 1);
-                   std::vector<std::string> texts;
-                   auto messages = simulate_many(sweep.variation, first, shots, isa, options, into, texts);
-                   for (const auto& [key, draws] : floats) read_draws(texts, key, keys, draws.data());
-                   for (const auto& [key, draws] : wholes) read_draws(texts, key, keys, draws.data());
-                   for (const auto& [key, draws] : lists)
-                       names.push_back(read_list_draws(texts, key, keys, draws.data()));
-                   return messages;
-               });
-    return {std::move(failures), std::move(names)};
+    const Variation& variation = sweep.variation;
+    std::vector<ColumnValues> values;
+    std::vector<Failure> failures = played(
+        out, variation.base().ball.size(), threads, [&](BatchOptions& options, const BatchArrays& into) {
+            options.hash_every = std::max<std::uint64_t>(hash_every, 1);
+            std::vector<std::string> draws;
+            auto messages = simulate_many(variation, first, shots, isa, options, into, draws);
+            values = sweep_values(variation, first, shots, draws, into, messages);
+            return messages;
+        });
+    std::vector<std::pair<nb::any, std::vector<std::string>>> columns;
+    for (std::size_t k = 0; k < values.size(); ++k)
+        columns.push_back(column_of(sweep.columns[k].kind, std::move(values[k])));
+    return {std::move(failures), std::move(columns)};
 }
 
-std::vector<std::string> pocket_ids(const NativeScene& scene) {
-    std::vector<std::string> ids;
-    for (const Pocket& pocket : scene.scene->table.pockets) ids.push_back(pocket.id);
-    return ids;
+/// Name, kind, unit, and whether shots without a result have none.
+std::vector<std::tuple<std::string, std::string, std::string, bool>> column_rows(const NativeSweep& sweep) {
+    std::vector<std::tuple<std::string, std::string, std::string, bool>> rows;
+    for (const SweepColumn& column : sweep.columns) {
+        const char* const kind = column.kind == ValueKind::kNumber  ? "float64"
+                                 : column.kind == ValueKind::kWhole ? "int64"
+                                                                    : "text";
+        rows.emplace_back(column.name, kind, column.unit, column.of_result);
+    }
+    return rows;
 }
 
 }  // namespace
 
 void add_batches(nb::module_& m) {
-    nb::class_<ShotArrays>(m, "ShotArrays")
-        .def(
-            "__init__",
-            [](ShotArrays* self, Flat<std::uint8_t> status, Flat<double> duration, Flat<std::int64_t> events,
-               Flat<std::int32_t> first_hit, Flat<std::int32_t> contacts,
-               Flat<std::int32_t> approach_cushions, Flat<double> xy, Flat<std::int32_t> pocket,
-               Flat<std::int32_t> fell, Flat<std::int32_t> cushions, Flat<std::uint64_t> hash) {
-                new (self) ShotArrays{std::move(status),    std::move(duration), std::move(events),
-                                      std::move(first_hit), std::move(contacts), std::move(approach_cushions),
-                                      std::move(xy),        std::move(pocket),   std::move(fell),
-                                      std::move(cushions),  std::move(hash)};
-            },
-            nb::arg("status").noconvert(), nb::arg("duration").noconvert(), nb::arg("events").noconvert(),
-            nb::arg("first_hit").noconvert(), nb::arg("contacts").noconvert(),
-            nb::arg("approach_cushions").noconvert(), nb::arg("xy").noconvert(),
-            nb::arg("pocket").noconvert(), nb::arg("fell").noconvert(), nb::arg("cushions").noconvert(),
-            nb::arg("hash").noconvert());
     m.def("simulate_many", many, nb::arg("scene"), nb::arg("shots"), nb::arg("columns"), nb::arg("absent"),
-          nb::arg("until").none(), nb::arg("max_events").none(), nb::arg("threads"), nb::arg("out"));
+          nb::arg("until").none(), nb::arg("max_events").none(), nb::arg("threads"),
+          nb::arg("out").noconvert());
     nb::class_<NativeSweep>(m, "Sweep")
-        .def_prop_ro("keys", [](const NativeSweep& s) { return s.variation.keys(); })
-        .def_prop_ro("fingerprint", [](const NativeSweep& s) { return s.variation.fingerprint(); })
-        .def("unit", [](const NativeSweep& s, std::size_t key) { return s.variation.unit(key); })
-        .def("play", sweep_shots, nb::arg("first"), nb::arg("shots"), nb::arg("threads"), nb::arg("out"),
-             nb::arg("floats"), nb::arg("wholes"), nb::arg("lists"), nb::arg("hash_every"));
+        .def_prop_ro("columns", column_rows)
+        .def("play", sweep_shots, nb::arg("first"), nb::arg("shots"), nb::arg("threads"),
+             nb::arg("out").noconvert(), nb::arg("hash_every"));
     m.def("make_sweep", make_sweep);
-    m.def("pocket_ids", pocket_ids);
 }
 
 }  // namespace carom::python

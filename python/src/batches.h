@@ -1,6 +1,8 @@
 // Arrays of batches, and how a batch is played without the GIL.
 #pragma once
 
+#include <nanobind/stl/tuple.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +11,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,34 +20,31 @@
 
 namespace carom::python {
 
-/// Arrays of the caller's, contiguous, of n and of n x balls (x and y alternate). Shots in _simulate.py makes and checks them.
-struct ShotArrays {
-    Flat<std::uint8_t> status;
-    Flat<double> duration;
-    Flat<std::int64_t> events;
-    Flat<std::int32_t> first_hit, contacts, approach_cushions;
-    Flat<double> xy;
-    Flat<std::int32_t> pocket, fell, cushions;
-    Flat<std::uint64_t> hash;  ///< empty: not wanted
+/// Arrays of the caller's, contiguous, of n and of n x balls (x and y alternate), in the order of Shots in _simulate.py, which makes and
+/// checks them: status, duration, events, first_hit, contacts, approach_cushions, xy, pocket, fell, cushions, hash (empty: not wanted).
+using ShotArrays = std::tuple<Flat<std::uint8_t>, Flat<double>, Flat<std::int64_t>, Flat<std::int32_t>,
+                              Flat<std::int32_t>, Flat<std::int32_t>, Flat<double>, Flat<std::int32_t>,
+                              Flat<std::int32_t>, Flat<std::int32_t>, Flat<std::uint64_t>>;
 
-    BatchArrays arrays() const {
-        BatchArrays out;
-        out.status = reinterpret_cast<ShotStatus*>(status.data());
-        out.duration = duration.data();
-        out.events = events.data();
-        out.first_hit = first_hit.data();
-        out.contacts = contacts.data();
-        out.approach_cushions = approach_cushions.data();
-        out.x = xy.data();
-        out.y = xy.data() + 1;
-        out.place_stride = 2;
-        out.pocket = pocket.data();
-        out.fell = fell.data();
-        out.cushions = cushions.data();
-        if (hash.size() > 0) out.hash = hash.data();
-        return out;
-    }
-};
+inline BatchArrays batch_arrays(const ShotArrays& arrays) {
+    const auto& [status, duration, events, first_hit, contacts, approach_cushions, xy, pocket, fell, cushions,
+                 hash] = arrays;
+    BatchArrays out;
+    out.status = reinterpret_cast<ShotStatus*>(status.data());
+    out.duration = duration.data();
+    out.events = events.data();
+    out.first_hit = first_hit.data();
+    out.contacts = contacts.data();
+    out.approach_cushions = approach_cushions.data();
+    out.x = xy.data();
+    out.y = xy.data() + 1;
+    out.place_stride = 2;
+    out.pocket = pocket.data();
+    out.fell = fell.data();
+    out.cushions = cushions.data();
+    if (hash.size() > 0) out.hash = hash.data();
+    return out;
+}
 
 using Column = std::pair<std::string, Flat<const double>>;
 /// A shot without a result, and why it has none.
@@ -53,7 +53,7 @@ using Failure = std::pair<std::size_t, std::string>;
 /// Plays a batch without the GIL. Ctrl-C ends it.
 template <class Play>
 std::vector<Failure> played(const ShotArrays& arrays, std::size_t balls, int threads, Play&& play) {
-    const BatchArrays out = arrays.arrays();
+    const BatchArrays out = batch_arrays(arrays);
     SignalWatch watch;
     BatchOptions options;
     options.threads = threads;

@@ -37,18 +37,6 @@ using VerdictRow = std::tuple<std::vector<Two<std::string>>, int, int, std::vect
 using LegalRow = std::tuple<std::vector<std::string>, std::vector<std::string>, std::vector<std::string>,
                             std::string, bool>;
 
-/// The value of this name. @throws nb::value_error that lists those there are
-template <class E>
-E value_of(const char* what, const std::string& text) {
-    const auto names = names_of(E{});
-    const auto found = std::find(names.begin(), names.end(), text);
-    if (found != names.end()) return static_cast<E>(found - names.begin());
-    std::string known;
-    for (const char* each : names) known += (known.empty() ? "" : ", ") + std::string(each);
-    throw nb::value_error(
-        ("there is no " + std::string(what) + " \"" + text + "\"; there are: " + known).c_str());
-}
-
 StateRow row_of(const games::State& s) {
     return {name(s.game),
             s.turn,

@@ -21,13 +21,6 @@
 namespace carom::python {
 namespace {
 
-games::Game game_of(const std::string& name) {
-    const auto names = names_of(games::Game());
-    const auto at = std::find(names.begin(), names.end(), name);
-    if (at == names.end()) throw nb::value_error(("there is no game " + name).c_str());
-    return static_cast<games::Game>(at - names.begin());
-}
-
 /// Plays and judges n shots without the GIL: simulate_many, and beside it arrays of n and of n x balls (x and y in turns), as
 /// games::JudgedArrays has them.
 std::vector<Failure> judge_many(const NativeScene& native, const std::string& name, std::size_t shots,
@@ -39,7 +32,7 @@ std::vector<Failure> judge_many(const NativeScene& native, const std::string& na
     for (const std::size_t size : {group.size(), foul.size(), points.size(), goes_on.size(),
                                    xy.size() / (2 * native.scene->ball.size())})
         if (size != shots) throw nb::value_error("expected arrays of as many shots");
-    const games::Game game = game_of(name);
+    const games::Game game = value_of<games::Game>("game", name);
     const games::JudgedArrays judged = {xy.data(), group.data(), foul.data(), points.data(), goes_on.data()};
     return played_columns(native, columns, absent, std::nullopt, max_events, threads, out,
                           [&](const Scene& scene, std::span<const BatchColumn> list, kernel::Isa isa,
@@ -52,7 +45,7 @@ std::vector<Failure> judge_many(const NativeScene& native, const std::string& na
 void legal_many(const NativeScene& native, const std::string& game, const Flat<const double>& xy,
                 const Flat<const std::int32_t>& group, const Flat<std::uint8_t>& out) {
     const std::vector<BallStart>& balls = native.scene->ball;
-    const games::Game of = game_of(game);
+    const games::Game of = value_of<games::Game>("game", game);
     if (xy.size() != 2 * out.size() || out.size() != group.size() * balls.size())
         throw nb::value_error("expected arrays of as many tables");
     std::fill_n(out.data(), out.size(), std::uint8_t{0});
@@ -74,21 +67,16 @@ void legal_many(const NativeScene& native, const std::string& game, const Flat<c
     }
 }
 
-std::vector<std::string> foul_names() {
-    const auto names = names_of(games::Foul());
-    return {names.begin(), names.end()};
-}
-
 }  // namespace
 
 void add_judged(nb::module_& m) {
     m.def("judge_many", judge_many, nb::arg("scene"), nb::arg("game"), nb::arg("shots"), nb::arg("columns"),
-          nb::arg("absent"), nb::arg("max_events").none(), nb::arg("threads"), nb::arg("out"),
+          nb::arg("absent"), nb::arg("max_events").none(), nb::arg("threads"), nb::arg("out").noconvert(),
           nb::arg("xy").noconvert(), nb::arg("group").noconvert(), nb::arg("foul").noconvert(),
           nb::arg("points").noconvert(), nb::arg("goes_on").noconvert());
     m.def("legal_many", legal_many, nb::arg("scene"), nb::arg("game"), nb::arg("xy").noconvert(),
           nb::arg("group").noconvert(), nb::arg("out").noconvert());
-    m.def("foul_names", foul_names);
+    m.def("foul_names", names_in_files<games::Foul>);
 }
 
 }  // namespace carom::python

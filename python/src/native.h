@@ -5,11 +5,13 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "carom/engine/record.h"
 #include "carom/engine/scene.h"
@@ -33,6 +35,25 @@ struct NativeRecord {
 /// A contiguous array of the caller's, to read or to fill.
 template <class T>
 using Flat = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+/// The names of an enumeration in the order of its values.
+template <class E>
+std::vector<std::string> names_in_files() {
+    const auto names = names_of(E());
+    return {names.begin(), names.end()};
+}
+
+/// The value of this name. @throws nb::value_error that lists those there are
+template <class E>
+E value_of(const char* what, const std::string& text) {
+    const auto names = names_of(E());
+    const auto found = std::find(names.begin(), names.end(), text);
+    if (found != names.end()) return static_cast<E>(found - names.begin());
+    std::string known;
+    for (const char* each : names) known += (known.empty() ? "" : ", ") + std::string(each);
+    throw nb::value_error(
+        ("there is no " + std::string(what) + " \"" + text + "\"; there are: " + known).c_str());
+}
 
 /// The scene that was played, or `other`. @throws nb::value_error where there is none, or one with other balls
 const Scene& scene_of(const NativeRecord& record, const NativeScene* other);

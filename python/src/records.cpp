@@ -3,6 +3,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,7 @@
 #include "carom/engine/simulate.h"
 #include "carom/render/draw_list.h"
 #include "native.h"
+#include "page/shot_page.h"
 
 namespace carom::python {
 namespace {
@@ -63,17 +65,9 @@ int ball_count(const NativeRecord& r) {
 /// Nine numbers and a kind of motion for every ball at every time. Empty outputs are not wanted.
 void states(const NativeRecord& r, const Flat<const double>& times, const Flat<double>& rvw,
             const Flat<std::uint8_t>& kinds) {
-    double* at = rvw.size() > 0 ? rvw.data() : nullptr;
-    std::uint8_t* kind = kinds.size() > 0 ? kinds.data() : nullptr;
     const nb::gil_scoped_release no_gil;
-    for (std::size_t k = 0; k < times.size(); ++k) {
-        for (int ball = 0; ball < ball_count(r); ++ball) {
-            const BallState s = r.record->state_at(ball, times.data()[k]);
-            if (kind != nullptr) *kind++ = static_cast<std::uint8_t>(s.state);
-            if (at == nullptr) continue;
-            for (const Vec3* row : {&s.position, &s.velocity, &s.spin}) at = std::copy_n(row->data(), 3, at);
-        }
-    }
+    r.record->states_at({times.data(), times.size()}, rvw.size() > 0 ? rvw.data() : nullptr,
+                        kinds.size() > 0 ? kinds.data() : nullptr);
 }
 
 void orientations(const NativeRecord& r, const Flat<const double>& times, const Flat<double>& out) {
@@ -137,12 +131,6 @@ std::vector<std::string> event_names() {
     return names;
 }
 
-template <class E>
-std::vector<std::string> names_in_files() {
-    const auto names = names_of(E());
-    return {names.begin(), names.end()};
-}
-
 }  // namespace
 
 const Scene& scene_of(const NativeRecord& r, const NativeScene* other) {
@@ -191,6 +179,14 @@ void add_records(nb::module_& m) {
                  const nb::gil_scoped_release no_gil;
                  return record_json(*r.record);
              })
+        .def(
+            "page",
+            [](const NativeRecord& r, const NativeRecord* second) {
+                const nb::gil_scoped_release no_gil;
+                return tools::shot_page(*r.record, second == nullptr ? nullptr : second->record.get(),
+                                        nullptr, {"a shot", "record.page()", CAROM_VERSION});
+            },
+            nb::arg("second").none())
         .def_prop_ro("scene",
                      [](const NativeRecord& r) -> std::optional<NativeScene> {
                          if (r.scene == nullptr) return std::nullopt;

@@ -23,7 +23,7 @@ struct Stopped {};
 
 /// Of a run that cannot go on: the record so far, if there is one, becomes part of the exception.
 [[noreturn]] void raise_simulation_error(const std::string& why, const nb::object& record) {
-    const nb::object error = nb::module_::import_("carom._errors").attr("simulation_error")(why, record);
+    const nb::object error = nb::module_::import_("carom._simulate").attr("simulation_error")(why, record);
     PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
     throw nb::python_error();
 }
@@ -62,7 +62,7 @@ RecordObject simulate_one(const NativeScene& native, std::optional<double> until
         record = error.so_far();
     }
     for (const std::string& warning : warnings)
-        if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 2) != 0) throw nb::python_error();
+        if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 3) != 0) throw nb::python_error();
     if (!why.empty())
         raise_simulation_error(why, record ? nb::object(held(record, native.scene)) : nb::none());
     return held(std::move(record), native.scene);

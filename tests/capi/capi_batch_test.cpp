@@ -100,6 +100,20 @@ TEST(CApiBatch, HasTheBitsOfCaromSimulate) {
     EXPECT_EQ(carom_batch_duration(cut.get())[1], 0.5);
 }
 
+TEST(CApiBatch, MoreShotsThanArraysHoldAreRefused) {
+    const char* const key = "cue.speed";
+    const double value = 1.0;
+    carom_batch* batch = nullptr;
+    for (const std::size_t shots : {SIZE_MAX, SIZE_MAX / 2, (std::size_t{1} << 31) + 1})
+        for (const std::size_t keys : {0, 1}) {
+            EXPECT_EQ(carom_simulate_many(scene_of("side_bank").get(), shots, keys, &key, &value, -1.0, 1, 0,
+                                          &batch),
+                      CAROM_BAD_ARGUMENT);
+            EXPECT_EQ(std::string(carom_last_error()),
+                      "shots = " + std::to_string(shots) + " is out of range; it must be at most 2147483648");
+        }
+}
+
 TEST(CApiBatch, BadArgumentsAreNamed) {
     const ScenePtr scene = scene_of("draw");
     carom_batch* batch = nullptr;

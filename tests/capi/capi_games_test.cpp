@@ -1,5 +1,6 @@
 // libcarom.so: rules and noise are those of the library.
 #include <gtest/gtest.h>
+#include <climits>
 
 #include <cmath>
 #include <cstdint>
@@ -101,6 +102,20 @@ TEST(CApiGames, AShotIsJudgedAndTheNextOneFollows) {
     EXPECT_EQ(rvw[1], 0.5);
 }
 
+TEST(CApiGames, AVerdictIsOfOneRecord) {
+    const RecordPtr record = played(parsed(kScratch).get());
+    std::string slower = kScratch;
+    slower.replace(slower.find("4.0"), 3, "3.9");
+    const RecordPtr other = played(parsed(slower).get());
+    const VerdictPtr verdict = judged(nine_ball(), record.get());
+    carom_cue cue;
+    carom_cue_init(&cue);
+    const double place[2] = {0.7, 0.5};
+    carom_scene* next = nullptr;
+    EXPECT_EQ(carom_next_shot(other.get(), verdict.get(), 0, &cue, place, &next), CAROM_BAD_ARGUMENT);
+    EXPECT_STREQ(carom_last_error(), "the verdict is of another record; give the record that was judged");
+}
+
 TEST(CApiGames, ABallComesBackToItsSpot) {
     const std::string text =
         "[table]\npreset = \"snooker\"\n[balls]\npreset = \"snooker\"\n[[ball]]\nid = \"cue\"\nposition = "
@@ -157,6 +172,8 @@ TEST(CApiGames, BadArgumentsAreNamed) {
     EXPECT_STREQ(carom_last_error(), "game is 7; it is 0 to 4");
     EXPECT_EQ(carom_game_new(CAROM_SNOOKER, 2, 0, &state), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_game_new(CAROM_SNOOKER, 0, 0, nullptr), CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(carom_game_new(CAROM_THREE_CUSHION, 0, INT_MAX, &state), CAROM_BAD_ARGUMENT);
+    EXPECT_STREQ(carom_last_error(), "target = 2147483647 is out of range; it must be 0 to 1000000000");
     state = nine_ball();
     EXPECT_EQ(carom_legal(&state, 0, nullptr, nullptr, nullptr, nullptr), CAROM_BAD_ARGUMENT);
     const RecordPtr record = played(parsed(kScratch).get());
@@ -165,6 +182,10 @@ TEST(CApiGames, BadArgumentsAreNamed) {
     EXPECT_EQ(carom_judge(&state, record.get(), nullptr, &verdict), CAROM_BAD_ARGUMENT);
     EXPECT_STREQ(carom_last_error(), "the game is over; begin a new one");
     state.over = 0;
+    state.fouls[0] = INT_MAX;
+    EXPECT_EQ(carom_judge(&state, record.get(), nullptr, &verdict), CAROM_BAD_ARGUMENT);
+    EXPECT_STREQ(carom_last_error(), "fouls = 2147483647 is out of range; it must be 0 to 1000000000");
+    state.fouls[0] = 0;
     state.group[1] = 3;
     EXPECT_EQ(carom_judge(&state, record.get(), nullptr, &verdict), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_judge(nullptr, record.get(), nullptr, &verdict), CAROM_BAD_ARGUMENT);

@@ -278,8 +278,15 @@ bool is_open(const std::string& family, std::uint64_t seed) {
 /// A small share of the families for long campaigns (lab/measure/campaign).
 class Families : public testing::TestWithParam<std::string> {};
 
+// A glancing contact of a cluster opened in the map and closed on in the loop: of raised breaks, one of thirty stood
+// still at an instant. tools/slow runs 20 000.
+std::uint64_t seeds_of(const std::string& family) {
+    if (family == "raised_break") return kScenes / 20;
+    return natural_shot(family, 0) ? 50 : 10;
+}
+
 TEST_P(Families, KeepTheLaws) {
-    const std::uint64_t seeds = natural_shot(GetParam(), 0) ? 50 : 10;
+    const std::uint64_t seeds = seeds_of(GetParam());
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         const Scene scene = *family_scene(GetParam(), seed);
         if (is_open(GetParam(), seed)) continue;
@@ -332,14 +339,14 @@ void order_changes_nothing(const std::string& family, std::uint64_t seed) {
 // Of events at one instant the first depended on matches that had been played with earlier motions, and so on
 // the list of balls: in seed 33 of rack_in_box the events came in another order.
 TEST(SceneFamilies, TheOrderOfTheBallsChangesNothing) {
-    for (const char* family :
-         {"rack_in_box", "narrow_channel", "rings", "touching", "between_frozen", "eight_ball_break"})
+    for (const char* family : {"rack_in_box", "narrow_channel", "rings", "touching", "between_frozen",
+                               "eight_ball_break", "raised_break"})
         for (std::uint64_t seed = 0; seed < 20; ++seed) order_changes_nothing(family, seed);
     order_changes_nothing("rack_in_box", 33);
 }
 
 TEST(SceneFamilies, AreKnownByName) {
-    EXPECT_EQ(families().size(), 6u + 3u * 15u);
+    EXPECT_EQ(families().size(), 7u + 3u * 15u);
     EXPECT_FALSE(family_scene("rings/huge", 0));
     EXPECT_FALSE(family_scene("ring", 0));
     EXPECT_EQ(*family_scene("rings/wide", 7), *family_scene("rings/wide", 7));

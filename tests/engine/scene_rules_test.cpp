@@ -31,6 +31,30 @@ using carom::test::toml_files;
 
 const std::string kBall = "[[ball]]\nposition = [0.6, 0.5]\n";
 
+// What a number of any size is read as: the nearest double, or a message with the digits as they are written.
+TEST(Numbers, AreReadOrRefusedWithTheirDigits) {
+    constexpr char kOut[] = " is out of range; it must be at least 0 and at most 1000000 m/s";
+    const struct {
+        std::string written, says;
+    } kCases[] = {
+        {"1000000", ""},
+        {"1000001", " = 1000001" + std::string(kOut)},
+        {"4503599627370497", " = 4503599627370497" + std::string(kOut)},
+        {"9007199254740993", " = 9007199254740993" + std::string(kOut)},
+        {"-9007199254740993", " = -9007199254740993" + std::string(kOut)},
+        {"9223372036854775807", " = 9223372036854775807" + std::string(kOut)},
+        {"1e300", " = 1e+300" + std::string(kOut)},
+    };
+    for (const auto& c : kCases) {
+        const std::string text = kBall + "[cue]\nspeed = " + c.written;
+        EXPECT_EQ(error_of(text), c.says.empty() ? "" : "s.toml:4:9: cue.speed" + c.says);
+    }
+    EXPECT_EQ(
+        error_of("[[ball]]\nposition = [0.6, 9007199254740993]"),
+        "s.toml:2:18: ball.position[1] = 9007199254740993 is out of range; it must be at least -1000000 and "
+        "at most 1000000 m");
+}
+
 // The first line of each file is a comment with the whole message. `*` stands for what toml++ words or counts
 // differently from version to version (syntax errors), and for lists of keys or choices, which
 // scene_docs_test compares with the schema. The list of the sections is whole in unknown_section.toml.

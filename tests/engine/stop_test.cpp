@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "carom/engine/tolerances.h"
 #include "support/engine_cases.h"
 
 namespace carom::test {
@@ -135,6 +137,42 @@ TEST(Stop, ANumberOfEventsThatIsReachedIsTheEnd) {
     const Record record = run_verified(scene);
     EXPECT_EQ(record.stopped, StopReason::kEvents);
     EXPECT_EQ(record.events.size(), 3u);
+}
+
+// A ball that all but never stops bouncing. What a run may hold has a limit, also where the scene names none or a larger one.
+TEST(Stop, ARunWithoutEndHasALimitOfEvents) {
+    Scene scene = empty_scene();
+    scene.balls.e_t = 0.9999999;
+    add_ball(scene, "a", 0.5, 0.5);
+    scene.ball[0].height = 0.1;
+    scene.ball[0].position.z() += 0.1;
+    RunBuffers buffers;
+    Outcome outcome;
+    const struct {
+        std::optional<std::int64_t> events;
+        const char *at, *why;
+    } kCases[] = {
+        {std::nullopt,
+         " s after 1000000 events: ", "add [stop] with events if more shall come, or with time"},
+        {INT64_MAX, " s after 10000000 events: ", "no run may have more events"},
+    };
+    for (const auto& c : kCases) {
+        scene.stop.events = c.events;
+        try {
+            simulate(plan_of(scene), buffers, outcome);
+            ADD_FAILURE() << "no limit";
+        } catch (const SimulationError& error) {
+            const std::string text = error.what();
+            EXPECT_NE(text.find(c.at), std::string::npos) << text;
+            EXPECT_NE(text.find(c.why), std::string::npos) << text;
+            EXPECT_NE(text.find("last events:\n"), std::string::npos) << text;
+            EXPECT_NE(text.find("\n  a airborne 0.5 0.5 "), std::string::npos) << text;
+        }
+    }
+    scene.stop.events = kUsualEvents + 1;
+    simulate(plan_of(scene), buffers, outcome);
+    EXPECT_EQ(outcome.stopped, StopReason::kEvents);
+    EXPECT_EQ(outcome.events, kUsualEvents + 1);
 }
 
 TEST(Stop, RestComesBeforeTheTime) {

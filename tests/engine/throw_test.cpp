@@ -95,18 +95,18 @@ TEST(Throw, NoSlipLimit) {
 // The friction itself.
 TEST(Throw, FrictionFallsWithTheSlip) {
     BallParams p = pool_balls();
-    EXPECT_EQ(ball_friction(p, 0.0), p.mu_b);
-    EXPECT_EQ(ball_friction(p, 3.0), p.mu_b);
+    EXPECT_EQ(p.ball_friction()(0.0), p.mu_b);
+    EXPECT_EQ(p.ball_friction()(3.0), p.mu_b);
     p.mu_b = 9.951e-3;
     p.mu_b_more = 0.108;
     p.mu_b_fall = 1.088;
-    EXPECT_EQ(ball_friction(p, 0.0), 9.951e-3 + 0.108);
+    EXPECT_EQ(p.ball_friction()(0.0), 9.951e-3 + 0.108);
     for (const double u : {0.1, 1.0, 10.0})
-        EXPECT_NEAR(ball_friction(p, u), 9.951e-3 + 0.108 * std::exp(-1.088 * u), 1e-16);
+        EXPECT_NEAR(p.ball_friction()(u), 9.951e-3 + 0.108 * std::exp(-1.088 * u), 1e-16);
     // Marlow's points, as TP A.14 quotes them.
-    EXPECT_NEAR(ball_friction(p, 0.07), 0.11, 0.01);
-    EXPECT_NEAR(ball_friction(p, 0.71), 0.06, 0.001);
-    EXPECT_NEAR(ball_friction(p, 7.1), 0.01, 0.0001);
+    EXPECT_NEAR(p.ball_friction()(0.07), 0.11, 0.01);
+    EXPECT_NEAR(p.ball_friction()(0.71), 0.06, 0.001);
+    EXPECT_NEAR(p.ball_friction()(7.1), 0.01, 0.0001);
 }
 
 // In the model mathavan the fit enters by the friction that the impact takes.
@@ -120,7 +120,7 @@ TEST(Throw, MathavanTakesTheFrictionOfItsSlip) {
     add_ball(fit, "a", 0.0, 0.0, 1.0, 0.0);
     add_ball(fit, "b", R, R * std::sqrt(3.0));  // cut of 60 degrees: slip sin(60)
     Scene constant = fit;
-    constant.balls.mu_b = ball_friction(fit.balls, std::sqrt(0.75));
+    constant.balls.mu_b = fit.balls.ball_friction()(std::sqrt(0.75));
     constant.balls.mu_b_more = 0.0;
     const Record a = simulate(plan_of(fit)), b = simulate(plan_of(constant));
     EXPECT_LE((a.tracks[1].segments.back().v - b.tracks[1].segments.back().v).norm(), 1e-14);

@@ -1,6 +1,7 @@
 // Many scenes from one file: keys, distributions, and that a shot depends on nothing but what it should.
 #include "carom/engine/variation.h"
 #include "carom/engine/cushion.h"
+#include "carom/engine/sweep_columns.h"
 
 #include <gtest/gtest.h>
 
@@ -119,6 +120,53 @@ TEST_F(VariationTest, UnitsAreThoseOfTheKeys) {
     const Variation breaks(rack, {"rack.gap=uniform(0,1e-4)", "rack.seed=integer(1,9)"}, 1);
     EXPECT_EQ(breaks.unit(0), "m");
     EXPECT_EQ(breaks.unit(1), "");
+}
+
+TEST_F(VariationTest, ColumnsOfASweepHaveTheirKindsAndValues) {
+    const Variation v = vary({"cue.speed=list(0x2,2.5)", "stop.events=list(0b11,0o17)",
+                              "physics.cushion=list(\"none\",\"smooth\")", "cue.aim_deg=uniform(80,90)",
+                              "cue.elevation_deg=integer(0,1)"});
+    const std::vector<ValueKind> kinds = {ValueKind::kNumber, ValueKind::kWhole, ValueKind::kText,
+                                          ValueKind::kNumber, ValueKind::kWhole};
+    const std::vector<SweepColumn> columns = sweep_columns(v);
+    std::string names;
+    for (const SweepColumn& column : columns) names += column.name + " " + column.unit + ",";
+    EXPECT_EQ(
+        names,
+        "shot ,cue.speed m/s,stop.events ,physics.cushion ,cue.aim_deg degrees,cue.elevation_deg degrees,"
+        "outcome ,duration s,events ,first_contact ,contacts ,cushions ,pocketed ,cue.x m,cue.y m,cue.pocket "
+        ",ball.2.x m,ball.2.y m,ball.2.pocket ,message ,");
+    for (std::size_t k = 0; k < kinds.size(); ++k) EXPECT_EQ(columns[1 + k].kind, kinds[k]) << k;
+    constexpr std::size_t kShots = 3;
+    ShotStatus status[kShots] = {ShotStatus::kAtRest, ShotStatus::kFailed, ShotStatus::kEvents};
+    double duration[kShots] = {1.5, 0, 2}, place[2 * kShots] = {1, 2, 0, 0, 3, 4};
+    std::int64_t events[kShots] = {7, 0, 8};
+    std::int32_t hit[kShots] = {1, -1, -1}, none[kShots] = {0, 0, 0};
+    std::int32_t pocket[2 * kShots] = {0, -1, -1, -1, kOffTable, 0}, fell[2 * kShots] = {0, -1, -1, -1, 1, 0};
+    BatchArrays out{status, duration, events, hit,  none,    none,   place,
+                    place,  1,        pocket, fell, nullptr, nullptr};
+    const std::vector<std::string> draws = {"0x2", "0b11", "none", "80.5", "0",    "2.5", "0o17", "smooth",
+                                            "81",  "1",    "2.5",  "0b11", "none", "82",  "0"};
+    const Batch::Message why[] = {{1, "it fell over"}};
+    const std::vector<ColumnValues> values = sweep_values(v, 40, kShots, draws, out, why);
+    ASSERT_EQ(values.size(), columns.size());
+    const auto text = [&](std::size_t column, std::size_t shot) {
+        const std::int32_t at = values[column].places[shot];
+        return at < 0 ? std::string("(none)") : values[column].texts[static_cast<std::size_t>(at)];
+    };
+    EXPECT_EQ(values[0].wholes, (std::vector<std::int64_t>{40, 41, 42}));
+    EXPECT_EQ(values[1].numbers, (std::vector<double>{2, 2.5, 2.5}));
+    EXPECT_EQ(values[2].wholes, (std::vector<std::int64_t>{3, 15, 3}));
+    EXPECT_EQ(values[3].places, (std::vector<std::int32_t>{0, 1, 0}));
+    EXPECT_EQ(values[8].wholes, (std::vector<std::int64_t>{7, 0, 8}));
+    EXPECT_TRUE(std::isnan(values[7].numbers[1]) && std::isnan(values[14].numbers[1]));
+    EXPECT_EQ(values[16].numbers[2], 4.0);
+    std::string said;
+    for (std::size_t shot = 0; shot < kShots; ++shot)
+        for (const std::size_t column : {6, 9, 12, 15, 18, 19}) said += text(column, shot) + "|";
+    const std::string pot = v.base().table.pockets[0].id;
+    EXPECT_EQ(said, "at_rest|ball.2|cue|" + pot + "|||" + "failed|(none)|(none)|(none)|(none)|it fell over|" +
+                        "events||ball.2;cue|out|" + pot + "||");
 }
 
 TEST_F(VariationTest, NormalIsAroundTheNumberOfTheScene) {
@@ -264,6 +312,12 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         {"cue.speed=uniform(2,1)", "needs a <= b"},
         {"cue.speed=uniform(-1e308,1e308)", "b - a is too large"},
         {"cue.speed=uniform(1,nan)", "must be a finite number"},
+        {"cue.speed=uniform(9007199254740993,9007199254740993)",
+         "value 1 of uniform = 9007199254740993 has more digits than a number holds; write "
+         "9007199254740992.0"},
+        {"cue.speed=normal(1,9007199254740993)", "value 2 of normal = 9007199254740993 has more digits"},
+        {"cue.speed=list(9007199254740993)", "shot 0: cue.speed = 9007199254740993 is out of range"},
+        {"cue.speed=integer(1,9007199254740993)", "needs -1000000000 <= a <= b"},
         {"cue.speed=uniform(1,2", "expected uniform(a,b)"},
         {"cue.speed=uniform(1],v=[2)", "cannot read the values"},
         {"cue.speed=gauss(1,2)", "unknown distribution \"gauss\""},

@@ -1,6 +1,9 @@
 // Nine-ball: the sentences of the WPA's Rules of Play (15 March 2016) as shots. A test has the number of its rule.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <climits>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -141,6 +144,32 @@ TEST(NineBall, Rule614ThreeFoulsInARowLoseTheRack) {
     EXPECT_EQ(third.fouls.back(), Foul::kThirdFoul);
     // A fair shot of one's own ends the row.
     EXPECT_EQ(judge(state, fair).next().fouls[0], 0);
+}
+
+TEST(NineBall, NumbersThatWouldOverflowAreRefused) {
+    const Record record = nine_table(1).hit("cue", "2").record();
+    for (std::array<int, 2> State::*const numbers : {&State::points, &State::fouls})
+        for (const int value : {INT_MIN, -1, games::kMostPoints + 1, INT_MAX}) {
+            State state = playing();
+            (state.*numbers)[1] = value;
+            EXPECT_THROW(judge(state, record), std::invalid_argument);
+        }
+}
+
+// An option that brings back a ball, with a record or a scene that does not have it: nothing is read outside.
+TEST(NineBall, AnOptionOfAnotherRecordIsRefused) {
+    const Record record = nine_table(1).hit("cue", "2").pocket("9").record();
+    const Record other = Told().ball("cue", 0.6, 0.3).ball("1", 0.6, 1.0).strike("cue").record();
+    const games::Option option = judge(playing(), record).options.front();
+    ASSERT_EQ(option.respots.size(), 1u);
+    EXPECT_TRUE(games::may_place(record, option, {0.4, 0.4}));
+    EXPECT_THROW(games::may_place(other, option, {0.4, 0.4}), std::invalid_argument);
+    Scene scene;
+    scene.ball.resize(2);
+    scene.ball[1].id = "1";
+    EXPECT_THROW(games::table_after(scene, other, option), std::invalid_argument);
+    EXPECT_THROW(games::table_after(scene, record, option), std::invalid_argument);
+    EXPECT_EQ(games::table_after(scene, other, {}).ball.size(), 2u);
 }
 
 }  // namespace

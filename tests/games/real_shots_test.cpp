@@ -49,7 +49,8 @@ TEST(RealShots, ACushionThatABallIsFrozenToCountsWhenTheBallComesBack) {
     const double R = make_ball_params("carom").R;
     for (const double aim : {180.0, 150.0, 120.0}) {
         // Into the cushion that it touches, across the table, and back.
-        const Record record = simulate(plan_of(carom_scene({R, 1.42}, aim, 5.0)));
+        const Plan plan = plan_of(carom_scene({R, 1.42}, aim, 5.0));
+        const Record record = simulate(plan);
         const Shot shot = shot_of(record);
         std::vector<bool> driven;
         for (const games::Touch& t : shot.touches)
@@ -57,6 +58,22 @@ TEST(RealShots, ACushionThatABallIsFrozenToCountsWhenTheBallComesBack) {
         ASSERT_GE(driven.size(), 3u) << aim;
         EXPECT_FALSE(driven[0]) << aim;
         EXPECT_TRUE(std::all_of(driven.begin() + 1, driven.end(), [](bool d) { return d; })) << aim;
+        // A sweep counts as the game does, whatever it keeps of the shot.
+        int before = 0;
+        std::set<int> met;
+        for (const games::Touch& t : shot.touches) {
+            if (t.ball != shot.struck) continue;
+            if (t.cushion() && met.size() < 2) before += t.driven ? 1 : 0;
+            if (!t.cushion()) met.insert(t.other);
+        }
+        RunBuffers buffers;
+        for (const bool hash : {false, true}) {
+            SimulateOptions options;
+            options.hash = hash;
+            Outcome outcome;
+            simulate(plan, buffers, outcome, options);
+            EXPECT_EQ(outcome.approach_cushions, before) << aim;
+        }
     }
     // A hair's breadth away it is not frozen.
     EXPECT_TRUE(shot_of(simulate(plan_of(carom_scene({R + 1e-5, 1.42}, 180.0, 5.0)))).touches[0].driven);

@@ -49,6 +49,34 @@ def not_printed(wanted, output):
     return ""
 
 
+def refused(error, call, *cases):
+    """Every case of (arguments, message): keywords of `call` in a mapping, or one argument, or a call of its own where `call` is None."""
+    for given, message in cases:
+        with pytest.raises(error, match=message):
+            if call is None:
+                given()
+            elif isinstance(given, dict):
+                call(**given)
+            else:
+                call(given)
+
+
+def stuck_scene(speed):
+    """Balls of different mass that come to rest against each other, for which there is no model, if the first one moves to the right."""
+    import carom
+
+    balls = [{"id": "a", "position": [0, 0], "velocity": [speed, 0]}, {"id": "b", "position": [0.2, 0], "mass": 0.34}]
+    return carom.Scene(table={"cushion": []}, balls={"mu_b": 0, "e_b": 0}, physics={"clusters": "sequential"}, ball=balls)
+
+
+def program_sweep(folder, scene, rules, count, seed):
+    """The header and the rows of `carom sweep`."""
+    words = [word for rule in rules for word in ("--vary", rule)]
+    carom_program("sweep", scene, *words, "--count", count, "--seed", seed, "-o", folder / "s.csv")
+    header, *rows = rows_of(folder / "s.csv")
+    return header, rows
+
+
 @pytest.fixture
 def draw_scene():
     import carom

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from conftest import carom_program, rows_of
+from conftest import program_sweep
 
 import carom
 from carom import games
@@ -31,8 +31,7 @@ def test_noise_is_what_a_sweep_draws(tmp_path):
     scene = carom.Scene(ball=[{"id": "cue", "position": [0.5, 0.5]}], cue={"speed": 4.0, "aim_deg": 30.0, "elevation_deg": 9.0, "offset": [0.1, 0.0]})
     (tmp_path / "s.toml").write_text(scene.text())
     rules = ["cue.speed=normal(0.2)", "cue.aim_deg=normal(0.3)", "cue.elevation_deg=normal(0.4)", "cue.offset.side=normal(0.01)", "cue.offset.height=normal(0.02)"]
-    carom_program("sweep", tmp_path / "s.toml", *[a for rule in rules for a in ("--vary", rule)], "--count", 20, "--seed", 5, "-o", tmp_path / "s.csv")
-    header, *rows = rows_of(tmp_path / "s.csv")
+    header, rows = program_sweep(tmp_path, tmp_path / "s.toml", rules, 20, 5)
     strikes = games.noisy(np.tile([4.0, 30.0, 9.0, 0.1, 0.0], (20, 1)), games.Noise(0.2, 0.3, 0.4, 0.01, 0.02), 5)
     columns = [header.index(rule.split("=")[0]) for rule in rules]
     assert [[float(row[c]) for c in columns] for row in rows] == strikes.tolist()

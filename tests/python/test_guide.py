@@ -28,7 +28,7 @@ def blocks(page):
 
 
 def test_there_are_pages():
-    assert [page.name for page in PAGES] == ["classroom.md", "clusters.md", "games.md", "learning.md", "python.md", "search.md"]
+    assert [page.name for page in PAGES] == ["README.md", "classroom.md", "clusters.md", "games.md", "learning.md", "python.md", "search.md"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import warnings
 
 import carom
 import numpy as np
 import pytest
-from conftest import SOURCE
+from conftest import SOURCE, refused
 
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed: pip install 'carom-billiards[gym]'")
 import carom.gym  # noqa: E402
@@ -26,9 +27,7 @@ def same_bits(a, b):
         return data_equivalence(a, b) and all(same_bits(a[key], b[key]) for key in a)
     if isinstance(a, np.ndarray) and a.dtype != object:
         return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
-    if isinstance(a, np.ndarray):
-        return len(a) == len(b) and all(same_bits(x, y) for x, y in zip(a, b))
-    if isinstance(a, tuple):
+    if isinstance(a, (np.ndarray, tuple)):
         return len(a) == len(b) and all(same_bits(x, y) for x, y in zip(a, b))
     return type(a) is type(b) and a == b
 
@@ -450,17 +449,17 @@ def test_reset_takes_a_scene_and_says_what_is_wrong():
     each = np.array([[[0.5, 0.5], [0.5, 0.9 + 0.1 * i]] for i in range(3)])
     many.reset(options={"xy": each})
     assert np.array_equal(many.states.xy, each)
-    for options, message in [
+    refused(
+        ValueError,
+        lambda **options: env.reset(options=options),
         ({"xz": 1}, "there is no 'xz'; there are scene, xy"),
         ({"xy": np.zeros((3, 2))}, r"xy has the shape \(3, 2\)"),
         ({"xy": [[0.5, 0.5], [0.5, 0.51]]}, "table 0 cannot be played: "),
         ({"xy": each[0], "scene": scene}, "give one"),
         ({"scene": "draw.toml"}, "no carom.Scene"),
         ({"scene": carom.Scene.load(SOURCE / "scenes/eight_ball_break.toml")}, "the scene has a ball"),
-    ]:
-        with pytest.raises(ValueError, match=message):
-            env.reset(options=options)
-    for wrong, message in [
+    )
+    wrong = [
         ({"aim": "up"}, "aim='up'"),
         ({"speed": (2, 1)}, "speed="),
         ({"elevation_deg": 90}, "elevation_deg=90"),
@@ -468,11 +467,9 @@ def test_reset_takes_a_scene_and_says_what_is_wrong():
         ({"render_mode": "human"}, "render_mode='human'"),
         ({"noise": "loud"}, "loud"),
         ({"noise": [0, -1, 0, 0, 0]}, "noise="),
-    ]:
-        with pytest.raises(ValueError, match=message):
-            carom.gym.make_env("Pot", **wrong)
-        with pytest.raises(ValueError, match=message):
-            carom.gym.make_vector_env("Pot", 2, **wrong)
+    ]
+    for make in (carom.gym.make_env, carom.gym.make_vector_env):
+        refused(ValueError, functools.partial(make, "Pot"), *wrong)
     with pytest.raises(ValueError, match="expected the shape"):
         many.step(np.zeros((2, 5), np.float32))
     with pytest.raises(ValueError, match="reset_mask"):

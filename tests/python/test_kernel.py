@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 
 import carom
@@ -89,7 +90,7 @@ def test_defaults_are_pool_classic():
     balls = dict(line.split(" = ") for line in text.splitlines() if " = " in line)
     for function, keys in ((kernel.ball_ball, ("radius", "mass", "mu_s", "mu_b", "e_b")), (kernel.ball_cushion, ("radius", "mass", "mu_s", "e_c", "f_c"))):
         for key in keys:
-            assert function.__kwdefaults__[key] == float(balls[key])
+            assert inspect.signature(function).parameters[key].default == float(balls[key])
 
 
 def test_what_cannot_be_computed_is_refused():

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import functools
+
 import carom
 import numpy as np
 import pytest
 from carom import ShotStatus
+from conftest import refused, stuck_scene
 
 RANDOM = np.random.default_rng(7)
 
@@ -73,13 +76,7 @@ def test_a_bad_shot_has_a_status_and_the_others_are_played(draw_scene):
 
 
 def test_a_run_that_cannot_go_on_is_a_status():
-    scene = carom.Scene(
-        table={"cushion": []},
-        balls={"mu_b": 0, "e_b": 0},
-        physics={"clusters": "sequential"},
-        ball=[{"id": "a", "position": [0, 0], "velocity": [-0.5, 0]}, {"id": "b", "position": [0.2, 0], "mass": 0.34}],
-    )
-    shots = carom.simulate_many(scene, params={"ball.a.velocity.x": [-0.5, 0.5, -0.4]})
+    shots = carom.simulate_many(stuck_scene(-0.5), params={"ball.a.velocity.x": [-0.5, 0.5, -0.4]})
     assert shots.status.tolist() == [0, ShotStatus.FAILED, 0]
     assert shots.messages[1].startswith("simulation stopped at t = ")
 
@@ -140,7 +137,9 @@ def test_limits_are_those_of_a_single_shot(break_scene):
 
 def test_what_does_not_fit_is_refused(draw_scene):
     two = len(draw_scene.ids)
-    for arguments, message in [
+    refused(
+        ValueError,
+        functools.partial(carom.simulate_many, draw_scene),
         (dict(), "nothing that says how many shots"),
         (dict(cue=np.zeros((3, 4))), r"cue: expected the shape \(n, 5\), not \(3, 4\)"),
         (dict(cue=np.zeros((3, 5)), shots=4), "cue: 3 values for 4 shots"),
@@ -149,9 +148,7 @@ def test_what_does_not_fit_is_refused(draw_scene):
         (dict(params={"cue.speed": [1.0]}, cue=np.zeros((1, 5))), "cue.speed: the key is there twice"),
         (dict(shots=1, threads=-1), "threads=-1"),
         (dict(shots=-1), "shots=-1"),
-    ]:
-        with pytest.raises(ValueError, match=message):
-            carom.simulate_many(draw_scene, **arguments)
+    )
 
 
 def test_names_of_the_engine_and_the_enumeration_agree():

@@ -9,7 +9,7 @@ import pickle
 import carom
 import numpy as np
 import pytest
-from conftest import SCENES, SOURCE, carom_program, rows_of
+from conftest import SCENES, SOURCE, carom_program, rows_of, stuck_scene
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda p: p.stem)
@@ -180,15 +180,8 @@ def test_the_table_is_there_for_drawing(break_scene):
 
 
 def test_a_run_that_cannot_go_on_has_its_record():
-    # Balls of different mass that come to rest against each other have no model.
-    scene = carom.Scene(
-        table={"cushion": []},
-        balls={"mu_b": 0, "e_b": 0},
-        physics={"clusters": "sequential"},
-        ball=[{"id": "a", "position": [0, 0], "velocity": [0.5, 0]}, {"id": "b", "position": [0.2, 0], "mass": 0.34}],
-    )
     with pytest.raises(carom.SimulationError, match="simulation stopped at t = ") as caught:
-        carom.simulate(scene)
+        carom.simulate(stuck_scene(0.5))
     record = caught.value.record
     assert record is not None and record.ids == ("a", "b") and 0.2 < record.duration < 0.5
     assert record.states(record.duration)[1, 0, 0] == pytest.approx(0.2, abs=1e-6)

@@ -9,7 +9,7 @@ import tomllib
 import carom
 import numpy as np
 import pytest
-from conftest import BAD_SCENES, SCENES
+from conftest import BAD_SCENES, SCENES, refused
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda p: p.stem)
@@ -114,12 +114,13 @@ def test_replace_takes_the_keys_of_a_sweep(draw_scene):
 
 
 def test_replace_says_what_is_wrong(draw_scene):
-    with pytest.raises(carom.SceneError, match=r"draw.toml: cue.speed = -1 is out of range"):
-        draw_scene.replace(**{"cue.speed": -1})
-    with pytest.raises(carom.SceneError, match=r"draw.toml: ball.nobody.position: it names no \[\[ball\]\]"):
-        draw_scene.replace(**{"ball.nobody.position": [0, 0]})
-    with pytest.raises(carom.SceneError, match="unknown key"):
-        draw_scene.replace(**{"cue.sped": 1})
+    refused(
+        carom.SceneError,
+        draw_scene.replace,
+        ({"cue.speed": -1}, r"draw.toml: cue.speed = -1 is out of range"),
+        ({"ball.nobody.position": [0, 0]}, r"draw.toml: ball.nobody.position: it names no \[\[ball\]\]"),
+        ({"cue.sped": 1}, "unknown key"),
+    )
 
 
 def test_a_file_that_cannot_be_read_is_a_scene_error(tmp_path):

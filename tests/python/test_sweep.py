@@ -6,7 +6,7 @@ import carom
 import numpy as np
 import pytest
 from carom import sweep
-from conftest import SOURCE, carom_program, rows_of
+from conftest import SOURCE, program_sweep, refused
 
 RULES = {
     "draw": ["cue.aim_deg=normal(2)", "cue.speed=uniform(-0.5,4)", "cue.offset.side=list(0.1,-0.1)"],
@@ -24,21 +24,24 @@ def same(text, value):
     return text == str(value)
 
 
+def all_the_same(header, rows, columns):
+    """Whether columns hold what the rows of a CSV file do."""
+    assert list(columns) == header
+    for k, column in enumerate(header):
+        wrong = [(row[k], value) for row, value in zip(rows, columns[column], strict=True) if not same(row[k], value)]
+        assert not wrong, (column, wrong[:3])
+
+
 @pytest.mark.parametrize("name", RULES)
 @pytest.mark.parametrize("threads", [1, 3])
 def test_columns_are_those_of_the_program(tmp_path, name, threads):
     path, count = SOURCE / f"scenes/{name}.toml", 60
     rules = RULES[name]
-    carom_program("sweep", path, "--count", count, "--seed", 4, "-o", tmp_path / "s.csv", *[word for rule in rules for word in ("--vary", rule)])
-    header, *rows = rows_of(tmp_path / "s.csv")
+    header, rows = program_sweep(tmp_path, path, rules, count, 4)
     scene = carom.Scene.load(path)
     columns = sweep.columns(scene, rules, count, seed=4, threads=threads)
-    assert list(columns) == header
     assert len(rows) == count
-    for k, column in enumerate(header):
-        values = columns[column].tolist() if isinstance(columns[column], np.ndarray) else columns[column]
-        wrong = [(row[k], value) for row, value in zip(rows, values) if not same(row[k], value)]
-        assert not wrong, (column, wrong[:3])
+    all_the_same(header, rows, {name: values.tolist() if isinstance(values, np.ndarray) else values for name, values in columns.items()})
     assert set(columns["outcome"]) >= {"at_rest"}
     part = sweep.columns(scene, rules, count, seed=4, first=20, last=45)
     for column, values in part.items():
@@ -54,19 +57,21 @@ def test_a_mapping_says_the_same():
         np.testing.assert_array_equal(one[name], two[name])
     assert one["cue.speed"].dtype == np.float64
     assert sweep.columns(scene, {"cue.speed": [2, 3]}, 5)["cue.speed"].dtype == np.int64
+    other = sweep.columns(scene, ["cue.speed=list(0x2,2.5)", "cue.aim_deg=list(0o132,0b1011010)"], 9)
+    assert set(other["cue.speed"]) == {2.0, 2.5} and set(other["cue.aim_deg"].tolist()) == {90}
 
 
 def test_what_is_wrong_is_said(draw_scene):
-    for call, message in [
-        (lambda: sweep.columns(draw_scene, "cue.speed=uniform(2,4)", 5), "vary: expected a list"),
+    refused(
+        ValueError,
+        None,
+        (lambda: sweep.columns(draw_scene, "cue.speed=uniform(2,4)", 5), "vary: expected a mapping or a list"),
         (lambda: sweep.columns(draw_scene, ["cue.speed=gauss(2)"], 5), "unknown distribution"),
         (lambda: sweep.columns(draw_scene, ["cue.speed=list(-1)"], 5), "none of the first"),
         (lambda: sweep.columns(draw_scene, {"cue.speed": [2.0]}, 5, last=6), "first=0, last=6"),
         (lambda: sweep.columns(draw_scene, {"cue.speed": [2.0]}, 5, threads=-1), "threads=-1"),
         (lambda: sweep.columns(draw_scene, {"cue.speed": [2.0]}, 5, seed=-1), "seed=-1"),
-    ]:
-        with pytest.raises(ValueError, match=message):
-            call()
+    )
 
 
 def test_a_table_has_the_columns_and_where_they_come_from(draw_scene, tmp_path):

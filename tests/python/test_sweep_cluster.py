@@ -102,6 +102,21 @@ def of_process(folder, process):
     return any(f".{process.pid}." in name for name in unfinished(folder)) if (folder / ".unfinished").exists() else False
 
 
+def client_of(cluster, file, folder):
+    return command("carom.sweep", file, "-o", folder, "--dask", cluster.address)
+
+
+def ended_well(client):
+    out, err = client.communicate(timeout=HANGS)
+    assert client.returncode == 0, err
+    return out, err
+
+
+def kill(process):
+    process.kill()
+    process.wait()
+
+
 def whole(folder, plan, once):
     assert contents(folder) == once
     assert sweep.check(folder).whole and sweep.check(folder).rows == plan.shots
@@ -121,13 +136,11 @@ def once(tmp_path_factory):
 def test_workers_on_ports_one_of_which_is_killed(tmp_path, cluster, once):
     plan, file, files = once
     victim, _ = cluster.worker("--no-nanny"), cluster.worker("--no-nanny")
-    client = command("carom.sweep", file, "-o", tmp_path / "a", "--dask", cluster.address)
+    client = client_of(cluster, file, tmp_path / "a")
     wait_for(lambda: len(stamps(tmp_path / "a")) >= 3 and of_process(tmp_path / "a", victim))
-    victim.kill()
-    victim.wait()
+    kill(victim)
     before = stamps(tmp_path / "a")
-    out, err = client.communicate(timeout=HANGS)
-    assert client.returncode == 0, err
+    out, err = ended_well(client)
     assert re.match(r"dashboard: http://127\.0\.0\.1:\d+/status\n", out)
     played = re.search(r"a: 3600 rows \(at_rest 3600\), (\d+) of them played in [\d.]+ s, \d+ a second\n", out)
     # A result that the dead worker had not handed over yet is asked of another one, who finds the shard there.
@@ -159,14 +172,13 @@ def test_workers_on_ports_one_of_which_is_killed(tmp_path, cluster, once):
 def test_a_nanny_puts_another_worker_in_the_place_of_a_dead_one(tmp_path, cluster, once):
     plan, file, files = once
     cluster.worker("--nworkers", "2")
-    client = command("carom.sweep", file, "-o", tmp_path / "a", "--dask", cluster.address)
+    client = client_of(cluster, file, tmp_path / "a")
     for _ in range(3):
         name = wait_for(lambda: (tmp_path / "a/.unfinished").exists() and unfinished(tmp_path / "a"))[0]
         with contextlib.suppress(ProcessLookupError):
             os.kill(int(name.split(".")[-3]), signal.SIGKILL)
         time.sleep(1)
-    out, err = client.communicate(timeout=HANGS)
-    assert client.returncode == 0, err
+    ended_well(client)
     assert whole(tmp_path / "a", plan, files)
 
 
@@ -178,12 +190,10 @@ def test_a_shard_that_dask_gives_up_is_asked_for_again(tmp_path, once):
     # The first death of a worker is one too many for what it had.
     with Cluster(tmp_path / "dask", DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as cluster:
         victim, _ = cluster.worker("--no-nanny"), cluster.worker("--no-nanny")
-        client = command("carom.sweep", file, "-o", tmp_path / "a", "--dask", cluster.address)
+        client = client_of(cluster, file, tmp_path / "a")
         wait_for(lambda: of_process(tmp_path / "a", victim))
-        victim.kill()
-        victim.wait()
-        out, err = client.communicate(timeout=HANGS)
-        assert client.returncode == 0, err
+        kill(victim)
+        ended_well(client)
         assert "KilledWorker" in (tmp_path / "dask/dask-0.log").read_text() or "marked as failed" in (tmp_path / "dask/dask-0.log").read_text()
         assert whole(tmp_path / "a", plan, files)
 
@@ -192,12 +202,11 @@ def test_a_shard_that_dask_gives_up_is_asked_for_again(tmp_path, once):
 def test_a_worker_that_was_given_up_comes_back(tmp_path, cluster, once):
     plan, file, files = once
     late, _ = cluster.worker("--no-nanny"), cluster.worker("--no-nanny")
-    client = command("carom.sweep", file, "-o", tmp_path / "a", "--dask", cluster.address)
+    client = client_of(cluster, file, tmp_path / "a")
     wait_for(lambda: of_process(tmp_path / "a", late))
     late.send_signal(signal.SIGSTOP)
     assert of_process(tmp_path / "a", late)
-    out, err = client.communicate(timeout=HANGS)
-    assert client.returncode == 0, err
+    ended_well(client)
     assert whole(tmp_path / "a", plan, files)
     before = stamps(tmp_path / "a")
     assert of_process(tmp_path / "a", late)  # it lives: nobody clears up behind it
@@ -210,10 +219,9 @@ def test_a_worker_that_was_given_up_comes_back(tmp_path, cluster, once):
 def test_without_its_scheduler_the_client_ends_and_goes_on_with_another(tmp_path, cluster, once):
     plan, file, files = once
     cluster.worker("--no-nanny")
-    client = command("carom.sweep", file, "-o", tmp_path / "a", "--dask", cluster.address)
+    client = client_of(cluster, file, tmp_path / "a")
     wait_for(lambda: len(stamps(tmp_path / "a")) >= 3)
-    cluster.scheduler.kill()
-    cluster.scheduler.wait()
+    kill(cluster.scheduler)
     out, err = client.communicate(timeout=HANGS)
     assert client.returncode == 1, err
     assert "what is made is whole: run again" in err, err
@@ -222,8 +230,7 @@ def test_without_its_scheduler_the_client_ends_and_goes_on_with_another(tmp_path
     assert 3 <= len(before) < plan.shards
     cluster.begin_scheduler()
     cluster.worker("--no-nanny")
-    code, out, err = sweep_command(file, "-o", tmp_path / "a", "--dask", cluster.address)
-    assert code == 0, err
+    out, _ = ended_well(client_of(cluster, file, tmp_path / "a"))
     played = int(re.search(r"(\d+) of them played", out)[1])
     assert played <= plan.shots - 150 * len(before)
     assert before.items() <= stamps(tmp_path / "a").items()
@@ -235,14 +242,13 @@ def test_without_its_scheduler_the_client_ends_and_goes_on_with_another(tmp_path
 def test_without_its_client_the_cluster_is_left_for_the_next_one(tmp_path, cluster, once, number):
     plan, file, files = once
     cluster.worker("--no-nanny")
-    client = command("carom.sweep", file, "-o", tmp_path / "a", "--dask", cluster.address)
+    client = client_of(cluster, file, tmp_path / "a")
     wait_for(lambda: len(stamps(tmp_path / "a")) >= 3)
     client.send_signal(number)
     client.communicate(timeout=HANGS)
     assert client.returncode == {signal.SIGKILL: -9, signal.SIGTERM: 143, signal.SIGINT: 130}[number]
     before = stamps(tmp_path / "a")
-    code, out, err = sweep_command(file, "-o", tmp_path / "a", "--dask", cluster.address)
-    assert code == 0, err
+    out, _ = ended_well(client_of(cluster, file, tmp_path / "a"))
     assert before.items() <= stamps(tmp_path / "a").items()
     assert whole(tmp_path / "a", plan, files)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import concurrent.futures
-import json
 import multiprocessing
 import os
 import shutil
@@ -16,7 +15,6 @@ import pytest
 from carom import sweep
 from conftest import HANGS, SLOW
 from sweep_support import break_plan, contents, draw_plan, stamps, unfinished, wait_for, worker
-from test_sweep import same
 
 pytest.importorskip("pyarrow", reason="pyarrow is not installed: pip install pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")

@@ -1,4 +1,4 @@
-// The pictures of balls for other programs show the patterns of the renderer's balls.
+// The pictures of balls for other programs show the patterns of the renderer's balls, and the look of all is typed once.
 #include "carom/render/ball_texture.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <numbers>
+#include <regex>
+#include <set>
+#include <string>
 
 #include "carom/render/draw_list.h"
 
@@ -91,6 +97,35 @@ TEST(BallTexture, OneDotOfSixIsLarger) {
     EXPECT_EQ(colour_at(dotted, 0.7, 0.7, 0.0), own(white));
     // A dark ball has pale dots.
     EXPECT_EQ(colour_at(ball_texture(red, kWidth), 0.0, 0.0, 1.0), bytes(0.93F, 0.90F, 0.82F));
+}
+
+/// The colours in a text: three numbers with points behind each other.
+std::set<std::array<double, 3>> colours_in(const std::filesystem::path& path) {
+    static const std::regex kThree(R"((\d?\.\d+)F?, *(\d?\.\d+)F?, *(\d?\.\d+))");
+    std::ifstream file(path);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    std::set<std::array<double, 3>> found;
+    for (auto at = std::sregex_iterator(text.begin(), text.end(), kThree); at != std::sregex_iterator(); ++at)
+        found.insert({std::stod((*at)[1]), std::stod((*at)[2]), std::stod((*at)[3])});
+    return found;
+}
+
+TEST(Look, AColourIsTypedOnce) {
+    const std::filesystem::path source = CAROM_SOURCE_DIR,
+                                header = source / "render/include/carom/render/look.h";
+    const auto look = colours_in(header);
+    ASSERT_EQ(look.size(), 14u);
+    int files = 0;
+    for (const char* folder : {"render", "tools/carom", "python"}) {
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(source / folder)) {
+            if (!entry.is_regular_file() || entry.path() == header) continue;
+            ++files;
+            for (const auto& colour : colours_in(entry.path()))
+                EXPECT_EQ(look.count(colour), 0u)
+                    << entry.path() << ": " << colour[0] << ", " << colour[1] << ", " << colour[2];
+        }
+    }
+    EXPECT_GT(files, 100);
 }
 
 }  // namespace

@@ -51,6 +51,8 @@ TEST(FrameCount, RefusesWhatHasNoAnswer) {
     EXPECT_THROW(frame_count(0.0, 1.0, std::nan("")), RenderError);
     EXPECT_THROW(frame_count(0.0, infinity, 60.0), RenderError);
     EXPECT_THROW(frame_count(-infinity, 1.0, 60.0), RenderError);
+    // Where the next frame is at the same instant, counting them would not end.
+    for (const double late : {1e16, 1e17, 1e300}) EXPECT_THROW(frame_count(late, late, 60.0), RenderError);
 }
 
 TEST(FramePath, FillsInTheNumber) {
@@ -216,8 +218,7 @@ TEST(Sequence, AFrameThatCannotBeWrittenIsNamedAndLeavesNothing) {
         EXPECT_EQ(std::string(error.what()).find(folder.file("1.png")), 0U) << error.what();
     }
     for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
-        const bool mark = entry.path().filename() == ".%d.png.shot";
-        EXPECT_TRUE(mark || entry.path().extension() == ".png") << entry.path();
+        EXPECT_EQ(entry.path().extension(), ".png") << entry.path();
     }
 }
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <string>
 
@@ -79,11 +80,8 @@ class ScratchFolder {
     std::string file(const std::string& name) const { return (path_ / name).string(); }
     const std::filesystem::path& path() const { return path_; }
     std::size_t entries() const {
-        std::size_t count = 0;
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(path_))
-            count +=
-                entry.path().extension() != ".shot" ? 1 : 0;  // the mark that says of which shot frames are
-        return count;
+        const std::filesystem::recursive_directory_iterator all(path_);
+        return static_cast<std::size_t>(std::distance(begin(all), end(all)));
     }
 
   private:

@@ -1,7 +1,6 @@
 // What a machine without the libraries is told.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <memory>
 #include <string>
 
@@ -14,9 +13,8 @@ namespace carom::render {
 namespace {
 
 TEST(SharedLibrary, AMissingOneNamesItsPackage) {
-    const std::array<const char*, 2> names{"libCaromIsNotThere.so.8", "libCaromIsNotThere.so"};
     try {
-        open_library(names.data(), 2, "libosmesa6");
+        const SharedLibrary missing({"libCaromIsNotThere.so.8", "libCaromIsNotThere.so"}, "libosmesa6");
         FAIL();
     } catch (const RenderError& error) {
         const std::string message = error.what();
@@ -26,11 +24,11 @@ TEST(SharedLibrary, AMissingOneNamesItsPackage) {
 }
 
 TEST(SharedLibrary, AMissingFunctionIsNamed) {
-    const std::array<const char*, 1> names{"libc.so.6"};
-    void* library = open_library(names.data(), 1, "libc6");
-    EXPECT_NE(find_symbol(library, "malloc", "libc6"), nullptr);
+    const SharedLibrary library({"libc.so.6"}, "libc6");
+    int (*absolute)(int) = library["abs"];
+    EXPECT_EQ(absolute(-3), 3);
     try {
-        find_symbol(library, "carom_is_not_there", "libc6");
+        static_cast<void>(library["carom_is_not_there"]);
         FAIL();
     } catch (const RenderError& error) {
         EXPECT_NE(std::string(error.what()).find("carom_is_not_there"), std::string::npos) << error.what();
@@ -38,15 +36,13 @@ TEST(SharedLibrary, AMissingFunctionIsNamed) {
 }
 
 TEST(Backends, NamesAreReadAndUnknownOnesRefused) {
-    EXPECT_EQ(backend_from_name("osmesa"), Backend::kOsmesa);
-    EXPECT_EQ(backend_from_name("egl"), Backend::kEgl);
+    for (const char* known : {"auto", "osmesa", "egl"}) EXPECT_STREQ(name(backend_from_name(known)), known);
     EXPECT_THROW(backend_from_name("glx"), RenderError);
-    EXPECT_STREQ(name(Backend::kOsmesa), "osmesa");
-    EXPECT_STREQ(name(Backend::kEgl), "egl");
+    EXPECT_EQ(default_backend(), gl::has_osmesa() ? Backend::kOsmesa : Backend::kEgl);
 }
 
 TEST(Backends, AContextKnowsTheFunctionsOfOpenGl) {
-    const std::unique_ptr<gl::Context> context = gl::make_context(Backend::kOsmesa);
+    const std::unique_ptr<gl::Context> context = gl::make_context(Backend::kAuto);
     context->make_current();
     EXPECT_NE(context->lookup()("glDrawArraysInstanced"), nullptr);
 }

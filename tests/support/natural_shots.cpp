@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/geometry.h"
 #include "carom/engine/math.h"
 #include "carom/engine/table.h"
@@ -107,6 +108,9 @@ class Shot {
         c.height = uniform(-0.3, 0.3);
         scene_.cue = c;
     }
+    /// The cue of the last strike(), and the physics, to change them.
+    Cue& cue() { return *scene_.cue; }
+    Physics& physics() { return scene_.physics; }
     int balls() const { return static_cast<int>(scene_.ball.size()); }
     /// The cue ball in touch with this one.
     bool touch_with_cue(int ball) {
@@ -165,6 +169,25 @@ Scene eight_ball_break(std::uint64_t seed) {
     return shot.take();
 }
 
+// A break struck from a little above, as people do: the cue ball hops on its way to the rack.
+Scene raised_break(std::uint64_t seed) {
+    constexpr RackGame kGames[] = {RackGame::kEightBall, RackGame::kNineBall, RackGame::kTenBall,
+                                   RackGame::kSnooker};
+    const RackGame game = kGames[seed % 4];
+    const bool snooker = game == RackGame::kSnooker;
+    Shot shot(seed, snooker ? "snooker" : "nine_foot", snooker ? "snooker" : "pool");
+    const double gap = shot.chance(0.3) ? 0.0 : shot.chance(0.5) ? 1e-4 : shot.uniform(0.0, 1e-3);
+    shot.rack(game, gap, 1.0);
+    const double middle = snooker ? 0.889 : 0.635;
+    for (bool placed = false; !placed;)
+        placed = shot.place("cue", {middle + shot.uniform(-0.3, 0.3), shot.uniform(0.4, 0.7)});
+    shot.strike(0, 10.0);
+    shot.cue().speed = shot.uniform(6.0, 13.0);
+    shot.cue().elevation_deg = shot.chance(0.5) ? shot.uniform(2.0, 7.0) : shot.uniform(0.5, 25.0);
+    if (shot.chance(0.2)) shot.physics().ball_ball = ball_ball_model("two_step");
+    return shot.take();
+}
+
 struct ShotFamily {
     const char* name;
     Scene (*make)(std::uint64_t seed);
@@ -176,6 +199,7 @@ constexpr ShotFamily kShots[] = {
     {"snooker_frozen", [](std::uint64_t seed) { return snooker(seed, true); }},
     {"touching_pack", touching_pack},
     {"eight_ball_break", eight_ball_break},
+    {"raised_break", raised_break},
 };
 
 }  // namespace

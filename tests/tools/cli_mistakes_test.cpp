@@ -85,6 +85,23 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     refused("--events and --samples name the same file",
             {"simulate", scene_, "--events", same, "--samples", same, "--sample-dt", "0.1"});
     refused("-o: a file without a name", sweep(""));
+    // Files that are not there yet, under two names.
+    fs::create_symlink(same, folder_.file("to_same"));
+    fs::create_symlink("to_same", folder_.file("to_link"));
+    fs::create_directory_symlink(".", folder_.file("here"));
+    for (const std::string& other : {folder_.file("./same"), folder_.file("to_same"), folder_.file("to_link"),
+                                     folder_.file("here/same")})
+        for (const auto& [one, two] : {std::pair(same, other), std::pair(other, same)}) {
+            refused("name the same file", {"simulate", scene_, "-o", one, "--events", two});
+            refused("name the same file", sweep(one, {"--status", two}));
+        }
+    EXPECT_FALSE(fs::exists(same));
+    const std::string cwd = fs::current_path().string();
+    fs::current_path(folder_.path());
+    refused("name the same file", {"simulate", scene_, "-o", "a.json", "--events", "./a.json"});
+    refused("name the same file", {"simulate", scene_, "-o", "a.json", "--events", folder_.file("a.json")});
+    refused("would replace what is read", {"render", "./s.toml", "-o", "s.toml"});
+    fs::current_path(cwd);
     EXPECT_EQ(read_file(scene_), before);
     EXPECT_EQ(carom({"simulate", scene_, "-o", "/dev/null", "--events", "/dev/null"}).status, 0);
 }
@@ -94,6 +111,10 @@ TEST_F(Mistakes, PicturesHaveNamesOfPictures) {
     refused("pictures are PNG files", {"render", scene_, "--at", "0.1", "-o", folder_.file("f.jpg")});
     refused("or the name of a film", {"render", scene_, "-o", folder_.file("movie.avi")});
     refused("--at 99: the shot is over after", {"render", scene_, "--at", "99", "-o", folder_.file("f.png")});
+    for (const char* option : {"--at", "--from"})
+        for (const char* late : {"99", "1e16", "1e17", "1e300"})
+            refused(": the shot is over after",
+                    {"render", scene_, option, late, "-o", folder_.file("%d.png")});
     EXPECT_EQ(folder_.names(), std::vector<std::string>{"s.toml"});
     const std::string one = folder_.file("f.png");
     const ProcessResult result = carom({"render", scene_, "--at", "0.1", "--size", "32x18", "-o", one});
@@ -109,7 +130,10 @@ TEST_F(Mistakes, ResumeKnowsWhichShotFramesAreOf) {
         all.insert(all.end(), more.begin(), more.end());
         return carom(all);
     };
-    EXPECT_EQ(render({"--resume"}).status, 1);
+    folder_.write("f1.png", "of nobody");
+    EXPECT_TRUE(contains(render({"--resume"}).err, "nothing says which shot the frames there are of"));
+    fs::remove(folder_.file("f1.png"));
+    ASSERT_EQ(render({"--resume"}).status, 0);  // all of it
     ASSERT_EQ(render({}).status, 0);
     EXPECT_TRUE(contains(render({"--resume"}).out, "0 frames: all are there"));
     const std::vector<std::vector<std::string>> others = {

@@ -23,18 +23,10 @@ TEST(Formats, TheSchemaOfScenesIsThatOfTheTables) {
         << "docs/reference/scene.schema.json" << kStale;
 }
 
-TEST(Formats, TheSchemaOfRecordsIsWhatTheProgramPrints) {
-    const std::string printed = record_schema();
-    EXPECT_TRUE(test::read_source("docs/reference/record.schema.json") == printed)
+TEST(Formats, TheSchemaOfRecordsIsThatOfTheTables) {
+    EXPECT_TRUE(test::read_source("docs/reference/record.schema.json") == record_schema())
         << "docs/reference/record.schema.json" << kStale;
-    // Not fragments: every part that another one refers to is there.
-    const Json schema = Json::parse(printed);
-    const std::regex reference("\"#(/definitions/[a-z]+)\"");
-    int references = 0;
-    for (std::sregex_iterator it(printed.begin(), printed.end(), reference), end; it != end;
-         ++it, ++references)
-        EXPECT_TRUE(schema.contains(Json::json_pointer(it->str(1)))) << it->str();
-    EXPECT_GE(references, 6);
+    EXPECT_EQ(record_schema().find("null\n"), std::string::npos) << "a part of the tables is missing";
 }
 
 TEST(Formats, ThePageOfSceneFilesIsWhatTheProgramPrints) {

@@ -2,6 +2,8 @@
 #include "base/output_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,7 +11,10 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -19,6 +24,7 @@ namespace {
 
 constexpr int kMostLinks = 40;    // as in the kernel
 constexpr int kMostNames = 1000;  // temporary files of one process in one folder
+constexpr std::string_view kTemporary = ".carom.", kTemporaryEnd = ".tmp";
 
 /// Number of a descriptor, -1 for what is none.
 int descriptor(std::string_view path) {
@@ -32,6 +38,28 @@ int descriptor(std::string_view path) {
     return error == std::errc() && end == path.data() + path.size() ? number : -1;
 }
 
+/// Removes what killed programs left in a folder: temporary files that nobody has locked. Once for each folder, for one may hold many
+/// files.
+void remove_left(const std::filesystem::path& folder) {
+    static std::mutex mutex;
+    static std::set<std::filesystem::path> seen;
+    {
+        const std::lock_guard guard(mutex);
+        if (!seen.insert(folder).second) return;
+    }
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with(kTemporary) || !name.ends_with(kTemporaryEnd)) continue;
+        const int fd = ::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        if (fd < 0) continue;
+        struct stat opened {};
+        if (::fstat(fd, &opened) == 0 && S_ISREG(opened.st_mode) && ::flock(fd, LOCK_EX | LOCK_NB) == 0)
+            ::unlink(entry.path().c_str());
+        ::close(fd);
+    }
+}
+
 }  // namespace
 
 std::FILE* own_stream(const std::string& path) {
@@ -43,22 +71,26 @@ std::FILE* own_stream(const std::string& path) {
     return fd < 0 ? nullptr : ::fdopen(fd, "wb");
 }
 
+std::string file_of(const std::string& path) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    if (const fs::path real = fs::canonical(path, error); !error) return real.string();
+    fs::path file = path;
+    for (int links = 0; links < kMostLinks && fs::is_symlink(file, error); ++links) {
+        const fs::path to = fs::read_symlink(file, error);
+        if (error) break;
+        file = file.parent_path() / to;
+    }
+    const fs::path folder = fs::canonical(file.has_parent_path() ? file.parent_path() : ".", error);
+    return error ? file.string() : (folder / file.filename()).string();
+}
+
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(path_) {
     namespace fs = std::filesystem;
     file_ = own_stream(path_);
     if (file_ != nullptr) return;
+    target_ = file_of(path_);
     std::error_code error;
-    if (fs::exists(path_, error)) {
-        const fs::path real = fs::canonical(path_, error);
-        if (!error) target_ = real.string();
-    }
-    // A link to a file that is not there yet is followed, too.
-    for (int links = 0; !fs::exists(target_, error) && links < kMostLinks && fs::is_symlink(target_, error);
-         ++links) {
-        const fs::path to = fs::read_symlink(target_, error);
-        if (error) break;
-        target_ = to.is_absolute() ? to.string() : (fs::path(target_).parent_path() / to).string();
-    }
     if (fs::exists(target_, error) && !fs::is_regular_file(target_, error)) {
         file_ = std::fopen(target_.c_str(), "wb");
         if (file_ == nullptr) fail("cannot open for writing");
@@ -73,13 +105,21 @@ void OutputFile::open_temporary() {
     struct stat there {};
     const bool replaces = ::stat(target_.c_str(), &there) == 0;
     const std::filesystem::path folder = std::filesystem::path(target_).parent_path();
+    remove_left(folder.empty() ? "." : folder);
     for (int k = 0; k < kMostNames; ++k) {
         // Short, because the name of the file may be as long as a name can be; of this process, for other programs write here, too.
-        temporary_ =
-            (folder / (".carom." + std::to_string(::getpid()) + "." + std::to_string(k) + ".tmp")).string();
+        temporary_ = (folder / fmt::format("{}{}.{}{}", kTemporary, ::getpid(), k, kTemporaryEnd)).string();
         const int fd = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (fd < 0 && errno == EEXIST) continue;
+        // Locked as long as it is written, so that others see that it is not left over; one who saw it before that removed it.
+        struct stat opened {};
+        if (fd >= 0 && ::flock(fd, LOCK_EX | LOCK_NB) == 0 && ::fstat(fd, &opened) == 0 &&
+            opened.st_nlink == 0) {
+            ::close(fd);
+            continue;
+        }
         if (fd >= 0 && replaces && ::fchmod(fd, there.st_mode & 07777) != 0) errno = 0;  // not ours to change
+        lock_ = fd < 0 ? -1 : ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
         file_ = fd < 0 ? nullptr : ::fdopen(fd, "wb");
         break;
     }
@@ -91,6 +131,7 @@ void OutputFile::open_temporary() {
 OutputFile::~OutputFile() {
     if (file_ != nullptr) std::fclose(file_);
     if (!temporary_.empty()) std::remove(temporary_.c_str());
+    if (lock_ >= 0) ::close(lock_);
 }
 
 void OutputFile::fail(const char* what) {

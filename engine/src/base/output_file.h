@@ -12,6 +12,10 @@ namespace carom {
 /// open: emptied, replaced, or written over by what is printed.
 std::FILE* own_stream(const std::string& path);
 
+/// The file that a path stands for, whether it is there or not: all links are followed, and the folder is that without links. The path
+/// itself where there is no such folder.
+std::string file_of(const std::string& path);
+
 /// Every failure is a std::runtime_error that names the file and the reason.
 ///
 /// If the path is not a regular file (/dev/null, a named pipe), it is written to directly: renaming would replace the
@@ -39,6 +43,8 @@ class OutputFile {
     std::string target_;     ///< after following symbolic links
     std::string temporary_;  ///< empty if the target is written to directly
     std::FILE* file_ = nullptr;
+    int lock_ =
+        -1;  ///< of the temporary file, until it has its name: what nobody has locked is left over, and goes
 };
 
 }  // namespace carom

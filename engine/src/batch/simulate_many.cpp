@@ -21,8 +21,8 @@ namespace carom {
 
 namespace {
 
-// [-] Shots that a thread takes at once: a few microseconds each at least, so that taking them costs nothing, and few
-// enough for all threads to end at the same time.
+// [-] Most shots that a thread takes at once: a few microseconds each at least, so that taking them costs nothing. Small batches are
+// taken in smaller pieces, so that all threads end at about the same time.
 constexpr std::size_t kBlock = 16;
 
 std::vector<SceneNumber> numbers_of(const Scene& scene, std::size_t shots,
@@ -177,6 +177,7 @@ struct Work {
     const BatchArrays& out;
     std::uint64_t number = 0;  // of the first shot, where shots have numbers
     std::vector<Batch::Message> messages;
+    std::size_t block = kBlock;
     std::atomic<std::size_t> next{0};
     std::atomic<bool> stopped{false};
     std::mutex mutex;
@@ -212,9 +213,9 @@ struct Work {
         try {
             Player player(scene, isa, options.judge != nullptr);
             while (!stopped) {
-                const std::size_t first = next.fetch_add(kBlock);
+                const std::size_t first = next.fetch_add(block);
                 if (first >= shots) return;
-                for (std::size_t shot = first; shot < std::min(first + kBlock, shots); ++shot) {
+                for (std::size_t shot = first; shot < std::min(first + block, shots); ++shot) {
                     if (options.stop && options.stop()) throw BatchStopped("the batch was stopped");
                     play_one(player, shot);
                 }
@@ -227,7 +228,8 @@ struct Work {
     std::vector<Batch::Message> run() {
         const std::size_t wanted = options.threads > 0 ? static_cast<std::size_t>(options.threads)
                                                        : std::max(1u, std::thread::hardware_concurrency());
-        const std::size_t most = std::min(wanted, (shots + kBlock - 1) / kBlock);
+        block = std::clamp(shots / (4 * wanted), std::size_t{1}, kBlock);
+        const std::size_t most = std::min(wanted, (shots + block - 1) / block);
         std::vector<std::thread> threads;
         try {
             for (std::size_t i = 1; i < most; ++i) threads.emplace_back([this] { play_all(); });
@@ -245,9 +247,50 @@ struct Work {
 
 }  // namespace
 
+Batch::Batch(std::size_t n, std::size_t b, bool hash_wanted)
+    : shots(n),
+      balls(b),
+      status(n),
+      duration(n),
+      events(n),
+      first_hit(n),
+      contacts(n),
+      approach_cushions(n),
+      x(n * b),
+      y(n * b),
+      pocket(n * b),
+      fell(n * b),
+      cushions(n * b),
+      hash(hash_wanted ? n : 0) {}
+
+BatchArrays Batch::arrays() {
+    BatchArrays out;
+    out.status = status.data();
+    out.duration = duration.data();
+    out.events = events.data();
+    out.first_hit = first_hit.data();
+    out.contacts = contacts.data();
+    out.approach_cushions = approach_cushions.data();
+    out.x = x.data();
+    out.y = y.data();
+    out.pocket = pocket.data();
+    out.fell = fell.data();
+    out.cushions = cushions.data();
+    if (!hash.empty()) out.hash = hash.data();
+    return out;
+}
+
+void check_shots(std::size_t shots) {
+    if (shots > kMostBatchShots)
+        throw std::invalid_argument("shots = " + std::to_string(shots) +
+                                    " is out of range; it must be at most " +
+                                    std::to_string(kMostBatchShots));
+}
+
 std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
                                           std::span<const BatchColumn> columns, kernel::Isa isa,
                                           const BatchOptions& options, const BatchArrays& out) {
+    check_shots(shots);
     if (!options.absent.empty() && options.absent.size() != shots * scene.ball.size())
         throw std::invalid_argument("absent: expected a value for every ball of every shot");
     const ColumnShots play{scene, columns, numbers_of(scene, shots, columns), options.absent, isa};
@@ -257,6 +300,7 @@ std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
 std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint64_t first, std::size_t shots,
                                           kernel::Isa isa, const BatchOptions& options,
                                           const BatchArrays& out, std::vector<std::string>& values) {
+    check_shots(shots);
     const std::size_t keys = variation.keys().size();
     values.assign(shots * keys, {});
     const auto play = [&](Player& player, std::size_t shot, const SimulateOptions& how) {
@@ -272,35 +316,9 @@ std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint6
 
 Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const BatchColumn> columns,
                     kernel::Isa isa, const BatchOptions& options) {
-    Batch batch;
-    batch.shots = shots;
-    batch.balls = scene.ball.size();
-    const std::size_t places = shots * batch.balls;
-    batch.status.resize(shots);
-    batch.duration.resize(shots);
-    batch.events.resize(shots);
-    batch.first_hit.resize(shots);
-    batch.contacts.resize(shots);
-    batch.approach_cushions.resize(shots);
-    batch.x.resize(places);
-    batch.y.resize(places);
-    batch.pocket.resize(places);
-    batch.fell.resize(places);
-    batch.cushions.resize(places);
-    if (options.hash) batch.hash.resize(shots);
-    BatchArrays out;
-    out.status = batch.status.data();
-    out.duration = batch.duration.data();
-    out.events = batch.events.data();
-    out.first_hit = batch.first_hit.data();
-    out.contacts = batch.contacts.data();
-    out.approach_cushions = batch.approach_cushions.data();
-    out.x = batch.x.data();
-    out.y = batch.y.data();
-    out.pocket = batch.pocket.data();
-    out.fell = batch.fell.data();
-    out.cushions = batch.cushions.data();
-    if (options.hash) out.hash = batch.hash.data();
+    check_shots(shots);
+    Batch batch(shots, scene.ball.size(), options.hash);
+    const BatchArrays out = batch.arrays();
     batch.messages = simulate_many(scene, shots, columns, isa, options, out);
     return batch;
 }

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "carom/engine/tolerances.h"
 
 namespace carom {
 
@@ -126,8 +127,8 @@ void Complementarity::polish(std::vector<double>& w) {
     refine(w);
     refine(w);
     double left = worst_residual(w);
-    if (left <= kSumUlp * std::numeric_limits<double>::epsilon()) return;
-    for (int more = 0; more < kMoreRefinements && left > std::numeric_limits<double>::epsilon(); ++more) {
+    if (left <= kSumUlp * kEpsilon) return;
+    for (int more = 0; more < kMoreRefinements && left > kEpsilon; ++more) {
         last_ = z;
         before_ = part_;
         refine(w);
@@ -218,7 +219,7 @@ bool Complementarity::approach() {
             moved = std::max(moved, std::abs(z[c] - before[c]));
             largest = std::max(largest, z[c]);
         }
-        if (!(softness * moved > std::numeric_limits<double>::epsilon() * largest)) break;
+        if (!(softness * moved > kEpsilon * largest)) break;
         if (!least) softness = std::max(kLeastSoftness, 0.1 * softness);
     }
     for (std::size_t c = 0; c < size; ++c) entries[diagonal[c]].value = own[c];

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "carom/engine/tolerances.h"
 #include "contact/roots.h"
 #include "physics/motion.h"
 
@@ -15,7 +15,7 @@ namespace {
 // roundings of position, end and projection.
 constexpr double kEndUlp = 4.0;
 
-constexpr double kNoise = kClosingUlp * std::numeric_limits<double>::epsilon();  // [of the speeds]
+constexpr double kNoise = kClosingUlp * kEpsilon;  // [of the speeds]
 
 // Relative motion of two centres.
 struct Relative {
@@ -41,7 +41,7 @@ double closing_speed(const Relative& m, double t) {
 double outside(const Relative& m, double reach, double t, double gap, double closing) {
     if (!(gap < 0.0)) return t;
     const double back = closing > m.noise ? t + gap / closing : t;
-    const double earlier = std::min(back, t - std::numeric_limits<double>::epsilon() * t);
+    const double earlier = std::min(back, t - kEpsilon * t);
     if (!(earlier >= 0.0)) return t;
     const double earlier_gap = length(at(m, earlier)) - reach;
     return earlier_gap >= 0.0 && earlier_gap <= -2.0 * gap ? earlier : t;
@@ -133,7 +133,7 @@ double first_touch(const Relative& m, double reach, double c0, double horizon, b
         if (straight && speed > 0.0) {
             const double alpha = dot(m.a, m.v) / speed;
             // The closed form is valid while the motion does not reverse.
-            if (speed + alpha * horizon >= -4.0 * std::numeric_limits<double>::epsilon() * speed)
+            if (speed + alpha * horizon >= -4.0 * kEpsilon * speed)
                 return along_line(m, reach, speed, alpha, horizon);
         }
     } else if (pull == 0.0) {
@@ -210,8 +210,7 @@ double time_to_enter(double foot, double rate, double pull, double end, double h
 }  // namespace
 
 double end_rounding(const Vec2& r, double line_length) {
-    return kEndUlp * std::numeric_limits<double>::epsilon() *
-           (std::abs(r.x()) + std::abs(r.y()) + line_length);
+    return kEndUlp * kEpsilon * (std::abs(r.x()) + std::abs(r.y()) + line_length);
 }
 
 bool past_end(double left, double rate, double pull, double rounding) {
@@ -236,10 +235,11 @@ double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, d
         const double h0 = side * d0 - R, h1 = side * d1, h2 = side * d2;
         const bool here = side * d0 >= 0.0;  // the ball is on this side now
         double t = kNever;
+        // The ball overlaps the nose and moves into it, or is pressed against it.
         if (here && h0 <= 0.0 && h1 < -noise)
             t = 0.0;
         else if (here && h0 <= 0.0 && h2 < 0.0 && !(h1 > noise && h1 * h1 > 2.0 * h2 * h0))
-            t = std::max(0.0, -h1 / h2) + press_delay(-h2, noise, ball.horizon);  // pressed against the nose
+            t = std::max(0.0, -h1 / h2) + press_delay(-h2, noise, ball.horizon);
         else {
             t = first_descent_quadratic(h0, h1, h2, ball.horizon);
             // It touches more slowly than rounding can tell, and the acceleration presses it on into the nose.

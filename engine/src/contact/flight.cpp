@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "carom/engine/tolerances.h"
 
 namespace carom {
 
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // [-] Steps of the search: 3 in the median, 12 at most in 4000 random cases.
 constexpr int kMostSteps = 200;
 // [-] Grazes that are passed over before the search ends.

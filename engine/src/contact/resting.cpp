@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "carom/engine/tolerances.h"
 #include "contact/detect.h"
@@ -91,8 +90,8 @@ Link link_of(const Group& g, const RestingContact& c) {
 bool keep_energy(Group& g) {
     double before = 0.0, after = 0.0;
     for (const Body& b : g.bodies) {
-        before += dot(b.v, b.v) + 0.4 * dot(b.s, b.s);
-        after += dot(b.v_end, b.v_end) + 0.4 * dot(b.s_end, b.s_end);
+        before += dot(b.v, b.v) + kInertia * dot(b.s, b.s);
+        after += dot(b.v_end, b.v_end) + kInertia * dot(b.s_end, b.s_end);
     }
     if (!(after > before)) return false;
     const double share = std::sqrt(before / after);
@@ -142,7 +141,7 @@ double closing_speed(const Group& g, const Rate& rate) {
 void remove_closing_speeds(Group& g) {
     double fastest = 0.0;
     for (const Body& b : g.bodies) fastest = std::max(fastest, length(b.v));
-    const double rounding = kClosingUlp * std::numeric_limits<double>::epsilon() * fastest;
+    const double rounding = kClosingUlp * kEpsilon * fastest;
     for (int pass = 0; pass < 3; ++pass) {
         const double before = closing_speed(g, gap_rate);
         if (before <= rounding) break;
@@ -221,7 +220,7 @@ double resting_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
     const double speed = length(planar(v)), spin = length(Vec2(length(planar(w)), w.z()));
     // Without rolling friction nothing stops such a ball: the sliding friction then sets the scale.
     return std::max(motion.roll > 0.0 ? kStopNoise * motion.roll : kSlideNoise * motion.slide,
-                    8.0 * kClosingUlp * std::numeric_limits<double>::epsilon() * (speed + motion.R * spin));
+                    8.0 * kClosingUlp * kEpsilon * (speed + motion.R * spin));
 }
 
 void solve_resting(RestingGroup& group, const RestingSurroundings& around, const MotionParams& motion,

@@ -25,8 +25,8 @@ double resting_noise(const Vec3& v, const Vec3& w, const MotionParams& motion);
 
 struct RestingContact {
     Contact contact;  ///< with a ball, a cushion or a nose
-    Vec2 n =
-        Vec2::Zero();  ///< unit, from the ball to the other or into the table's part; fixed over one interval
+    /// unit, from the ball to the other or into the table's part; fixed over one interval
+    Vec2 n = Vec2::Zero();
     double began = 0.0;     ///< [s] when it became one
     bool released = false;  ///< result: the gap opens
 };

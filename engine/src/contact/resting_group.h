@@ -89,8 +89,8 @@ struct Group {
     std::vector<Link> links;   ///< as group.contacts
     double solved = 0.0;       ///< [s] interval for which the bodies and links hold a solution; 0: for none
     bool smooth = false;  ///< the solution is without friction between balls, because with it there is none
-    double cut =
-        0.0;  ///< [s] how long the interval should be whose solution was given up for that; 0: none was
+    /// [s] how long the interval should be whose solution was given up for that; 0: none was
+    double cut = 0.0;
     double noise = 0.0;  ///< [m/s] rounding of the group's speeds in a few sums of eight terms
     // Memory of solve_interval() and step().
     std::vector<Body> bodies_before;

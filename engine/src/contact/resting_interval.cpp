@@ -1,7 +1,6 @@
 // How long one solution of a group of resting contacts holds, and its segments.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "carom/engine/tolerances.h"
@@ -218,8 +217,8 @@ void guide_friction(Group& g, double h) {
     g.links_before = g.links;
     const bool smooth = g.smooth;
     if (!guide(g, h)) return;
-    const bool solved = step(g, h, {.friction = g.around.balls.ball_friction() && !smooth}) && !g.smooth &&
-                        keeps_direction(g);
+    const bool solved = step(g, h, {.friction = g.around.balls.ball_friction().any() && !smooth}) &&
+                        !g.smooth && keeps_direction(g);
     g.smooth = smooth;
     if (solved) return;
     g.bodies.swap(g.bodies_before);
@@ -248,7 +247,7 @@ void write_segments(Group& g, double h) {
         const Vec2 ds = (b.s_end - b.s) / h;
         s.dw = Vec2(-ds.y(), ds.x()) / g.motion.R;
     }
-    interval = std::max(interval, kClockTicks * std::numeric_limits<double>::epsilon() * g.now);
+    interval = std::max(interval, kClockTicks * kEpsilon * g.now);
     for (std::size_t k = 0; k < g.bodies.size(); ++k) {
         const Body& b = g.bodies[k];
         Segment& s = g.group.balls[k].segment;
@@ -261,7 +260,7 @@ void write_segments(Group& g, double h) {
 }
 
 bool accelerates(const Group& g) {
-    constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+    constexpr double kRounding = 8.0 * kEpsilon;
     return std::any_of(g.bodies.begin(), g.bodies.end(), [](const Body& b) {
         return length(b.v_end - b.v) > kRounding * length(b.v) ||
                length(b.s_end - b.s) > kRounding * length(b.s);
@@ -274,8 +273,8 @@ bool accelerates(const Group& g) {
 bool attempt_at(Group& g, double& h, double shortest, double longest, bool may_cut) {
     g.cut = 0.0;
     if (!g.smooth) {
-        const bool solved =
-            step(g, h, {.friction = g.around.balls.ball_friction(), .may_cut = may_cut && h > shortest});
+        const bool solved = step(
+            g, h, {.friction = g.around.balls.ball_friction().any(), .may_cut = may_cut && h > shortest});
         if (g.cut > 0.0) return false;
         if (!g.smooth || longest <= shortest) return solved;
         if (step(g, shortest) && !g.smooth && locks(g, shortest)) {
@@ -301,8 +300,7 @@ double accurate_interval(const Group& g, double h) {
 
 void solve_interval(Group& g) {
     for (Body& b : g.bodies) b.guided = false;
-    const double shortest =
-        std::max(kShortestInterval, kClockTicks * std::numeric_limits<double>::epsilon() * g.now);
+    const double shortest = std::max(kShortestInterval, kClockTicks * kEpsilon * g.now);
     double h = std::max(shortest, std::min(first_attempt(g), kGrowth * g.group.last));
     double longest = h;
     int longer = 0;

@@ -6,6 +6,7 @@
 
 #include "contact/complementarity.h"
 #include "contact/resting_group.h"
+#include "physics/motion.h"
 
 namespace carom::resting {
 
@@ -64,7 +65,7 @@ double vertical_friction(const Group& g, const Link& link) {
     const double without = slip.x() - effect * link.friction_z;
     double size = length(slip), f = 0.0, size_before = 0.0, change_before = 0.0;
     for (int turn = 0; turn < 30; ++turn) {
-        const double mu = ball_friction(g.around.balls, size);
+        const double mu = g.around.balls.ball_friction()(size);
         const double whole = effect + (mu > 0.0 ? size / mu : 0.0);
         if (mu == 0.0 || !(whole > 0.0)) return 0.0;
         f = -without / whole;
@@ -75,7 +76,7 @@ double vertical_friction(const Group& g, const Link& link) {
         change_before = change;
         size = turn > 0 && secant > 0.0 ? secant : next;
     }
-    const double most = ball_friction(g.around.balls, size);
+    const double most = g.around.balls.ball_friction()(size);
     return std::clamp(f, -most, most);
 }
 
@@ -110,7 +111,7 @@ double turning_of(const Link& link, const Across& t, double h) {
 // @return whether it differs
 bool update(Group& g, double h, const StepOptions& options, int times) {
     const double accuracy = kFrictionAccuracy * static_cast<double>(1 << std::min(times, kLooser)) *
-                            ball_friction(g.around.balls, 0.0);
+                            g.around.balls.ball_friction()(0.0);
     double fastest = 0.0;
     for (const Body& b : g.bodies) fastest = std::max(fastest, length(b.v_end));
     const double place = kFrictionPlace * static_cast<double>(1 << std::min(times, kLooserPlace)),
@@ -165,7 +166,7 @@ class Extrapolation {
         }
         if (known && square > 0.0) {
             const double back = std::clamp(both / square, -kFarthest, 1.0),
-                         most = ball_friction(g.around.balls, 0.0);
+                         most = g.around.balls.ball_friction()(0.0);
             for (std::size_t c = 0; c < g.links.size(); ++c) {
                 Link& link = g.links[c];
                 if (link.j >= 0 && link.J > 0.0)
@@ -266,7 +267,7 @@ class Newton {
     bool is_solved(bool& harmless) {
         const double rounding = rate_rounding(g_), time = std::max(h_, kShortestInterval);
         double energy = 0.0;
-        for (const Body& b : g_.bodies) energy += dot(b.v, b.v) + 0.4 * dot(b.s, b.s);
+        for (const Body& b : g_.bodies) energy += dot(b.v, b.v) + kInertia * dot(b.s, b.s);
         bool solved = true;
         worst_ = 0.0;
         for (std::size_t k = 0; k < active_.size(); ++k) {
@@ -378,7 +379,7 @@ class Newton {
 }  // namespace
 
 double slip_ended(const Group& g, const Link& link) {
-    return ease_of(g, link) * ball_friction(g.around.balls, length(contact_slip(g, link, false))) * link.J;
+    return ease_of(g, link) * g.around.balls.ball_friction()(length(contact_slip(g, link, false))) * link.J;
 }
 
 bool solve_newton(Group& g, double h, const StepOptions& options) {

@@ -20,8 +20,8 @@ Matrix identity(double c) {
 
 // c (1 - d d^T)
 Matrix across_of(double c, const Vec2& d) {
-    return {c * (d.y() * d.y()), -c * (d.x() * d.y()),
-            c * (d.x() * d.x())};  // the products first: the same turned
+    // the products first: the same turned
+    return {c * (d.y() * d.y()), -c * (d.x() * d.y()), c * (d.x() * d.x())};
 }
 
 Matrix minus(const Matrix& a, const Matrix& b) {

@@ -2,11 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 
+#include "carom/engine/tolerances.h"
 #include "contact/resting_group.h"
+#include "physics/motion.h"
 
 namespace carom::resting {
 
@@ -42,8 +43,8 @@ bool is_driven(const Group& g, double h) {
     if (!pushes(g, h, 1.0)) return false;
     double energy = 0.0, power = 0.0;
     for (const Body& b : g.bodies) {
-        energy += dot(b.v, b.v) + 0.4 * dot(b.s, b.s);
-        power += dot(b.v_end, b.v_end - b.v) + 0.4 * dot(b.s_end, b.s_end - b.s);
+        energy += dot(b.v, b.v) + kInertia * dot(b.s, b.s);
+        power += dot(b.v_end, b.v_end - b.v) + kInertia * dot(b.s_end, b.s_end - b.s);
     }
     return power > kWorkRounding * energy;
 }
@@ -87,13 +88,13 @@ void drop_stabilisation(Group& g, double h, const StepOptions& options) {
 double rate_rounding(const Group& g) {
     double size = 0.0;
     for (const Body& b : g.bodies) size = std::max(size, length(b.v) + length(b.v_end) + b.impulses);
-    return kRateUlp * std::numeric_limits<double>::epsilon() * size;
+    return kRateUlp * kEpsilon * size;
 }
 
 double friction_at_start(const Group& g, const Link& link) {
     const Vec2 slip = contact_slip(g, link, false);
     const double size = length(slip);
-    return size > 0.0 ? -ball_friction(g.around.balls, size) * slip.x() / size : 0.0;
+    return size > 0.0 ? -g.around.balls.ball_friction()(size) * slip.x() / size : 0.0;
 }
 
 bool locks(const Group& g, double h) {

@@ -6,6 +6,7 @@
 
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
+#include "contact/roots.h"
 #include "loop/memory.h"
 #include "physics/motion.h"
 
@@ -13,18 +14,38 @@ namespace carom {
 
 struct BallsMemory {
     std::vector<Segment> segments_;
+    /// [s] When the fall of a ball into a pocket began, and when its last flight ended.
+    struct Turns {
+        double fell, flew;
+    };
+    std::vector<Turns> turns_;
 };
 
 class Balls : private Borrowed<BallsMemory> {
   public:
     Balls(const Plan& plan, BallsMemory& memory) : Borrowed(memory), plan_(plan) {
         segments_.assign(plan.sizes.size(), Segment());
+        turns_.assign(plan.sizes.size(), {0.0, -kNever});
     }
 
     int count() const { return static_cast<int>(segments_.size()); }
     /// The present motion of the ball.
     const Segment& segment(int ball) const { return segments_[ball]; }
-    void set(int ball, const Segment& segment) { segments_[ball] = segment; }
+    void set(int ball, const Segment& segment) {
+        const MotionState before = segments_[ball].state;
+        if (flies(before)) turns_[ball].flew = segment.start;
+        if (segment.state == MotionState::kFalling && before != MotionState::kFalling)
+            turns_[ball].fell = segment.start;
+        segments_[ball] = segment;
+    }
+    bool sinks(int ball) const { return segments_[ball].state == MotionState::kFalling; }
+    /// Whether these two meet in space: one of them flies, or has flown since the other began to fall into a pocket. From then on
+    /// they do until one of them is gone, or the ball that falls is back on the cloth: in the plane they may overlap.
+    bool in_space(int a, int b) const {
+        return flies(segments_[a].state) || flies(segments_[b].state) ||
+               (sinks(a) && turns_[b].flew >= turns_[a].fell) ||
+               (sinks(b) && turns_[a].flew >= turns_[b].fell);
+    }
 
     /// [s] since the start of the shot
     double now() const { return now_; }

@@ -7,6 +7,7 @@
 
 #include "carom/engine/tolerances.h"
 #include "contact/detect.h"
+#include "physics/motion.h"
 
 namespace carom {
 
@@ -33,7 +34,7 @@ double closing(const TableTouch& touch, const Motion& m) {
 
 /// Per mass, twice.
 double energy(double R, const Motion& m) {
-    return m.v.squaredNorm() + 0.4 * R * R * m.w.squaredNorm();
+    return m.v.squaredNorm() + kInertia * R * R * m.w.squaredNorm();
 }
 
 /// All that touches one ball, and the ball.

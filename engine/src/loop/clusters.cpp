@@ -12,6 +12,8 @@ namespace {
 
 // [reach] Contacts of balls nearer than this turn as the balls do.
 constexpr double kNearShare = 0.5;
+// [approach] What closes more slowly after a cluster is rounding.
+constexpr double kClosesStill = 1e-12;
 
 /// Gap [m] of two balls, the speed [m/s] at which it closes, and the unit vector from the first to the second.
 struct Gap {
@@ -50,6 +52,11 @@ Clusters::Clusters(const Plan& plan, const Balls& balls, const Detector& detecto
       flights_(plan.in_force(Effect::kAirborne)),
       balls_(balls),
       detector_(detector) {}
+
+// Whether one of two balls falls into a pocket and has no contact with the other in the plane.
+bool Clusters::passes(int a, int b) const {
+    return flights_ && (balls_.sinks(a) || balls_.sinks(b)) && balls_.in_space(a, b);
+}
 
 ClusterBall Clusters::member(int ball) const {
     if (flights_ && flies(balls_.segment(ball).state)) {
@@ -109,7 +116,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
         detector_.balls_near(near_box(here, most), [&](int q) {
             const bool known = std::any_of(members_.begin(), members_.end(),
                                            [q](const ClusterBall& m) { return m.ball == q; });
-            if (known || !(plan_.sizes[q] == plan_.sizes[a])) return;
+            if (known || !(plan_.sizes[q] == plan_.sizes[a]) || passes(here.ball, q)) return;
             ++looks_;
             const ClusterBall candidate = member(q);
             const Gap near = gap_of(here, candidate);
@@ -128,7 +135,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
     for (std::size_t i = 0; i < members_.size(); ++i) {
         for (std::size_t j = i + 1; j < members_.size(); ++j) {
             const Gap near = gap_of(members_[i], members_[j]);
-            if (near.gap <= 2.0 * reach(near))
+            if (!passes(members_[i].ball, members_[j].ball) && near.gap <= 2.0 * reach(near))
                 contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap,
                                      nearness(near.gap, reach(near))});
         }
@@ -166,24 +173,39 @@ void Clusters::share_turning() {
     }
 }
 
+// The balls of the map move, and those of the loop stay. A glancing contact with a fast slip opens in the map as its
+// normal turns, with hardly any force, while the balls pass each other; where they stay they close on, and the same
+// cluster would come again, ten thousand times. So what touches has to open where the balls are: the map goes on with
+// normals that stay, which is how two balls without others meet.
+bool Clusters::closes_still(double v_n) const {
+    return std::any_of(contacts_.begin(), contacts_.end(), [&](const ClusterContact& c) {
+        return c.gap == 0.0 && dot3(c.n, members_[c.i].v - members_[c.j].v) > kClosesStill * v_n;
+    });
+}
+
 long Clusters::resolve(double v_n, bool friction) {
     const BallParams& p = plan_.balls;
     const double e_b = plan_.ball_ball->reads_friction ? p.e_b : 1.0;
     const double R = balls_.radius(members_.front().ball);  // equal for all members
     if (plan_.clusters == ClusterModel::kRigid) return map_.rigid(members_, contacts_, p.e_b, R);
-    const ClusterSettings settings{
+    ClusterSettings settings{
         .R = R,
         .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
         .mu_b = friction ? p.mu_b : 0.0,
         .e_b = e_b,
         .published_cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
         .epsilon = kClusterEpsilon,
-        .longest_step = friction && p.ball_friction() ? kClusterFrictionStep : kClusterStep,
+        .longest_step = friction && p.ball_friction().any() ? kClusterFrictionStep : kClusterStep,
         .integrate = plan_.contact_phase,
         .mu_b_more = friction ? p.mu_b_more : 0.0,
         .mu_b_fall = p.mu_b_fall};
-    const long steps = in_space_ ? map_.compliant_in_space(members_, contacts_, settings, v_n)
-                                 : map_.compliant(members_, contacts_, settings, v_n);
+    long steps = in_space_ ? map_.compliant_in_space(members_, contacts_, settings, v_n)
+                           : map_.compliant(members_, contacts_, settings, v_n);
+    if (in_space_ && steps >= 0 && closes_still(v_n)) {
+        settings.turns = false;
+        const long more = map_.compliant_in_space(members_, contacts_, settings, v_n);
+        steps = more < 0 ? more : steps + more;
+    }
     // Friction and a wedge can press balls together without end: the cluster is then resolved as rigid.
     return steps < 0 ? map_.rigid(members_, contacts_, p.e_b, R) : steps;
 }

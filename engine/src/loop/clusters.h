@@ -44,8 +44,10 @@ class Clusters : private Borrowed<ClustersMemory> {
   private:
     void collect_at(int a, int b, double v_n);
     void share_turning();
+    bool closes_still(double v_n) const;
     Box near_box(const ClusterBall& ball, double gap) const;
     ClusterBall member(int ball) const;
+    bool passes(int a, int b) const;
 
     const Plan& plan_;
     const bool flights_;  // balls may leave the cloth

@@ -37,7 +37,7 @@ Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& 
 double Detector::closing(const Candidate& c) const {
     if (c.contact.with != With::kBall) return 0.0;
     const Segment &s = balls_.segment(c.contact.ball), &q = balls_.segment(c.contact.other);
-    if (flights_ && (flies(s.state) || flies(q.state))) {
+    if (flights_ && balls_.in_space(c.contact.ball, c.contact.other)) {
         const Placed one = placed_at(s, c.time - s.start, plan_.gravity),
                      two = placed_at(q, c.time - q.start, plan_.gravity);
         return -dot3(two.position - one.position, two.velocity - one.velocity);

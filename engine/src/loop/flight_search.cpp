@@ -14,14 +14,14 @@ Flight Detector::flight(int ball, double from) const {
     const Segment& s = balls_.segment(ball);
     const double tau = from - s.start;
     const Placed placed = placed_at(s, tau, plan_.gravity);
-    const bool falls = flies(s.state) || s.state == MotionState::kFalling;
-    return {placed.position, placed.velocity, Vec3(s.a.x(), s.a.y(), falls ? -plan_.gravity : 0.0),
+    return {placed.position, placed.velocity,
+            Vec3(s.a.x(), s.a.y(), is_off_cloth(s.state) ? -plan_.gravity : 0.0),
             std::max(0.0, s.duration - tau),
             kClosingUlp * std::numeric_limits<double>::epsilon() *
                 (length3(placed.velocity) + mover_[ball].surface)};
 }
 
-// [s] Time from `from` on until two balls meet, one of which flies.
+// [s] Time from `from` on until two balls meet, one of which flies, or falls into a pocket.
 double Detector::time_to_flight(int a, int b, double from) const {
     const Flight one = flight(a, from), two = flight(b, from);
     const Flight relative{two.r - one.r, two.v - one.v, two.a - one.a, std::min(one.horizon, two.horizon),

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "carom/engine/airborne.h"
 #include "physics/motion.h"
 
 namespace carom {
@@ -17,17 +19,27 @@ namespace {
 
 // [-] Initial capacity for segments and events: enough for a break. It doubles when it is exceeded.
 constexpr std::size_t kRoom = 256;
+// [sqrt(2 R/g)] A ball in the air that has not left its place for so long balances: what stands off its support by a
+// rounding slides off within half of it. 5 s of a pool ball.
+constexpr double kLongestBalance = 65.0;
 
 }  // namespace
 
 Log::Log(const Plan& plan, const SimulateOptions& options, Balls& balls, LogMemory& memory, Keep keep)
-    : Borrowed(memory), plan_(plan), options_(options), balls_(balls), geometry_(plan.geometry), keep_(keep) {
+    : Borrowed(memory),
+      plan_(plan),
+      options_(options),
+      balls_(balls),
+      geometry_(plan.geometry),
+      keep_(keep),
+      struck_(struck_ball(plan.scene)) {
     if (options.profile && keep == Keep::kRecord) costs_.emplace();
     events_.clear();
     segments_.clear();
     cluster_ball_.clear();
     cluster_end_.clear();
     touched_.clear();
+    stays_.assign(plan.in_force(Effect::kAirborne) ? plan.sizes.size() : 0, {0.0, Vec3::Zero()});
     reserve();
 }
 
@@ -45,7 +57,7 @@ void Log::resume(const Record& so_far) {
     so_far_ = &so_far;
     events_ = so_far.events;
     for (std::size_t i = 0; i < so_far.tracks.size(); ++i)
-        balls_.set(static_cast<int>(i), so_far.tracks[i].segments.back());
+        for (const Segment& s : so_far.tracks[i].segments) balls_.set(static_cast<int>(i), s);
     balls_.advance_to(so_far.duration);
     reserve();
 }
@@ -55,6 +67,31 @@ void Log::cluster(int a, int b, const std::vector<ClusterBall>& balls) {
     event(EventType::kBallCluster, a, b, static_cast<int>(before + cluster_end_.size()));
     cluster_ball_.insert(cluster_ball_.end(), balls.begin(), balls.end());
     cluster_end_.push_back(cluster_ball_.size());
+}
+
+void Log::watch(int ball) {
+    if (stays_.empty()) return;
+    const Segment& s = balls_.segment(ball);
+    Stay& stay = stays_[ball];
+    // It would have to rise by more than the lowest bounce to leave.
+    const double gravity = balls_.motion(ball).gravity, end = bounce_end(balls_.radius(ball), gravity);
+    const bool stays =
+        flies(s.state) && length3(s.v) < end && 2.0 * gravity * length3(s.r - stay.place) < end * end;
+    if (!stays) {
+        stay = {balls_.now(), s.r};
+        return;
+    }
+    const double longest = kLongestBalance * std::sqrt(2.0 * balls_.radius(ball) / gravity);
+    if (!(balls_.now() - stay.since > longest)) return;
+    const auto met = std::find_if(events_.rbegin(), events_.rend(), [ball](const Event& e) {
+        return e.type != EventType::kBallCloth &&
+               (e.a == ball || (kind(e.type).partner == Partner::kBall && e.b == ball));
+    });
+    constexpr const char* kMove = "; move one of them by a thousandth of a millimetre";
+    if (met != events_.rend() && kind(met->type).partner == Partner::kBall)
+        fail(fmt::format("balls {} and {} balance on each other{}", id(met->a), id(met->b), kMove));
+    fail(fmt::format("ball {} balances on a cushion or a jaw; move it by a thousandth of a millimetre",
+                     id(ball)));
 }
 
 void Log::fall(int ball, int pocket) {

@@ -31,7 +31,17 @@ struct LogMemory {
     std::vector<ClusterBall> cluster_ball_;
     std::vector<std::size_t> cluster_end_;
     std::vector<int> touched_;
+    /// Of a ball in the air: where it has been, but for trembling, and since when [s].
+    struct Stay {
+        double since;
+        Vec3 place;
+    };
+    std::vector<Stay> stays_;
+    std::vector<Segment> of_struck_;  // by outcome()
 };
+
+/// The ball that the cue strikes, or else the first one that moves at the start; or -1.
+int struck_ball(const Scene& scene);
 
 class Log : private Borrowed<LogMemory> {
     /// [-] Most consecutive iterations without an event; more are reported as a stalled simulation.
@@ -46,13 +56,16 @@ class Log : private Borrowed<LogMemory> {
     /// Starts a new motion of the ball at the present time.
     void begin(int ball, const Segment& segment) {
         balls_.set(ball, segment);
-        if (keep_ != Keep::kOutcome) segments_.push_back({segment, ball});
+        if (keep_ != Keep::kOutcome || ball == struck_) segments_.push_back({segment, ball});
         touched_.push_back(ball);
     }
     void event(EventType type, int ball, int partner = -1, int detail = -1) {
         events_.push_back({balls_.now(), type, ball, partner, detail});
         quiet_rounds_ = 0;
     }
+    /// The ball has begun a motion after an impact, and may fly. @throws SimulationError if it trembles in the air on what is
+    /// under it, and would for ever
+    void watch(int ball);
     /// The last event was a slow contact.
     void mark_slow() { events_.back().slow = true; }
     /// An event of a ball and a part of the table, or of two balls.
@@ -94,7 +107,7 @@ class Log : private Borrowed<LogMemory> {
     Record record(StopReason why);
     /// The same of a run from the beginning, in the memory that the record has.
     void record(StopReason why, Record& record);
-    void outcome(StopReason why, Outcome& outcome) const;
+    void outcome(StopReason why, Outcome& outcome);
 
   private:
     void reserve();
@@ -102,6 +115,7 @@ class Log : private Borrowed<LogMemory> {
     void begin_record(Record& record) const;
     void finish_record(StopReason why, Record& record);
     int met_by(int struck, const Event& event) const;
+    bool is_driven(const Event& event);
     std::uint64_t hash() const;
     bool is_crowded() const {
         const std::vector<Event>& e = events_;
@@ -116,6 +130,7 @@ class Log : private Borrowed<LogMemory> {
     Balls& balls_;
     const Geometry& geometry_;
     Keep keep_;
+    const int struck_;
     const Record* so_far_ = nullptr;  // of a resumed run
     std::optional<Costs> costs_;
     std::vector<EventCost> event_costs_;

@@ -6,23 +6,13 @@
 #include <span>
 
 #include "base/record_hash.h"
+#include "carom/engine/frozen.h"
 #include "loop/log.h"
 #include "physics/motion.h"
 
 namespace carom {
 
 namespace {
-
-/// The ball that is struck, or else the first one that moves; -1 if no ball moves.
-int struck_ball(const Scene& scene) {
-    for (std::size_t i = 0; i < scene.ball.size(); ++i) {
-        const BallStart& ball = scene.ball[i];
-        const bool moves =
-            scene.cue ? ball.id == scene.cue->ball : !ball.velocity.isZero(0.0) || !ball.spin.isZero(0.0);
-        if (moves) return static_cast<int>(i);
-    }
-    return -1;
-}
 
 /// The ball of a cluster that is nearest to one of its members; -1 if that one is no member.
 int nearest(std::span<const ClusterBall> cluster, int ball) {
@@ -41,6 +31,24 @@ int nearest(std::span<const ClusterBall> cluster, int ball) {
 }
 
 }  // namespace
+
+int struck_ball(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.ball.size(); ++i) {
+        const BallStart& ball = scene.ball[i];
+        const bool moves =
+            scene.cue ? ball.id == scene.cue->ball : !ball.velocity.isZero(0.0) || !ball.spin.isZero(0.0);
+        if (moves) return static_cast<int>(i);
+    }
+    return -1;
+}
+
+/// Whether the struck ball was driven to the cushion or the jaw that it meets in this event.
+bool Log::is_driven(const Event& event) {
+    if (of_struck_.empty())
+        for (const BallSegment& s : segments_)
+            if (s.ball == struck_) of_struck_.push_back(s.segment);
+    return !still_frozen(plan_.scene.table, event, of_struck_, balls_.radius(struck_));
+}
 
 // The ball that the struck ball touches in this event, or -1.
 int Log::met_by(int struck, const Event& e) const {
@@ -66,12 +74,13 @@ std::uint64_t Log::hash() const {
     return hash.value();
 }
 
-void Log::outcome(StopReason why, Outcome& out) const {
+void Log::outcome(StopReason why, Outcome& out) {
+    of_struck_.clear();
     out.stopped = why;
     out.duration = balls_.now();
     out.events = static_cast<std::int64_t>(events_.size());
     out.clusters = static_cast<int>(cluster_end_.size());
-    out.struck = struck_ball(plan_.scene);
+    out.struck = struck_;
     out.first_hit = -1;
     out.contacts = out.approach_cushions = 0;
     out.hash = keep_ != Keep::kOutcome && options_.hash ? hash() : 0;
@@ -79,7 +88,8 @@ void Log::outcome(StopReason why, Outcome& out) const {
     for (int i = 0; i < balls_.count(); ++i) {
         const Segment& s = balls_.segment(i);
         out.balls[i].position =
-            placed_at(s, std::min(balls_.now() - s.start, s.duration), plan_.gravity).position;
+            placed_at(s, std::min(balls_.now() - s.start, s.duration), plan_.gravity, balls_.radius(i))
+                .position;
     }
     int fallen = 0;
     for (const Event& e : events_) {
@@ -88,7 +98,7 @@ void Log::outcome(StopReason why, Outcome& out) const {
         const bool table = of.partner == Partner::kCushion || of.partner == Partner::kJaw;
         if (table && of.phase != EventPhase::kRelease) {
             ++ball.cushions;
-            if (e.a == out.struck && out.contacts < 2) ++out.approach_cushions;
+            if (e.a == struck_ && out.contacts < 2 && is_driven(e)) ++out.approach_cushions;
         }
         const int met = out.struck < 0 || of.partner != Partner::kBall ? -1 : met_by(out.struck, e);
         if (met >= 0 && !out.balls[met].met) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "loop/detector.h"
+#include "physics/nose_reach.h"
 
 namespace carom {
 
@@ -38,8 +39,7 @@ Box Detector::swept(int ball, double from, double duration) const {
     const bool whole = from == s.start;
     const Vec2 r = planar(whole ? s.r : position_at(s, from - s.start)),
                v = planar(whole ? s.v : velocity_at(s, from - s.start));
-    // A ball in the air may meet a nose at up to sqrt(2) R (nose_reach).
-    const double R = flights_ && flies(s.state) ? 1.5 * balls_.radius(ball) : balls_.radius(ball),
+    const double R = flights_ && flies(s.state) ? kNoseReach * balls_.radius(ball) : balls_.radius(ball),
                  margin = R * (1.0 + kBoxShare) + kBoxShare * (std::abs(r.x()) + std::abs(r.y()));
     Box box{};
     extend(r.x(), v.x(), s.a.x(), duration, margin, box.low_x, box.high_x);
@@ -72,9 +72,7 @@ void Detector::bound(int ball, double from, const RoundedBox* whole) {
 // after which its contacts are searched again. `mine` is the path of ball a from the start of its segment.
 Candidate Detector::pair(int a, const Path& mine, int b, double latest) const {
     const Segment &s = balls_.segment(a), &q = balls_.segment(b);
-    const bool in_air = flights_ && (flies(s.state) || flies(q.state));
-    // A ball in a pocket's mouth is out of the way of those above the cloth.
-    if (in_air && (s.state == MotionState::kFalling || q.state == MotionState::kFalling)) return {};
+    const bool in_air = flights_ && balls_.in_space(a, b);
     const double from = std::max(s.start, q.start);
     const double until = std::min(std::min(mover_[a].until, mover_[b].until), latest);
     // Most pairs end here. The parabolas are those of the paths but for rounding, far below the margin of the rejection, and the

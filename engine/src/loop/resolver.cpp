@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -19,6 +20,11 @@ constexpr int kLongImpact = 1000;
 
 kernel::Ball kernel_ball(const Vec3& r, const Vec3& v, const Vec3& w) {
     return {{r.x(), r.y(), r.z()}, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()}};
+}
+
+/// [m^2/s^2] Per mass.
+double energy_twice(double R, const Velocities& ball) {
+    return ball.v.squaredNorm() + 0.4 * R * R * ball.w.squaredNorm();
 }
 
 Vec3 vec(const double (&x)[3]) {
@@ -93,9 +99,12 @@ void Resolver::ball_ball(int a, int b) {
     if (resting_.try_hold(approach, plan_.balls.e_b)) return;
     if (plan_.clusters != ClusterModel::kSequential && cluster(a, b, approach.v_n)) return;
 
+    // In the plane, whatever height the fall of one of them began at.
+    const bool sinks = balls_.sinks(one) || balls_.sinks(two);
+    const Vec3 level2(r2.x(), r2.y(), sinks ? r1.z() : r2.z());
     const kernel::ImpactResult result =
         collide(one, two, kernel_ball(r1, balls_.velocity(one), balls_.spin(one)),
-                kernel_ball(r2, balls_.velocity(two), balls_.spin(two)));
+                kernel_ball(level2, balls_.velocity(two), balls_.spin(two)));
     if (result.status == kernel::ImpactStatus::kOk) log_.event(EventType::kBallBall, a, b);
     resting_.strike(one, after_impact(one, r1, vec(result.v1), vec(result.w1)));
     resting_.strike(two, after_impact(two, r2, vec(result.v2), vec(result.w2)));
@@ -213,13 +222,17 @@ void Resolver::cushion(const Contact& contact) {
     const Vec3 r = balls_.position(ball);
     Vec3 v = balls_.velocity(ball), w = balls_.spin(ball);
     const char* const model = touches[0].model->name;
-    const double up = flights_ && plan_.balls.e_h > 0.0 ? hop(touches[0], {v, w}) : 0.0;
+    const Velocities came{v, w};
+    const double up = flights_ && plan_.balls.e_h > 0.0 ? hop(touches[0], came) : 0.0;
     if (!bounce(plan_, touches, v, w))
         log_.fail(
             fmt::format("the cushion model {} found no solution for the impact of ball {}; use another one",
                         model, log_.id(ball)));
     const MotionParams& motion = balls_.motion(ball);
-    v.z() = up;
+    // A model in the plane may keep more of the speed than the law in space that throws the ball up:
+    // the hop takes what has been lost.
+    const double lost = energy_twice(motion.R, came) - energy_twice(motion.R, {v, w});
+    v.z() = std::min(up, std::sqrt(std::max(0.0, lost)));
     const Segment after = after_impact(ball, r, v, w);
     // A ball that rolls in slowly is decelerated before the impact, but the spin that it keeps drives it back to the
     // cushion and ends the bounce: the acceleration after the impact decides.
@@ -261,6 +274,19 @@ void Resolver::pocket(const Contact& contact) {
     log_.event(EventType::kBallEdge, contact);
 }
 
+// Whether another ball is where a ball would come out of a pocket: that one passed above it while it had sunk.
+bool Resolver::is_barred(int ball, const Vec3& place) const {
+    const double R = balls_.radius(ball), reach = R * (1.0 + kBoxShare);
+    bool barred = false;
+    detector_.balls_near({place.x() - reach, place.y() - reach, place.x() + reach, place.y() + reach},
+                         [&](int other) {
+                             const double apart = length3(balls_.placed(other).position - place);
+                             barred |= other != ball && !is_gone(balls_.segment(other).state) &&
+                                       apart < R + balls_.radius(other) - kTouchTolerance;
+                         });
+    return barred;
+}
+
 // A falling ball comes to the edge from inside.
 void Resolver::leave_pocket(const Contact& contact) {
     const int ball = contact.ball;
@@ -270,8 +296,9 @@ void Resolver::leave_pocket(const Contact& contact) {
     const Vec3 r = balls_.position(ball), v = balls_.velocity(ball);
     const Vec2 out = planar(r) - pocket.center, n = out / length(out);
     const double v_n = dot(n, planar(v)), falls = fall_speed(s, balls_.now() - s.start, motion.gravity);
-    const auto away =
-        climbs(v_n, falls * falls / (2.0 * motion.gravity * motion.R), motion.R, motion.gravity);
+    // The height at which the fall began is that of a ball on the cloth, unless another ball has hit it since.
+    const double sunk = falls * falls / (2.0 * motion.gravity * motion.R) - (r.z() - motion.R) / motion.R;
+    const auto away = climbs(v_n, std::max(0.0, sunk), motion.R, motion.gravity);
     if (!away || !is_bed(plan_.scene.table, pocket, planar(r), motion.R)) {
         log_.fall(ball, contact.other);
         return;
@@ -281,8 +308,15 @@ void Resolver::leave_pocket(const Contact& contact) {
         0x1p-50 * (pocket.radius + std::abs(pocket.center.x()) + std::abs(pocket.center.y()));
     const Vec2 edge = pocket.center + (pocket.radius + rounding) * n;
     const Vec2 after = planar(v) + (*away - v_n) * n;
-    log_.begin(ball, start_segment(balls_.now(), {edge.x(), edge.y(), r.z()}, {after.x(), after.y(), 0.0},
-                                   balls_.spin(ball), motion));
+    const bool high = sunk < 0.0;  // another ball has thrown it up
+    const Vec3 place(edge.x(), edge.y(), high ? motion.R * (1.0 - sunk) : motion.R);
+    if (flights_ && is_barred(ball, place)) {
+        log_.fall(ball, contact.other);
+        return;
+    }
+    const Vec3 leaves(after.x(), after.y(), high ? -falls : 0.0);
+    log_.begin(ball, high ? airborne_segment(balls_.now(), place, leaves, balls_.spin(ball), motion)
+                          : start_segment(balls_.now(), place, leaves, balls_.spin(ball), motion));
     log_.event(EventType::kBallEdge, contact);
 }
 

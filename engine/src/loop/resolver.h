@@ -34,18 +34,19 @@ class Resolver {
     void cushion(const Contact& contact);
     void pocket(const Contact& contact);
     void leave_pocket(const Contact& contact);
+    bool is_barred(int ball, const Vec3& place) const;
     void transition(int ball);
     Segment after_impact(int ball, const Vec3& r, const Vec3& v, const Vec3& w) const;
     // resolver_air.cpp
     bool is_free(int a, int b) const;
     void free_balls(int one, int two);
-    bool balances(int a, int b) const;
     void cushion_in_air(const Contact& contact);
     void pocket_in_air(const Contact& contact);
     double hop(const TableTouch& touch, const Velocities& before) const;
     void land(int ball);
     void leave_table(int ball);
     void go_on(int ball, const Vec3& r, Velocities after);
+    void fall_on(int ball, const Vec3& r, const Velocities& after);
     void begin(int ball, const Vec3& r, const Vec3& v, const Vec3& w);
 
     const Plan& plan_;

@@ -1,8 +1,6 @@
 // Impacts of balls in the air, and those after which balls leave the cloth.
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "contact/pocket_edge.h"
@@ -15,35 +13,32 @@ namespace {
 
 // [R] A ball that has flown over a pocket and is not higher than this at its far side falls into it. pooltool's value.
 constexpr double kCatchHeight = 1.4;
-// [events] A pair that has had so many in a row to itself balances: the upper ball trembles on the lower one for ever. That is 10 s.
-constexpr std::size_t kMostTrembles = 20000;
 
 }  // namespace
 
-/// Whether two balls meet as free ones: where one of them flies, and in the model that takes them so.
+/// Whether two balls meet as free ones: in space, and in the model that takes them so.
 bool Resolver::is_free(int a, int b) const {
-    return plan_.ball_ball->free || flies(balls_.segment(a).state) || flies(balls_.segment(b).state);
+    return plan_.ball_ball->free || balls_.in_space(a, b);
 }
 
 /// Begins the motion of a ball after an impact. One that lies on the cloth and is pressed down hits it now.
 void Resolver::go_on(int ball, const Vec3& r, Velocities after) {
-    const bool lies = !(r.z() > balls_.radius(ball));
-    if (lies && after.v.z() < 0.0 && balls_.segment(ball).state != MotionState::kFalling) {
-        hit_cloth(plan_.balls, balls_.motion(ball), after);
+    const MotionParams& motion = balls_.motion(ball);
+    const bool lies = !(r.z() > motion.R);
+    if (lies && after.v.z() < 0.0 && !balls_.sinks(ball)) {
+        hit_cloth(plan_.balls, motion, after);
         log_.event(EventType::kBallCloth, ball);
     }
     begin(ball, r, after.v, after.w);
+    log_.watch(ball);
 }
 
-/// Whether all has been quiet for long but for these two.
-bool Resolver::balances(int a, int b) const {
-    const std::vector<Event>& events = log_.events();
-    if (events.size() < kMostTrembles) return false;
-    const auto of_the_pair = [a, b](const Event& e) {
-        return e.type == EventType::kBallCloth ? e.a == a || e.a == b
-                                               : e.type == EventType::kBallBall && e.a == a && e.b == b;
-    };
-    return std::all_of(events.end() - kMostTrembles, events.end(), of_the_pair);
+/// A ball that falls into a pocket has been hit in space.
+void Resolver::fall_on(int ball, const Vec3& r, const Velocities& after) {
+    const MotionParams& motion = balls_.motion(ball);
+    const double falls = -after.v.z(), fallen = falls * falls / (2.0 * motion.gravity);
+    log_.begin(
+        ball, falling_segment(balls_.now(), {r.x(), r.y(), r.z() + fallen}, after.v, after.w, falls, motion));
 }
 
 void Resolver::free_balls(int a, int b) {
@@ -56,14 +51,15 @@ void Resolver::free_balls(int a, int b) {
     const bool swap = before(pb.position, pa.position);
     const int one = swap ? b : a, two = swap ? a : b;
     Placed p1 = swap ? pb : pa, p2 = swap ? pa : pb;
-    const auto sinks = [this](int ball) { return balls_.segment(ball).state == MotionState::kFalling; };
-    // A ball that falls into a pocket meets others in the plane, as everywhere.
-    if (sinks(one) || sinks(two)) {
+    const bool in_space = balls_.in_space(one, two), sinks = balls_.sinks(one) || balls_.sinks(two);
+    if (sinks && !in_space) {
         p1 = {balls_.position(one), balls_.velocity(one)};
         p2 = {balls_.position(two), balls_.velocity(two)};
         p1.position.z() = p2.position.z() = 0.0;
     }
-    const auto lies = [this](int ball) { return !flies(balls_.segment(ball).state); };
+    const auto lies = [&](int ball) {
+        return !flies(balls_.segment(ball).state) && !(in_space && balls_.sinks(ball));
+    };
 
     if (lies(one) && lies(two)) {
         const Approach approach = approach_of(balls_, one, two);
@@ -77,15 +73,11 @@ void Resolver::free_balls(int a, int b) {
     const Vec3 apart = p2.position - p1.position, n = apart / length3(apart);
     Velocities ball1{p1.velocity, balls_.spin(one)}, ball2{p2.velocity, balls_.spin(two)};
     const double v_n = dot3(ball1.v - ball2.v, n);
-    if (plan_.clusters != ClusterModel::kSequential && !sinks(one) && !sinks(two) &&
-        plan_.sizes[one] == plan_.sizes[two] && cluster(a, b, v_n))
+    if (plan_.clusters != ClusterModel::kSequential && !sinks && plan_.sizes[one] == plan_.sizes[two] &&
+        cluster(a, b, v_n))
         return;
     const double parting = parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity);
     const bool slow = pair.balls.e_b * v_n < parting;
-    if (slow && balances(a, b))
-        log_.fail(fmt::format(
-            "balls {} and {} balance on each other; move one of them by a thousandth of a millimetre",
-            log_.id(a), log_.id(b)));
     {
         const Stopwatch watch(kernel_ns_);
         if (slow)
@@ -101,11 +93,12 @@ void Resolver::free_balls(int a, int b) {
     resting_.release(two);
     log_.event(EventType::kBallBall, a, b);
     if (slow) log_.mark_slow();
-    const auto here = [&](int ball) {
-        return lies(ball) ? balls_.position(ball) : balls_.placed(ball).position;
-    };
-    go_on(one, here(one), ball1);
-    go_on(two, here(two), ball2);
+    for (const auto& [ball, after] : {std::pair{one, ball1}, std::pair{two, ball2}}) {
+        if (in_space && balls_.sinks(ball))
+            fall_on(ball, balls_.placed(ball).position, after);
+        else
+            go_on(ball, lies(ball) ? balls_.position(ball) : balls_.placed(ball).position, after);
+    }
 }
 
 void Resolver::cushion_in_air(const Contact& contact) {

@@ -1,6 +1,8 @@
 // One run of the simulation: its parts and the loop that uses them (simulate.cpp).
 #pragma once
 
+#include <cstdint>
+
 #include "loop/balls.h"
 #include "loop/detector.h"
 #include "loop/log.h"
@@ -34,11 +36,14 @@ class Run {
   private:
     StopReason run(const Record* so_far);
     void start_balls();
-    bool is_full() const;
+    void check_digits(int ball, double time);
+    /// Whether as many events came as may. @throws SimulationError where nobody asked to stop there
+    bool is_full();
     StopReason stop(double next);
 
     const Plan& plan_;
-    double stop_;  // [s] end of the simulated time
+    double stop_;        // [s] end of the simulated time
+    std::int64_t most_;  // events of which none follows
     Balls balls_;
     Log log_;
     RestingContacts resting_;

@@ -1,19 +1,33 @@
 // The event loop: find the next event -> advance -> resolve -> search the contacts of the balls whose motion changed.
 #include "carom/engine/simulate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <memory>
 
+#include "carom/engine/tolerances.h"
+#include "contact/detect.h"
 #include "loop/run.h"
 #include "physics/cue.h"
 #include "physics/motion.h"
 
 namespace carom {
 
+namespace {
+
+// [R] A run ends when the digits of its clock leave more than this open in the place of a ball.
+constexpr double kLostShare = 1e-3;
+// [s] Before this the clock has digits enough for any speed that a scene may have, and nothing is looked at.
+constexpr double kDigitsAreMany = 1e3;
+
+}  // namespace
+
 Run::Run(const Plan& plan, const SimulateOptions& options, RunBuffers::Memory& memory, Keep keep)
     : plan_(plan),
       stop_(std::min(plan.scene.stop.time.value_or(kNever), options.until.value_or(kNever))),
+      most_(std::min<std::int64_t>(plan.scene.stop.events.value_or(kUsualEvents), kMostEvents)),
       balls_(plan, memory.balls),
       log_(plan, options, balls_, memory.log, keep),
       resting_(plan, balls_, log_, memory.resting),
@@ -55,12 +69,29 @@ StopReason Run::run(const Record* so_far) {
         log_.begin_round();
         const Candidate next = detector_.next();
         if (next.time > stop_ || next.time == kNever) return stop(next.time);
+        if (next.time > kDigitsAreMany && next.contact.with != With::kNothing) {
+            for (const int ball : {next.contact.ball, next.contact.partner()})
+                if (ball >= 0) check_digits(ball, next.time);
+        }
         balls_.advance_to(next.time);
         resolver_.resolve(next.contact);
         detector_.update(log_.touched());
         log_.end_round();
     }
     return StopReason::kEvents;
+}
+
+// Without friction a slow ball can be under way for longer than the clock has digits for: it would pass through what it meets.
+void Run::check_digits(int ball, double time) {
+    const Segment& s = balls_.segment(ball);
+    const double R = balls_.radius(ball);
+    const double end = kLostShare * R / (kClosingUlp * kEpsilon * (length3(s.v) + R * length3(s.w)));
+    if (!(time > end)) return;
+    balls_.advance_to(end);
+    log_.fail(fmt::format(
+        "after so long the place of ball {} is only known to {:.2g} m, and it has yet to meet something; "
+        "end the run before with [stop] time, or let friction do it",
+        log_.id(ball), kLostShare * R));
 }
 
 void Run::start_balls() {
@@ -81,9 +112,11 @@ void Run::start_balls() {
     }
 }
 
-bool Run::is_full() const {
-    const auto most = plan_.scene.stop.events;
-    return most && static_cast<std::int64_t>(log_.events().size()) >= *most;
+bool Run::is_full() {
+    if (static_cast<std::int64_t>(log_.events().size()) < most_) return false;
+    if (plan_.scene.stop.events == most_) return true;
+    log_.fail(plan_.scene.stop.events ? "no run may have more events"
+                                      : "add [stop] with events if more shall come, or with time");
 }
 
 // Called if the next event is later than the end of the simulated time, or if there is none.

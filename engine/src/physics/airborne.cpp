@@ -27,8 +27,7 @@ double parting_speed(double R, double gravity) {
 }
 
 double cloth_restitution(const BallParams& balls, double V) {
-    if (balls.e_t_more == 0.0) return balls.e_t;
-    return std::min(1.0, balls.e_t + balls.e_t_more * exponential(-balls.e_t_fall * V));
+    return std::min(1.0, balls.cloth_restitution()(V));
 }
 
 void hit_cloth(const BallParams& balls, const MotionParams& motion, Velocities& ball) {
@@ -71,11 +70,11 @@ void hit_ball(const FreePair& pair, const Vec3& n, Velocities& ball1, Velocities
     const double m_r = size1.m * size2.m / (size1.m + size2.m);
     const double J_n = (1.0 + balls.e_b) * m_r * v_n;
     exchange(pair, J_n * n, ball1, ball2);
-    if (!balls.ball_friction()) return;
+    if (!balls.ball_friction().any()) return;
     const Vec3 c = (v - v_n * n) + cross3(a, n);
     const double slip = length3(c);
     if (!(slip > 0.0)) return;
-    const double J_t = std::min(ball_friction(balls, slip) * J_n, 2.0 / 7.0 * m_r * slip);
+    const double J_t = std::min(balls.ball_friction()(slip) * J_n, 2.0 / 7.0 * m_r * slip);
     const Vec3 F = (J_t / slip) * c, turn = cross3(n, F);
     exchange(pair, F, ball1, ball2);
     ball1.w -= 2.5 / (size1.m * size1.R) * turn;
@@ -108,7 +107,7 @@ bool hit_nose(const BallParams& balls, double R, const CushionModelInfo& model, 
     const double slip = length3(u);
     ball.v += (1.0 + e_c) * v_n * n;
     if (model.grip == nullptr || !(slip > 0.0)) return false;
-    const double J_t = model.grip(e_c, cushion_friction(balls, slip), v_n, slip);
+    const double J_t = model.grip(e_c, balls.cushion_friction()(slip), v_n, slip);
     const Vec3 j = (J_t / slip) * u;
     ball.v -= j;
     ball.w += 2.5 / R * cross3(n, j);

@@ -136,9 +136,9 @@ namespace {
 
 // L/(2 R), by which normals turn. The stiffness is that of pool balls, so that small balls at hundreds of m/s would overlap by more than their
 // radius, and then no normal is left; they are taken for larger ones that touch in the same places.
-double curvature(double L, double R) {
+double curvature(double L, const ClusterSettings& settings) {
     constexpr double kLargest = 0.125;
-    return std::min(kLargest, L / (2.0 * R));
+    return settings.turns ? std::min(kLargest, L / (2.0 * settings.R)) : 0.0;
 }
 
 // A slow pair can be the first to touch where faster ones are about to: these set the scale, or their
@@ -169,7 +169,7 @@ long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<Cl
                                      contacts_.data(),
                                      on_cache_line(numbers_),
                                      places_.data(),
-                                     curvature(L, settings.R)};
+                                     curvature(L, settings)};
     const long steps = settings.integrate(phase, law_of(settings, V), settings.longest_step,
                                           kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
@@ -191,7 +191,7 @@ long ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
     numbers_.resize(std::max(numbers_.size(), kernel::contact_phase_in_space_numbers(m, n)));
     const double before = energy(3);
     const long steps = kernel::contact_phase_in_space(
-        {m, n, motion_.data(), contacts_in_space_.data(), numbers_.data(), curvature(L, settings.R)},
+        {m, n, motion_.data(), contacts_in_space_.data(), numbers_.data(), curvature(L, settings)},
         law_of(settings, V), settings.longest_step, kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
     keep_energy(before, 3);

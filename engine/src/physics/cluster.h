@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "carom/engine/tolerances.h"
 #include "carom/engine/vec.h"
 #include "carom/kernel/contact_phase.h"
 
@@ -14,7 +15,7 @@ namespace carom {
 /// for approaches near V. Above 1 by what the reach may jump where another contact sets it.
 inline constexpr double kClusterFaster = 1.05;
 /// [share of R] Gaps up to this are rounding of the positions: the balls touch.
-inline constexpr double kTouchUlp = 64.0 * 2.220446049250313e-16;
+inline constexpr double kTouchUlp = 64.0 * kEpsilon;
 
 /// [V] and [L/V] Regularisation of the friction in the compliant map, from which its errors come: 6e-4 V in racks that touch, up to 2.7e-3 V
 /// where gaps of 0.3 mm let errors grow (lab/notes/2026-11-moving_normals.md); and its longest steps, without friction (at the speed V) and with it.
@@ -47,6 +48,7 @@ struct ClusterSettings {
     kernel::ContactPhaseFunction integrate;
     /// At a slip of u m/s the friction between balls is mu_b + mu_b_more exp(-mu_b_fall u).
     double mu_b_more = 0.0, mu_b_fall = 0.0;
+    bool turns = true;  ///< false: all normals stay as the contacts give them
 };
 
 /// Duration of a Hertz contact at the approach speed V, t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation 5).

@@ -11,7 +11,6 @@ namespace carom {
 
 namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 // Returns the time until |w_z| has decayed to 0.
 double spin_time(double w_z, const MotionParams& p) {
@@ -107,7 +106,7 @@ Segment falling_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, d
     s.v = Vec3(v.x(), v.y(), -falls);
     s.w = w;
     s.a = s.dw = Vec2::Zero();
-    s.duration = std::max(0.0, (std::sqrt(2.0 * p.gravity * p.R) - falls) / p.gravity);
+    s.duration = std::max(0.0, (std::sqrt(2.0 * p.gravity * r.z()) - falls) / p.gravity);
     s.state = MotionState::kFalling;
     return s;
 }

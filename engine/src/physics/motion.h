@@ -8,6 +8,9 @@
 
 namespace carom {
 
+/// [m R^2] Moment of inertia of a solid ball about its centre.
+inline constexpr double kInertia = 0.4;
+
 /// Slip at the cloth, u = v + w x (-R z) = (v_x - R w_y, v_y + R w_x) [m/s].
 Vec2 cloth_slip(const Vec3& v, const Vec3& w, double R);
 
@@ -19,7 +22,8 @@ MotionParams motion_params(const BallParams& balls, double gravity, double R);
 Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
 
 /// The segment of a ball that falls into a pocket at the speed `falls` [m/s]: it moves on straight, without the cloth, until its
-/// centre has sunk by its radius.
+/// centre is as low as the cloth.
+/// @param r  with the height at which the fall began, or would have begun: its centre is falls^2/2g lower
 Segment falling_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, double falls,
                         const MotionParams& params);
 
@@ -44,6 +48,14 @@ inline Placed placed_at(const Segment& segment, double tau, double gravity) {
     p.position.z() -= falls * falls / (2.0 * gravity);
     p.velocity.z() = -falls;
     return p;
+}
+
+/// The same of a ball of radius R that may have left the table: on the floor it stays.
+inline Placed placed_at(const Segment& segment, double tau, double gravity, double R) {
+    const double floor = until_floor(segment, R, gravity);
+    if (tau < floor) return placed_at(segment, tau, gravity);
+    const Vec3 there = position_at(segment, floor);
+    return {Vec3(there.x(), there.y(), R - kFloorDepth), Vec3::Zero()};
 }
 
 /// The segment of a ball that flies until it comes down on the cloth: a parabola, without friction. r_z is at least R.

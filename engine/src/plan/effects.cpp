@@ -32,6 +32,12 @@ Need coefficient(const Facts& f, const char* symbol, double value) {
     return {value != 0.0, f.say("{} = {}", symbol, value)};
 }
 
+/// "mu_b = 0.06", or the formula where it falls with the slip.
+std::string say(const Facts& f, const char* symbol, const Falling& x) {
+    return x.constant() ? f.say("{} = {}", symbol, x.at_rest)
+                        : f.say("{} = {} + {} exp(-{} u)", symbol, x.at_rest, x.more, x.fall);
+}
+
 Need no_two_balls_meet(const Facts& f) {
     return {false, f.say("no two balls can meet: {}", f.reach.why)};
 }
@@ -58,7 +64,7 @@ Need spin_decay(const Facts& f) {
     for (const BallStart& ball : f.scene.ball) side = side || ball.spin.z() != 0.0;
     if (side) return needed("a ball starts with vertical spin");
     if (f.plan.in_force(Effect::kThrow)) return needed("friction between balls makes vertical spin");
-    const bool rough = f.balls().most_cushion_friction() != 0.0 &&
+    const bool rough = f.balls().cushion_friction().most() != 0.0 &&
                        (f.plan.cushion->reads_friction || f.plan.jaw->reads_friction);
     if (rough && f.plan.in_force(Effect::kCushions)) return needed("cushion friction makes vertical spin");
     return {false, f.say("no ball can ever have vertical spin: none at the start, no friction in impacts")};
@@ -69,10 +75,9 @@ Need ball_friction_needed(const Facts& f) {
     if (f.scene.ball.size() < 2) return {false, f.say("one ball only")};
     if (!f.plan.ball_ball->reads_friction)
         return {false, f.say("model {} has no friction", f.plan.ball_ball->name)};
-    if (!p.ball_friction()) return coefficient(f, "mu_b", 0.0);
+    if (!p.ball_friction().any()) return coefficient(f, "mu_b", 0.0);
     if (!f.plan.pairs) return no_two_balls_meet(f);
-    if (p.mu_b_more == 0.0) return coefficient(f, "mu_b", p.mu_b);
-    return {true, f.say("mu_b = {} + {} exp(-{} u)", p.mu_b, p.mu_b_more, p.mu_b_fall)};
+    return {true, say(f, "mu_b", p.ball_friction())};
 }
 
 Need cloth_in_impact(const Facts& f) {
@@ -80,7 +85,8 @@ Need cloth_in_impact(const Facts& f) {
     if (f.scene.ball.size() < 2) return {false, f.say("one ball only")};
     if (!f.plan.ball_ball->reads_cloth)
         return {false, f.say("model {} does not read the cloth", f.plan.ball_ball->name)};
-    if (p.mu_s == 0.0 || !p.ball_friction()) return {false, f.say("{} = 0", p.mu_s == 0.0 ? "mu_s" : "mu_b")};
+    if (p.mu_s == 0.0 || !p.ball_friction().any())
+        return {false, f.say("{} = 0", p.mu_s == 0.0 ? "mu_s" : "mu_b")};
     if (!f.plan.pairs) return no_two_balls_meet(f);
     return {true, f.say("mu_s and mu_b > 0; without vertical slip it is 0 at that impact")};
 }
@@ -98,17 +104,14 @@ Need cushion_friction(const Facts& f) {
     const CushionModelInfo &straight = *f.plan.cushion, &jaw = *f.plan.jaw;
     if (&straight == &kSmooth && (&jaw == &kSmooth || table.jaws.empty()))
         return {false, f.say("model smooth")};
-    bool level = !f.scene.lifts() && !f.plan.ball_ball->free && f.balls().most_cushion_friction() == 0.0 &&
+    bool level = !f.scene.lifts() && !f.plan.ball_ball->free && f.balls().cushion_friction().most() == 0.0 &&
                  straight.reflects_when_level && jaw.reflects_when_level;
     for (const BallSize& ball : f.plan.sizes) {
         for (const Cushion& c : table.cushions) level = level && c.height == ball.R;
         for (const Jaw& j : table.jaws) level = level && j.height == ball.R;
     }
     if (level) return {false, f.say("f_c = 0 and the noses at ball height: smooth")};
-    const BallParams& p = f.balls();
-    const std::string friction = p.f_c_more == 0.0
-                                     ? f.say("f_c = {}", p.f_c)
-                                     : f.say("f_c = {} + {} exp(-{} u)", p.f_c, p.f_c_more, p.f_c_fall);
+    const std::string friction = say(f, "f_c", f.balls().cushion_friction());
     return {true, &straight == &jaw ? f.say("model {}, {}", straight.name, friction)
                                     : f.say("model {}, jaws {}, {}", straight.name, jaw.name, friction)};
 }
@@ -144,7 +147,7 @@ Need airborne(const Facts& f) {
     for (const BallStart& ball : s.ball)
         if (ball.flies()) return {true, f.say("ball {} starts in the air", ball.id)};
     if (s.lifts()) return {true, f.say("the cue is raised by {} degrees", s.cue->elevation_deg)};
-    const bool tilted = !s.alike(), rough = f.balls().ball_friction();
+    const bool tilted = !s.alike(), rough = f.balls().ball_friction().any();
     if (s.physics.ball_ball->free && f.plan.pairs && (tilted || rough))
         return {true,
                 f.say("ball_ball = \"{}\": an impact of two balls may lift them", s.physics.ball_ball->name)};

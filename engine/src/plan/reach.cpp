@@ -112,7 +112,7 @@ class Bounds {
         for (const Start& s : starts_) lightest = std::min(lightest, s.size.m);
         for (const Start& s : starts_)
             energy += (s.size.m / lightest) *
-                      (0.5 * s.v.squaredNorm() + 0.2 * s.size.R * s.size.R * s.w.squaredNorm());
+                      (0.5 * s.v.squaredNorm() + 0.5 * kInertia * s.size.R * s.size.R * s.w.squaredNorm());
         energy += energy_height_ / lightest;
         return wide(std::sqrt(2.0 * energy) * time_);
     }

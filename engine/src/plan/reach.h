@@ -30,8 +30,8 @@ struct Reach {
     bool pairs = false;     ///< two balls can meet
     bool cushions = false;  ///< a ball can meet a cushion or jaw
     bool pockets = false;   ///< a ball can enter a pocket's circle
-    std::string
-        why;  ///< the bound, for people who ask: "ball cue, the only one that moves, rests within 0.81 m"
+    /// the bound, for people who ask: "ball cue, the only one that moves, rests within 0.81 m"
+    std::string why;
 };
 
 /// The smaller of two bounds. (1) The only moving ball that meets nothing goes no farther than its

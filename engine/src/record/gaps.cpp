@@ -2,8 +2,11 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
+#include "carom/engine/tolerances.h"
 #include "contact/detect.h"
+#include "physics/motion.h"
 #include "physics/nose_reach.h"
 
 namespace carom {
@@ -13,17 +16,35 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 }
 
 double rounding_of(const Vec3& v, const Vec3& w, double R, double t) {
-    return kClosingUlp * std::numeric_limits<double>::epsilon() * (length3(v) + R * length3(w)) * t;
+    return kClosingUlp * kEpsilon * (length3(v) + R * length3(w)) * t;
 }
 
 double allowed_depth(const SeenBall& ball) {
     return kTouchTolerance + ball.rounding;
 }
 
+SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const Vec3& r, double rounding,
+             bool flights) {
+    const std::vector<Segment>& segments = record.tracks[ball].segments;
+    SeenBall seen{.r = r,
+                  .R = record.size(static_cast<int>(ball)).R,
+                  .flies = flies(segments[segment].state),
+                  .rounding = rounding};
+    if (!flights) return seen;
+    const auto falls = [&](std::size_t k) { return segments[k].state == MotionState::kFalling; };
+    std::size_t k = segment;
+    if (falls(k)) {
+        while (k > 0 && falls(k - 1)) --k;
+        seen.fell = segments[k].start;
+    }
+    while (k > 0 && !flies(segments[k - 1].state)) --k;
+    if (k > 0) seen.flew = segments[k].start;
+    return seen;
+}
+
 double gap_between(const SeenBall& one, const SeenBall& two) {
-    if (!one.flies && !two.flies)
-        return length(planar(two.r) - planar(one.r)) - contact_distance(one.R, two.R);
-    if (one.sinks || two.sinks) return kFar;
+    const bool in_space = one.flies || two.flies || one.flew >= two.fell || two.flew >= one.fell;
+    if (!in_space) return length(planar(two.r) - planar(one.r)) - contact_distance(one.R, two.R);
     return length3(two.r - one.r) - (one.R + two.R);
 }
 

@@ -1,10 +1,13 @@
 // How far balls are from each other and from noses, as the judge of records sees it.
 #pragma once
 
+#include <cstddef>
+
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/geometry.h"
 #include "carom/engine/record.h"
 #include "carom/engine/vec.h"
+#include "contact/roots.h"
 
 namespace carom {
 
@@ -12,8 +15,10 @@ namespace carom {
 struct SeenBall {
     Vec3 r;
     double R;
-    bool flies, sinks = false;  ///< in the air; over a pocket
-    double rounding = 0.0;      ///< [m] rounding_of()
+    bool flies = false;     ///< or is out
+    double fell = kNever;   ///< [s] when it began to fall into a pocket; kNever if it does not
+    double flew = -kNever;  ///< [s] when its last flight ended
+    double rounding = 0.0;  ///< [m] rounding_of()
 };
 
 /// [m] What a ball with these speeds may have come too far in t [s]: closing speeds that are rounding (kClosingUlp) are no approach, and a
@@ -22,8 +27,13 @@ double rounding_of(const Vec3& v, const Vec3& w, double R, double t);
 /// [m] How deep it may be in something.
 double allowed_depth(const SeenBall& ball);
 
-/// [m] Between two balls, negative where they overlap. The planar distance where both lie; one that sinks into a pocket is out of the
-/// way of those that fly.
+/// A ball at the place `r` in the segment of this number.
+/// @param flights  whether balls may leave the cloth
+SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const Vec3& r, double rounding,
+             bool flights);
+
+/// [m] Between two balls, negative where they overlap. The planar distance, unless one flies, or has flown since the other
+/// began to fall into a pocket.
 double gap_between(const SeenBall& one, const SeenBall& two);
 /// [m] To the nose of a cushion; a large number where the ball is beyond its ends.
 double gap_to(const CushionLine& line, const SeenBall& ball);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <stdexcept>
 
 #include "base/record_hash.h"
 #include "carom/engine/math.h"
@@ -134,12 +135,25 @@ BallState Record::state_at(int ball, double t) const {
     const double tau = std::min(t - s.start, s.duration);
     BallState state;
     state.state = s.state;
-    const Placed placed = placed_at(s, tau, gravity);
+    const double R = size(ball).R;
+    const Placed placed = placed_at(s, tau, gravity, R);
     state.position = placed.position;
     state.velocity = placed.velocity;
-    state.spin = spin_at(s, tau, size(ball).R);
+    state.spin = tau < until_floor(s, R, gravity) ? spin_at(s, tau, R) : Vec3::Zero();
     state.pocket = s.state == MotionState::kPocketed ? track.pocket : -1;
     return state;
+}
+
+void Record::states_at(std::span<const double> times, double* rvw, std::uint8_t* kinds) const {
+    for (const double t : times) {
+        for (int ball = 0; ball < static_cast<int>(tracks.size()); ++ball) {
+            const BallState s = state_at(ball, t);
+            if (kinds != nullptr) *kinds++ = static_cast<std::uint8_t>(s.state);
+            if (rvw == nullptr) continue;
+            for (const Vec3* row : {&s.position, &s.velocity, &s.spin})
+                rvw = std::copy_n(row->data(), 3, rvw);
+        }
+    }
 }
 
 Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
@@ -164,10 +178,15 @@ Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
     t = std::clamp(t, 0.0, duration);
     const std::size_t i = segment_index(track.segments, t);
     const Segment& s = track.segments[i];
-    return segment_turn(s, std::min(t - s.start, s.duration), made.largest_step) * made.at_start[ball][i];
+    const double turns = std::min(s.duration, until_floor(s, size(ball).R, gravity));
+    return segment_turn(s, std::min(t - s.start, turns), made.largest_step) * made.at_start[ball][i];
 }
 
 Scene scene_after(const Scene& scene, const Record& record) {
+    if (!std::equal(scene.ball.begin(), scene.ball.end(), record.tracks.begin(), record.tracks.end(),
+                    [](const BallStart& ball, const BallTrack& track) { return ball.id == track.id; }))
+        throw std::invalid_argument(
+            "the scene has other balls than the record; give the scene of the record");
     Scene after = scene;
     after.cue.reset();
     after.ball.clear();

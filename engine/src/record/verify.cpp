@@ -17,8 +17,6 @@ namespace carom {
 
 namespace {
 
-constexpr double kUlp = 2.220446049250313e-16;
-
 // Returns the mass over that of a ball without a mass of its own: 1 in most scenes.
 double mass(const Record& record, int ball) {
     return record.size(ball).m / record.balls.m;
@@ -105,8 +103,12 @@ class Checker {
         for (std::size_t k = event_ + 1; k-- > 0 && record_.events[k].time == time;) {
             const Event& e = record_.events[k];
             if (!e.slow) continue;
-            const double parting = parting_speed(R(static_cast<std::size_t>(e.a)), record_.gravity);
-            energy += mass(record_, e.a) * parting * parting;
+            // Two balls part at the speed of the larger one, and the heavier one may be the one that flies.
+            const int other = kind(e.type).partner == Partner::kBall ? e.b : e.a;
+            const double larger = std::max(record_.size(e.a).R, record_.size(other).R),
+                         heavier = std::max(mass(record_, e.a), mass(record_, other)),
+                         parting = parting_speed(larger, record_.gravity);
+            energy += heavier * parting * parting;
         }
         return energy;
     }
@@ -131,9 +133,12 @@ class Checker {
 
     void check_penetration(const std::vector<BallState>& now, double t) {
         const auto seen = [&](std::size_t i) {
-            const MotionState state = now[i].state;
-            return SeenBall{now[i].position, R(i), flies(state), state == MotionState::kFalling,
-                            rounding_of(now[i].velocity, now[i].spin, R(i), t)};
+            const std::vector<Segment>& segments = record_.tracks[i].segments;
+            const auto next = std::upper_bound(segments.begin(), segments.end(), t,
+                                               [](double at, const Segment& s) { return at < s.start; });
+            const std::ptrdiff_t segment = std::max<std::ptrdiff_t>(0, next - segments.begin() - 1);
+            return see(record_, i, static_cast<std::size_t>(segment), now[i].position,
+                       rounding_of(now[i].velocity, now[i].spin, R(i), t), plan_.in_force(Effect::kAirborne));
         };
         for (std::size_t i = 0; i < now.size(); ++i) {
             if (is_gone(now[i].state)) continue;
@@ -181,7 +186,10 @@ class Checker {
             // instant cannot be told apart.
             const Segment *before1, *after1, *before2, *after2;
             if (!around(e.a, e.time, before1, after1) || !around(e.b, e.time, before2, after2)) continue;
-            const bool free = plan_.ball_ball->free || flies(before1->state) || flies(before2->state);
+            const auto is_free = [this](const Segment& s) {
+                return plan_.in_force(Effect::kAirborne) && is_off_cloth(s.state);
+            };
+            const bool free = plan_.ball_ball->free || is_free(*before1) || is_free(*before2);
             if (free && (hits_cloth(e.a, e.time) || hits_cloth(e.b, e.time))) continue;
             const auto velocity = [&](const Segment& s) {
                 return free ? placed_at(s, e.time - s.start, record_.gravity).velocity
@@ -213,7 +221,7 @@ class Checker {
                 cloth ? plan_.balls.mu_s * (plan_.balls.mu_b + plan_.balls.mu_b_more) * J_n : 0.0;
             // A straight shot meets that limit exactly, and an impact is solved to a tolerance.
             const double solved = cloth ? (m1 + m2) * velocity_error((v1 - v2).dot(n3)) : 0.0;
-            if (change.norm() > limit + solved + 64.0 * kUlp * scale)
+            if (change.norm() > limit + solved + 64.0 * kEpsilon * scale)
                 report("U5", "the impact changes the pair's momentum by {:.3g} m/s", change.norm());
             const double rounding = 1e-12 * scale;
             if (!cloth && (std::abs(dw1.dot(n3)) > rounding || std::abs(dw2.dot(n3)) > rounding ||

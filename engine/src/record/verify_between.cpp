@@ -13,6 +13,7 @@
 #include "carom/engine/tolerances.h"
 #include "contact/roots.h"
 #include "physics/motion.h"
+#include "physics/nose_reach.h"
 #include "record/gaps.h"
 
 namespace carom {
@@ -79,8 +80,8 @@ class Between {
         const Vec2 r = place(ball, t);
         const double tau = std::min(t - s.start, s.duration);
         const double z = placed_at(s, tau, record_.gravity).position.z();
-        return {Vec3(r.x(), r.y(), z), R(ball), flies(s.state), s.state == MotionState::kFalling,
-                rounding_of(velocity_at(s, tau), s.w, R(ball), t)};
+        return see(record_, ball, pieces_[ball].segment, {r.x(), r.y(), z},
+                   rounding_of(velocity_at(s, tau), s.w, R(ball), t), plan_.in_force(Effect::kAirborne));
     }
 
     double energy(std::size_t ball, double t) const {
@@ -93,6 +94,16 @@ class Between {
         state.velocity = placed.velocity;
         state.spin = spin_at(s, tau, R(ball));
         return ball_energy(record_, static_cast<int>(ball), state);
+    }
+
+    // [J/kg] One slow contact of every ball, at the speed of the largest.
+    double slow_contacts() const {
+        double masses = 0.0, parting = 0.0;
+        for (std::size_t i = 0; i < pieces_.size(); ++i) {
+            masses += record_.size(static_cast<int>(i)).m / record_.balls.m;
+            parting = std::max(parting, parting_speed(R(i), record_.gravity));
+        }
+        return masses * parting * parting;
     }
 
     void look(double from, double to) {
@@ -136,9 +147,7 @@ class Between {
         }
         if (from == times_.front()) first_energy_ = last_energy_ = start;
         // At the start stands what slow contacts of balls in the air have added; each of them is judged at its event.
-        const double parting = parting_speed(record_.balls.R, record_.gravity);
-        double added =
-            plan_.in_force(Effect::kAirborne) ? static_cast<double>(pieces_.size()) * parting * parting : 0.0;
+        double added = plan_.in_force(Effect::kAirborne) ? slow_contacts() : 0.0;
         for (const auto& [t, now] : {std::pair{from, start}, std::pair{half, middle}}) {
             if (now > last_energy_ + 1e-12 * first_energy_ + rounding_ + std::exchange(added, 0.0))
                 report("U4", t, "energy rises from {:.17g} to {:.17g} J/kg", last_energy_, now);
@@ -162,8 +171,7 @@ class Between {
     }
 
     void check_table(std::size_t ball, double from, double to) {
-        // A ball in the air may touch a nose at sqrt(2) R.
-        const double near = 1.5 * R(ball) + pieces_[ball].reach;
+        const double near = kNoseReach * R(ball) + pieces_[ball].reach;
         const bool in_air = flies(segment(ball).state);
         for (const CushionLine& line : plan_.geometry.cushions) {
             if (std::abs(cross(line.direction, pieces_[ball].r - line.from)) > near) continue;
@@ -219,10 +227,10 @@ class Between {
 double ball_energy(const Record& record, int ball, const BallState& state) {
     if (is_gone(state.state)) return 0.0;
     const BallSize size = record.size(ball);
-    const bool off = state.state == MotionState::kFalling || state.state == MotionState::kAirborne;
-    const double fallen = off ? record.gravity * (state.position.z() - size.R) : 0.0;
+    const double fallen = is_off_cloth(state.state) ? record.gravity * (state.position.z() - size.R) : 0.0;
     return size.m / record.balls.m *
-           (0.5 * state.velocity.squaredNorm() + 0.2 * size.R * size.R * state.spin.squaredNorm() + fallen);
+           (0.5 * state.velocity.squaredNorm() + 0.5 * kInertia * size.R * size.R * state.spin.squaredNorm() +
+            fallen);
 }
 
 double height_rounding(const Record& record) {

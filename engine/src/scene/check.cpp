@@ -70,7 +70,8 @@ void check_reach(const Section& top, const Scene& scene) {
         // How deep a ball is in a nose at this horizontal distance.
         const auto depth_at = [&](double distance, double height) {
             const double inset = nose_inset(scene.physics.cushion_touch, R, height);
-            if (ball.height == 0.0) return R - inset - distance;
+            // Inside the circle of a jaw there is no cloth to come down on, however high it starts.
+            if (ball.height == 0.0 || distance < 0.0) return R - inset - distance;
             return nose_reach(R, height, inset) - length(Vec2(distance, ball.position.z() - height));
         };
         for (const Cushion& c : scene.table.cushions) {
@@ -138,7 +139,7 @@ void check_sizes(const Section& top, const Scene& scene) {
         top.fail(top.where("physics", "cushion_touch"),
                  "physics.cushion_touch = \"nose\" takes balls that are alike; leave it out");
     const BallBallModelInfo& model = *scene.physics.ball_ball;
-    const bool rough = model.reads_friction && scene.balls.ball_friction();
+    const bool rough = model.reads_friction && scene.balls.ball_friction().any();
     const BallSize first = scene.size_of(scene.ball.front());
     for (const BallStart& ball : scene.ball) {
         const BallSize size = scene.size_of(ball);
@@ -175,11 +176,11 @@ void check_cushion_model(const Section& top, const Scene& scene) {
         if (model.accepts == nullptr) return;
         for (const BallStart& ball : scene.ball) {
             const BallSize size = scene.size_of(ball);
-            if (model.accepts({size.R, size.m, p.mu_s, p.e_c, p.most_cushion_friction(), height})) continue;
+            if (model.accepts({size.R, size.m, p.mu_s, p.e_c, p.cushion_friction().most(), height})) continue;
             top.fail(top.has("physics") ? "physics" : "balls",
                      "with f_c = {} and mu_s = {} a ball could jam under the nose of {} {} in the "
                      "model {}; lower one of them or use another cushion model",
-                     p.most_cushion_friction(), p.mu_s, kind, id, model.name);
+                     p.cushion_friction().most(), p.mu_s, kind, id, model.name);
         }
     };
     for (const Cushion& c : scene.table.cushions) check(*scene.physics.cushion, "cushion", c.id, c.height);
@@ -233,7 +234,7 @@ bool may_fly(const Scene& scene) {
 /// Whether impacts with the table can give a ball vertical spin.
 bool cushions_twist(const Scene& scene) {
     const auto twists = [&](const CushionModelInfo* model) {
-        return model->reads_friction && scene.balls.most_cushion_friction() > 0.0;
+        return model->reads_friction && scene.balls.cushion_friction().most() > 0.0;
     };
     return (!scene.table.cushions.empty() && twists(scene.physics.cushion)) ||
            (!scene.table.jaws.empty() && twists(scene.physics.jaw_model()));
@@ -265,7 +266,7 @@ Motions possible_motions(const Scene& scene) {
     const bool cushions = !scene.table.cushions.empty() || !scene.table.jaws.empty();
     const bool pairs = scene.ball.size() > 1;
     m.slip = m.slip || cushions || pairs;
-    m.twist = m.twist || (pairs && scene.balls.ball_friction()) || cushions_twist(scene);
+    m.twist = m.twist || (pairs && scene.balls.ball_friction().any()) || cushions_twist(scene);
     return m;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include "base/draws.h"
 #include "base/nearest.h"
+#include "base/toml_number.h"
 #include "scene/reader.h"
 #include "scene/toml_depth.h"
 
@@ -32,16 +34,22 @@ toml::array arguments(std::string_view name, std::string_view text) {
 
 namespace {
 
+/// Value `i` of the list, read by a door of toml_number.h.
+template <class Read>
+auto value(std::string_view name, const toml::array& list, std::size_t i, const Read& read) {
+    try {
+        return read(list[i]);
+    } catch (const std::invalid_argument& error) {
+        fail("value {} of {} {}", i + 1, name, error.what());
+    }
+}
+
 double number(std::string_view name, const toml::array& list, std::size_t i) {
-    const toml::node& node = list[i];
-    const double x = node.is_number() ? *node.value<double>() : NAN;
-    if (!std::isfinite(x)) fail("value {} of {} must be a finite number", i + 1, name);
-    return x;
+    return value(name, list, i, [](const toml::node& node) { return number_in(node); });
 }
 
 std::int64_t whole(std::string_view name, const toml::array& list, std::size_t i) {
-    if (!list[i].is_integer()) fail("value {} of {} must be an integer", i + 1, name);
-    return *list[i].value<std::int64_t>();
+    return value(name, list, i, [](const toml::node& node) { return integer_in(node); });
 }
 
 }  // namespace
@@ -69,7 +77,7 @@ Distribution parse_distribution(std::string_view text, const toml::node* own) {
             fail(
                 "normal(sd) is around the number in the scene, and there is none; write the number there, or "
                 "use normal(mean,sd)");
-        const double mean = list.size() == 1 ? *own->value<double>() : number(name, list, 0);
+        const double mean = list.size() == 1 ? number_in(*own) : number(name, list, 0);
         const double deviation = number(name, list, list.size() - 1);
         if (!(deviation >= 0.0)) fail("the standard deviation of normal must be at least 0");
         return [=](SplitMix64& random) { return mean + deviation * standard_normal(random); };
@@ -91,6 +99,17 @@ Distribution parse_distribution(std::string_view text, const toml::node* own) {
     }
     fail("unknown distribution {}; use uniform, normal, integer or list{}", in_quotes(name),
          did_you_mean(name, {"uniform", "normal", "integer", "list"}));
+}
+
+ValueKind kind_of(std::string_view text) {
+    const std::size_t open = text.find('(');
+    const std::string_view name = text.substr(0, open);
+    if (name != "list") return name == "integer" ? ValueKind::kWhole : ValueKind::kNumber;
+    const toml::array list = arguments(name, text.substr(open + 1, text.size() - open - 2));
+    const auto all = [&list](auto&& is) { return std::all_of(list.begin(), list.end(), is); };
+    if (all([](const toml::node& value) { return value.is_integer(); })) return ValueKind::kWhole;
+    return all([](const toml::node& value) { return value.is_number(); }) ? ValueKind::kNumber
+                                                                          : ValueKind::kText;
 }
 
 }  // namespace carom::detail

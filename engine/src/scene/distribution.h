@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "base/splitmix64.h"
+#include "carom/engine/variation.h"
 
 namespace carom::detail {
 
@@ -33,5 +34,7 @@ toml::array arguments(std::string_view name, std::string_view text);
 /// @param own  the number that the file has, null where there is none; normal(sd) is around it
 /// @throws std::invalid_argument saying what is wrong
 Distribution parse_distribution(std::string_view text, const toml::node* own);
+/// What a distribution that can be read draws: a list has whole numbers only where all of it are.
+ValueKind kind_of(std::string_view text);
 
 }  // namespace carom::detail

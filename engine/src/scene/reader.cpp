@@ -5,24 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "base/nearest.h"
+#include "base/toml_number.h"
 
 namespace carom::detail {
 namespace {
-
-const char* type_name(const toml::node& node) {
-    // In the order of toml::node_type.
-    static constexpr const char* kNames[] = {"nothing",    "a table",  "an array", "a string",
-                                             "an integer", "a number", "a boolean"};
-    static_assert(static_cast<int>(toml::node_type::boolean) == 6);
-    return node.type() <= toml::node_type::boolean ? kNames[static_cast<int>(node.type())] : "a date or time";
-}
-
-std::string describe(const Interval& i) {
-    return fmt::format("{} {} and {} {}{}{}", i.low_open ? "more than" : "at least", i.low,
-                       i.high_open ? "less than" : "at most", i.high, *i.unit ? " " : "", i.unit);
-}
 
 /// "a", "a or b", "a, b or c"
 std::string listed(const std::vector<const char*>& names) {
@@ -74,22 +63,8 @@ std::string Section::element(const Key& key, std::size_t k) const {
     return fmt::format("{}[{}]", full(key.key), k);
 }
 
-void Section::check_number(SourceLocation at, const std::string& what, double x,
-                           const Interval& allowed) const {
-    if (x - x != 0.0) fail(at, "{} must be a finite number", what);
-    if (is_tiny(x) && contains(allowed, x > 0.0 ? kLeastSize : -kLeastSize))
-        fail(at, "{} = {} is too small to compute with; write 0, or at least {}", what, x, kLeastSize);
-    if (!contains(allowed, x)) fail(at, "{} = {} is out of range; it must be {}", what, x, describe(allowed));
-}
-
-void Section::check_integer(SourceLocation at, std::int64_t x, const Key& key) const {
-    const std::int64_t low = static_cast<std::int64_t>(key.range.low);
-    const std::int64_t high =
-        key.range.high < kAnyInteger ? static_cast<std::int64_t>(key.range.high) : INT64_MAX;
-    if (x < low || x > high) {
-        fail(at, "{} = {} is out of range; it must be at least {} and at most {}", full(key.key), x, low,
-             high);
-    }
+void Section::refuse(SourceLocation at, const std::string& what, const std::string& objection) const {
+    if (!objection.empty()) fail(at, "{} {}", what, objection);
 }
 
 void Section::check_text(SourceLocation at, const std::string& x, const Key& key) const {
@@ -107,33 +82,32 @@ void Section::check_whole(SourceLocation at, const std::vector<double>& list, co
 
 void Section::check(const Key& key, const FieldValue& value) const {
     if (const auto* number = std::get_if<double>(&value)) {
-        check_number({}, full(key.key), *number, key.range);
+        refuse({}, full(key.key), objection(*number, key.range));
     } else if (const auto* whole = std::get_if<std::int64_t>(&value)) {
-        check_integer({}, *whole, key);
+        refuse({}, full(key.key), objection(*whole, key.least(), key.most()));
     } else if (const auto* text = std::get_if<std::string>(&value)) {
         check_text({}, *text, key);
     } else if (const auto* list = std::get_if<std::vector<double>>(&value)) {
         for (std::size_t k = 0; k < list->size(); ++k)
-            check_number({}, element(key, k), (*list)[k], key.range);
+            refuse({}, element(key, k), objection((*list)[k], key.range));
         check_whole({}, *list, key);
     }
 }
 
 double Section::number(const toml::node& node, const std::string& what, const Interval& allowed) const {
-    if (!node.is_number()) fail(node, "{} must be a number, not {}", what, type_name(node));
-    const double x = *node.value<double>();
-    check_number(where(node), what, x, allowed);
-    return x;
+    try {
+        return number_in(node, allowed);
+    } catch (const std::invalid_argument& error) {
+        fail(node, "{} {}", what, error.what());
+    }
 }
 
 std::int64_t Section::integer(const toml::node& node, const Key& key) const {
-    if (!node.is_integer()) {
-        const char* got = node.is_floating_point() ? "a number with a decimal point" : type_name(node);
-        fail(node, "{} must be an integer, not {}", full(key.key), got);
+    try {
+        return integer_in(node, key.least(), key.most());
+    } catch (const std::invalid_argument& error) {
+        fail(node, "{} {}", full(key.key), error.what());
     }
-    const std::int64_t x = *node.value<std::int64_t>();
-    check_integer(where(node), x, key);
-    return x;
 }
 
 std::string Section::text(const toml::node& node, const Key& key) const {

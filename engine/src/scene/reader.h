@@ -101,8 +101,7 @@ class Section {
     std::string text(const toml::node& node, const Key& key) const;
     std::vector<double> numbers(const toml::node& node, const Key& key) const;
     std::string element(const Key& key, std::size_t k) const;
-    void check_number(SourceLocation at, const std::string& what, double x, const Interval& allowed) const;
-    void check_integer(SourceLocation at, std::int64_t x, const Key& key) const;
+    void refuse(SourceLocation at, const std::string& what, const std::string& objection) const;
     void check_text(SourceLocation at, const std::string& x, const Key& key) const;
     void check_whole(SourceLocation at, const std::vector<double>& list, const Key& key) const;
 

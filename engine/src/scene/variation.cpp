@@ -12,6 +12,7 @@
 
 #include "base/draws.h"
 #include "base/fnv.h"
+#include "base/toml_number.h"
 #include "carom/engine/tolerances.h"
 #include "scene/distribution.h"
 #include "scene/keys.h"
@@ -40,6 +41,7 @@ struct Rule {
     std::string key;
     std::vector<Step> path;
     Distribution distribution;
+    ValueKind kind = ValueKind::kNumber;
     // What the key is where it can be set without the file; neither where it cannot.
     std::optional<SceneNumber> number;
     const Field<Rack>* rack = nullptr;
@@ -98,19 +100,23 @@ void write(const Drawn& value, std::string& text) {
     }
     if (const auto* whole = std::get_if<std::int64_t>(&value)) return add(*whole);
     const toml::node& node = *std::get<const toml::node*>(value);
-    if (node.is_string()) return add(*node.value<std::string>());
-    if (node.is_floating_point()) return add(*node.value<double>());
+    if (const auto* words = node.as_string()) return add(words->get());
+    if (const auto* x = node.as_floating_point()) return add(x->get());
     std::ostringstream out;
     node.visit([&out](const auto& v) { out << v; });
     text = out.str();
 }
 
-/// The drawn number, if it is one.
+/// The drawn number, if it is one that a double holds.
 std::optional<double> number_of(const Drawn& value) {
     if (const auto* number = std::get_if<double>(&value)) return *number;
     if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
     const toml::node& node = *std::get<const toml::node*>(value);
-    return node.is_number() ? node.value<double>() : std::nullopt;
+    try {
+        return detail::number_in(node);
+    } catch (const std::invalid_argument&) {
+        return std::nullopt;
+    }
 }
 
 bool is_whole(const Drawn& value) {
@@ -194,6 +200,7 @@ Rule parse_rule(toml::table& file, const std::string& name, const std::string& t
     const toml::node* const own = follow(file, rule.path);
     if (own == nullptr) check_known(file, name, rule.path);
     rule.distribution = detail::parse_distribution(std::string_view(text).substr(equals + 1), own);
+    rule.kind = detail::kind_of(std::string_view(text).substr(equals + 1));
     return rule;
 }
 
@@ -335,6 +342,10 @@ std::string Variation::unit(std::size_t key) const {
     } catch (const std::invalid_argument&) {
         return "";
     }
+}
+
+ValueKind Variation::kind(std::size_t key) const {
+    return parts_->rules.at(key).kind;
 }
 
 std::uint64_t Variation::fingerprint() const {

@@ -47,7 +47,11 @@ struct Now {
 class InSpace {
   public:
     InSpace(const ContactPhaseInSpace& phase, const HertzLaw& law)
-        : phase_(phase), law_(law), diameter_(1.0 / phase.curvature), size_(kPerState * phase.balls) {
+        : phase_(phase),
+          law_(law),
+          turns_(phase.curvature > 0.0),
+          diameter_(turns_ ? 1.0 / phase.curvature : 0.0),
+          size_(kPerState * phase.balls) {
         double* next = phase.numbers;
         const auto take = [&next](int count) {
             double* taken = next;
@@ -106,6 +110,12 @@ class InSpace {
         return at(velocity(y, contact.i)) - at(velocity(y, contact.j));
     }
     Now look(const double* y, int c) const {
+        if (!turns_) {
+            const HertzContactInSpace& contact = phase_.contact[c];
+            const Vector n = at(contact.n);
+            const Vector moved = at(y + kPerState * contact.i) - at(y + kPerState * contact.j);
+            return {n, contact.overlap + dot(moved, n), dot(closing(y, c), n)};
+        }
         const Vector z = apart(y, c);
         const double distance = square_root(dot(z, z));
         const Vector n = (1.0 / distance) * z;
@@ -241,6 +251,11 @@ class InSpace {
     double next_touch() const {
         double first = kNever;
         for (int c = 0; c < phase_.contacts; ++c) {
+            if (!turns_) {
+                const Now now = look(y_, c);
+                if (now.rate > kNothing) first = smallest(first, -now.overlap / now.rate);
+                continue;
+            }
             const Vector z = apart(y_, c), v = closing(y_, c);
             const double towards = dot(v, z), distance = square_root(dot(z, z));
             const double q = (distance - diameter_) * (distance + diameter_),
@@ -253,6 +268,7 @@ class InSpace {
 
     const ContactPhaseInSpace phase_;
     const HertzLaw law_;
+    const bool turns_;       // whether the normals follow the balls
     const double diameter_;  // [L]
     const int size_;
     double *y_, *stage_, *slope_[kStages];

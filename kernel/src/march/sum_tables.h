@@ -63,8 +63,8 @@ constexpr SumTable sum_table(int K) {
     SumTable t{};
     t.steps = K;
     t.theta_step = 2.0 / K;
-    t.theta0 =
-        -(K - 1.0) / K;  // the nodes span the K steps evenly: theta = -1 is half a step before the first
+    // the nodes span the K steps evenly: theta = -1 is half a step before the first
+    t.theta0 = -(K - 1.0) / K;
     for (int i = 0; i < kNodes; ++i) t.at[i] = (kGaussNodes[i] - t.theta0) / t.theta_step;
     const double end = t.theta0 + K * t.theta_step;
     for (int l = 0; l < kNodes; ++l) {

@@ -68,8 +68,8 @@ struct Stretch {
     double done;        // kStretch: work of the normal impulse over the stretch
     double row_goal;    // largest error of the rows of the end
     double sweep_goal;  // square of the largest error that the iteration may leave
-    double
-        root_goal;  // sixth power of the largest relative error of a carried root before its last correction
+    // sixth power of the largest relative error of a carried root before its last correction
+    double root_goal;
     // The square of the highest Legendre coefficient of (xi, zeta), and of (g_a, g_b): how well the nodes resolve them.
     double s_top2, g_top2;
     int sweeps;

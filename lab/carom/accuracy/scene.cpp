@@ -12,6 +12,7 @@
 #include "base/console.h"
 #include "base/options.h"
 #include "base/setup.h"
+#include "carom/engine/printable.h"
 #include "carom/engine/simulate.h"
 #include "commands/accuracy/scene.h"
 #include "report/html.h"
@@ -93,9 +94,9 @@ int run(const LabAccuracyArgs& args) {
     SceneAccuracy result = measure_scene_accuracy(plan.scene, args);
     if (args.box2d) measure_box2d(result, plan.scene);
     write_report(args.csv, table_csv(scene_accuracy_table(result)));
-    if (!args.plot.empty()) write_plot(scene_accuracy_plot(result, args.scene), args.plot);
-    if (!args.html.empty()) write_html_report(report_of(result, args.scene), args.html);
-    print(args.json ? scene_accuracy_json(result) : scene_accuracy_text(result, args.scene));
+    if (!args.plot.empty()) write_plot(scene_accuracy_plot(result, harmless(args.scene)), args.plot);
+    if (!args.html.empty()) write_html_report(report_of(result, harmless(args.scene)), args.html);
+    print(args.json ? scene_accuracy_json(result) : scene_accuracy_text(result, harmless(args.scene)));
     return kOk;
 }
 

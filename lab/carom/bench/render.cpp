@@ -198,7 +198,7 @@ namespace {
 struct BenchRenderArgs {
     std::string scene = "scenes/eight_ball_break.toml";
     int frames = 120;
-    std::string gl = "osmesa";
+    std::string gl = "auto";
     bool json = false;
 };
 

@@ -4,6 +4,7 @@
 #include "base/console.h"
 #include "base/options.h"
 #include "base/setup.h"
+#include "carom/engine/printable.h"
 #include "compare/picture.h"
 #include "report/plot.h"
 
@@ -16,7 +17,8 @@ struct PictureArgs {
 
 int run(const PictureArgs& args) {
     check_plot_path(args.plot);
-    write_plot(ways_plot(read_shot(args.a, {}), args.a, read_shot(args.b, {}), args.b), args.plot);
+    write_plot(ways_plot(read_shot(args.a, {}), harmless(args.a), read_shot(args.b, {}), harmless(args.b)),
+               args.plot);
     return kOk;
 }
 

@@ -1,10 +1,12 @@
 // carom-lab margin: the command.
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string>
 
 #include "base/console.h"
 #include "base/options.h"
 #include "base/setup.h"
+#include "carom/engine/printable.h"
 #include "margin/lab_margin.h"
 #include "report/html.h"
 #include "report/margin_chart.h"
@@ -37,10 +39,10 @@ int run(const LabMarginArgs& asked) {
     if (args.sweep) return run_margin_sweep(plan, args);
     const auto [margin, last] = measure_margin(plan, args);
     write_report(args.csv, table_csv(frames_table(margin, last)));
-    if (!args.plot.empty()) write_plot(margin_plot(margin, last, args.scene), args.plot);
-    if (!args.html.empty()) write_html_report(margin_report(margin, last, args.scene), args.html);
+    if (!args.plot.empty()) write_plot(margin_plot(margin, last, harmless(args.scene)), args.plot);
+    if (!args.html.empty()) write_html_report(margin_report(margin, last, harmless(args.scene)), args.html);
     write_report(args.trace, margin_trace(last, margin.fps));
-    print(args.json ? margin_json(margin, last) : margin_text(margin, last, args.scene));
+    print(args.json ? margin_json(margin, last) : margin_text(margin, last, harmless(args.scene)));
     return kOk;
 }
 

@@ -13,6 +13,7 @@
 #include "base/console.h"
 #include "base/setup.h"
 #include "carom/engine/ball_ball.h"
+#include "carom/engine/printable.h"
 #include "carom/engine/simulate.h"
 #include "commands/accuracy/scene.h"
 #include "margin/lab_margin.h"
@@ -171,7 +172,7 @@ std::string sweep_json(const std::vector<SettingRow>& rows) {
 
 std::string sweep_text(const std::vector<SettingRow>& rows, const LabMarginArgs& args) {
     std::string text = fmt::format(
-        "{}: frames missed (worst frame, % of its time); {}\n\n{}\n", args.scene,
+        "{}: frames missed (worst frame, % of its time); {}\n\n{}\n", harmless(args.scene),
         args.no_render ? "simulation only" : "simulated, drawn, encoded and written on one thread",
         table_text(missed_by_setting(rows)));
     for (const SettingRow& row : rows)
@@ -183,7 +184,7 @@ std::string sweep_text(const std::vector<SettingRow>& rows, const LabMarginArgs&
 
 Plot sweep_plot(const std::vector<SettingRow>& rows, const LabMarginArgs& args) {
     Plot plot;
-    plot.title = "Where the scene stops being real time: " + args.scene;
+    plot.title = "Where the scene stops being real time: " + harmless(args.scene);
     plot.notes = {args.no_render ? "worst frame of the shot, simulation only"
                                  : "worst frame of the shot, drawn, encoded and written on one thread"};
     plot.x = {"frames per second", true, {}, {}};

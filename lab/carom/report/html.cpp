@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/console.h"
+#include "carom/engine/printable.h"
 #include "page/page.h"
 
 namespace carom::tools {
@@ -33,7 +34,7 @@ void add_html(Options& command, std::string& html) {
 
 void write_html_report(const Report& report, const std::string& path) {
     if (path.empty()) return;
-    Json page = page_json(report.title, report.lead, command_line(), program_version());
+    Json page = page_json(report.title, report.lead, harmless(command_line()), program_version());
     page["notes"] = report.notes;
     for (const auto& [key, list] :
          {std::pair("charts", &report.charts), std::pair("tables", &report.tables)}) {

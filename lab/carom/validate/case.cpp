@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <initializer_list>
 #include <span>
+#include <stdexcept>
 
 #include "base/console.h"
+#include "base/toml_number.h"
 #include "carom/engine/scene.h"
 
 namespace carom::tools {
@@ -39,9 +41,22 @@ class Reader {
     T value(std::string_view key) const {
         const toml::node* node = table_.get(key);
         if (node == nullptr) fail(fmt::format("{} is missing", key));
+        if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) return number<T>(*node, key);
         const auto found = node->value<T>();
         if (!found) fail(*node, fmt::format("{} has a value of another kind", key));
         return *found;
+    }
+    /// A number of this type; `what` names it.
+    template <class T>
+    T number(const toml::node& node, std::string_view what) const {
+        try {
+            if constexpr (std::is_floating_point_v<T>) return detail::number_in(node);
+            constexpr bool kLong = sizeof(T) >= sizeof(std::int64_t);
+            return static_cast<T>(
+                detail::integer_in(node, std::is_signed_v<T> ? INT32_MIN : 0, kLong ? INT64_MAX : INT32_MAX));
+        } catch (const std::invalid_argument& error) {
+            fail(node, fmt::format("{} {}", what, error.what()));
+        }
     }
     template <class T>
     T value(std::string_view key, T otherwise) const {
@@ -105,8 +120,8 @@ Measured read_measured(const toml::table& table, const std::string& file) {
     if (!(m.uncertainty > 0.0)) in.fail("uncertainty has to be greater than 0");
     if (place) {
         const toml::array& xy = in.list("place");
-        if (xy.size() != 2 || !xy[0].is_number() || !xy[1].is_number()) in.fail(xy, "place is [x, y]");
-        m.place = {*xy[0].value<double>(), *xy[1].value<double>()};
+        if (xy.size() != 2) in.fail(xy, "place is [x, y]");
+        m.place = {in.number<double>(xy[0], "x of a place"), in.number<double>(xy[1], "y of a place")};
     } else {
         m.value = in.value<double>("value");
     }
@@ -125,9 +140,8 @@ ValidationShot read_validation_shot(const toml::table& table, const std::string&
     if (const toml::table* values = in.table("values"))
         for (auto&& [key, node] : *values) {
             const auto text = node.value<std::string>();
-            const auto number = node.value<double>();
-            if (!text && !number) in.fail(node, "a value is a text or a number");
-            shot.values.emplace_back(key.str(), text ? *text : fmt::format("{}", *number));
+            shot.values.emplace_back(key.str(),
+                                     text ? *text : fmt::format("{}", in.number<double>(node, key.str())));
         }
     in.tables("measured",
               [&](const toml::table& each) { shot.measured.push_back(read_measured(each, file)); });
@@ -144,7 +158,7 @@ Variant read_variant(const toml::table& table, const std::string& file) {
     variant.free_of_fit = in.value<bool>("free_of_fit");
     for (const toml::node& node : in.list("claims")) {
         if (node.is_number())
-            variant.claims.emplace_back(*node.value<double>());
+            variant.claims.emplace_back(in.number<double>(node, "a claim"));
         else if (node.value_or(std::string()) == "within")
             variant.claims.emplace_back(std::nullopt);
         else

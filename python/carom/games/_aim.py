@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from carom import _carom
+from carom._arguments import checked
+from carom._scene import SceneLike, as_scene
 from carom.games._rules import _two
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from carom._scene import Scene
 
 
 class PocketLine(NamedTuple):
@@ -39,22 +39,26 @@ class Aim(NamedTuple):
     why: str  # why there is none; "" where there is one
 
 
+@checked
 def ghost_ball(ball: ArrayLike, towards: ArrayLike, radius: float = 0.028575) -> tuple[float, float]:
     """Where the cue ball's centre is [m] when it meets a ball of the same radius and sends it along `towards`, a unit vector, without throw."""
     return _carom.ghost_ball(_two(ball), _two(towards), 2.0 * radius)
 
 
+@checked
 def cut_angle_deg(cue_ball: ArrayLike, ghost: ArrayLike, towards: ArrayLike) -> float:
     """Angle between the cue ball's way to the ghost ball and the object ball's way: 0 is straight; from 90 on there is no such cut."""
     return _carom.cut_angle_deg(_two(cue_ball), _two(ghost), _two(towards))
 
 
-def pocket_lines(scene: Scene, ball: str, cue_ball: str = "cue") -> list[PocketLine]:
+@checked
+def pocket_lines(scene: SceneLike, ball: str, cue_ball: str = "cue") -> list[PocketLine]:
     """A line for every pocket of the table. The cue ball is in nobody's way, as it will have moved. Raises ValueError for a ball that is not there."""
-    return [PocketLine(*line) for line in _carom.pocket_lines(scene._native, ball, cue_ball)]
+    return [PocketLine(*line) for line in _carom.pocket_lines(as_scene(scene)._native, ball, cue_ball)]
 
 
-def aim_pot(scene: Scene, ball: str, pocket: str) -> Aim:
+@checked
+def aim_pot(scene: SceneLike, ball: str, pocket: str) -> Aim:
     """The aim that pots a ball into a pocket ("p1", ...): from the ghost ball, corrected by playing the shot until the ball runs down the middle of
     its ways.
 
@@ -62,9 +66,10 @@ def aim_pot(scene: Scene, ball: str, pocket: str) -> Aim:
 
     Raises ValueError for a ball or a pocket that is not there, a scene without a cue, and a shot that does not end at rest.
     """
-    return Aim(*_carom.aim_pot(scene._native, ball, pocket))
+    return Aim(*_carom.aim_pot(as_scene(scene)._native, ball, pocket))
 
 
-def bank_routes(scene: Scene, ball: str, pocket: str) -> list[Aim]:
+@checked
+def bank_routes(scene: SceneLike, ball: str, pocket: str) -> list[Aim]:
     """Aims that pot a ball by way of one cushion, at most one for every straight cushion; each was played. Otherwise as aim_pot."""
-    return [Aim(*aim) for aim in _carom.bank_routes(scene._native, ball, pocket)]
+    return [Aim(*aim) for aim in _carom.bank_routes(as_scene(scene)._native, ball, pocket)]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, overload
 import numpy as np
 
 from carom import _carom
+from carom._arguments import checked
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 STRIKE = ("speed", "aim_deg", "elevation_deg", "side", "height")
 
 
+@checked
 class Noise(NamedTuple):
     """Standard deviations of independent normal errors of a strike."""
 
@@ -41,6 +43,7 @@ class Noise(NamedTuple):
 def noisy(cue: Mapping[str, Any], noise: Noise | str, seed: int, index: int = 0) -> dict[str, Any]: ...
 @overload
 def noisy(cue: ArrayLike, noise: Noise | str, seed: int, index: int = 0) -> NDArray[np.float64]: ...
+@checked
 def noisy(cue: Mapping[str, Any] | ArrayLike, noise: Noise | str, seed: int, index: int = 0) -> dict[str, Any] | NDArray[np.float64]:
     """The strike that a player makes who means `cue`.
 

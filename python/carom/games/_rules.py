@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from carom import _carom, _toml
-from carom._errors import SceneError
-from carom._scene import Scene, _placeless, _section
+from carom import _carom
+from carom._arguments import checked
+from carom._record import Record
+from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from carom._record import Record
 
 GAMES = ("eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three")
 
@@ -108,6 +107,7 @@ class Verdict(NamedTuple):
         return self.options[0].respots
 
 
+@checked
 def new_game(game: str, first: int = 0, target: int = 0) -> State:
     """The state before the first shot.
 
@@ -121,6 +121,7 @@ def new_game(game: str, first: int = 0, target: int = 0) -> State:
     return State(*_carom.new_game(game, first, target))
 
 
+@checked
 def legal(state: State, balls: Scene | Sequence[str]) -> Legal:
     """What the next shot may do.
 
@@ -132,6 +133,7 @@ def legal(state: State, balls: Scene | Sequence[str]) -> Legal:
     return Legal(*_carom.legal(state, list(balls.ids if isinstance(balls, Scene) else balls)))
 
 
+@checked
 def judge(state: State, record: Record, call: Call = Call()) -> Verdict:
     """What came of a shot.
 
@@ -150,13 +152,15 @@ def _option(decision: str, state: Any, respots: list[tuple[str, tuple[float, flo
     return Option(decision, State(*state), [Respot(*respot) for respot in respots])
 
 
+@checked
 def may_place(record: Record, option: Option, place: ArrayLike) -> bool:
     """Whether the cue ball may be placed there [m] before the next shot: it is in hand there, lies between the cushions, and overlaps no ball."""
     return _carom.may_place(record._native, option, _two(place))
 
 
+@checked
 def next_scene(
-    record: Record, option: Option | Verdict, cue: Mapping[str, Any] | str | None = None, *, place: ArrayLike | None = None, scene: Scene | None = None
+    record: Record, option: Option | Verdict, cue: Mapping[str, Any] | str | None = None, *, place: ArrayLike | None = None, scene: SceneLike | None = None
 ) -> Scene:
     """The next shot: what is gone is gone, what is respotted is back, the cue ball is placed, the cue strikes.
 
@@ -168,16 +172,11 @@ def next_scene(
     Raises ValueError for a place that is missing or not allowed, for a new rack and for a game that is over; SceneError where the result is no scene.
     """
     taken = option.options[0] if isinstance(option, Verdict) else option
-    section = ""
-    if cue is not None:
-        section = _toml.document({"cue": {"ball": taken.state.cue_ball} | dict(_section(cue, "preset"))}, "scene")
-    try:
-        played = None if scene is None else scene._native
-        return Scene._of(_carom.next_table(record._native, played, taken, None if place is None else _two(place), section))
-    except SceneError as error:
-        raise _placeless(error) from None
+    played, at = None if scene is None else as_scene(scene)._native, None if place is None else _two(place)
+    return scene_with_cue(cue, lambda section: _carom.next_table(record._native, played, taken, at, section), ball=taken.state.cue_ball)
 
 
+@checked
 def spots(record: Record) -> dict[str, tuple[float, float]]:
     """The spots of a table [m]: "head", "center" and "foot", and those of the snooker colours."""
     return dict(_carom.spots(record._native))

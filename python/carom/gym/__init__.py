@@ -13,6 +13,7 @@ try:
 except ImportError as error:
     raise ImportError("carom.gym needs Gymnasium: pip install 'carom-billiards[gym]'") from error
 
+from carom._arguments import checked
 from carom.gym._env import FeaturePlanes, TableEnv
 from carom.gym._games import EightBallRun, Game, Judged, NineBallRun, Position, Pot, States, SumToThree, ThreeCushion
 from carom.gym._strikes import Strikes
@@ -56,11 +57,13 @@ def _game(name: str, options: dict[str, Any]) -> Game:
     return GAMES[name](**{key: options.pop(key) for key in _OWN if key in options})
 
 
+@checked
 def make_env(game: str, **options: Any) -> TableEnv:
     """What `gymnasium.make(f"carom/{game}-v0", ...)` makes, without its wrappers."""
     return TableEnv(_game(game, options), **options)
 
 
+@checked
 def make_vector_env(game: str, num_envs: int = 1, **options: Any) -> TableVectorEnv:
     """What `gymnasium.make_vec(f"carom/{game}-v0", ...)` makes."""
     return TableVectorEnv(_game(game, options), num_envs, **options)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
 from gymnasium import spaces
 
+from carom._arguments import checked
 from carom._record import Record
 from carom._render import render
 from carom.games import Noise
@@ -23,53 +25,109 @@ if TYPE_CHECKING:
 Observation = Any  # an array, or with observation="dict" a dict of two
 
 
-def rules_of(
-    game: Game,
-    aim: str,
-    speed: tuple[float, float],
-    elevation_deg: float | tuple[float, float],
-    noise: str | Sequence[float],
-    threads: int,
-    hashes: bool,
-) -> Rules:
-    """Checked options of an environment as what plays. Lists are taken as pairs, as specs of JSON have them."""
-    pair = elevation_deg if isinstance(elevation_deg, (int, float)) else (float(elevation_deg[0]), float(elevation_deg[1]))
-    strikes = Strikes(aim, (float(speed[0]), float(speed[1])), pair)
-    if threads < 0:
-        raise ValueError(f"threads={threads}: expected at least 0")
-    return Rules(game, strikes, noise_of(noise, game), threads=threads, hashes=hashes)
+@checked
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Options:
+    """What all environments have: how strikes are made, and how tables are drawn."""
+
+    aim: str = "angle"
+    speed: tuple[float, float] = (0.3, 6.0)
+    elevation_deg: float | tuple[float, float] = 0.0
+    noise: str | Sequence[float] = "none"
+    render_mode: str | None = None
+    size: tuple[int, int] = (640, 360)
+
+    def __post_init__(self) -> None:
+        if self.render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode={self.render_mode!r}: expected 'rgb_array' or None")
+
+    def strikes(self) -> Strikes:
+        """Lists are taken as pairs, as specs of JSON have them."""
+        one = isinstance(self.elevation_deg, (int, float))
+        return Strikes(self.aim, _pair(self.speed), self.elevation_deg if one else _pair(self.elevation_deg))
+
+    def noise_in(self, game: Game) -> Noise:
+        """A name of `carom.games.Noise.named`, or five standard deviations."""
+        if isinstance(self.noise, str):
+            return Noise.named(self.noise, float(game.radii[game.cue_ball]))
+        if len(self.noise) != len(Noise._fields) or not all(0 <= sd < np.inf for sd in self.noise):
+            raise ValueError(f"noise={self.noise!r}: expected a name, or standard deviations of {', '.join(Noise._fields)}, at least 0")
+        return Noise(*map(float, self.noise))
+
+    def picture(self, game: Game, xy: NDArray[np.float64]) -> NDArray[np.uint8]:
+        """A table from above: (height, width, 3) bytes."""
+        return next(render(game.scene_of(xy), camera="top", size=self.size, times=[0.0]))
 
 
-def noise_of(noise: str | Sequence[float], game: Game) -> Noise:
-    """A name of `carom.games.Noise.named`, or five standard deviations."""
-    if isinstance(noise, str):
-        return Noise.named(noise, float(game.radii[game.cue_ball]))
-    if len(noise) != len(Noise._fields) or not all(0 <= sd < np.inf for sd in noise):
-        raise ValueError(f"noise={noise!r}: expected a name, or standard deviations of {', '.join(Noise._fields)}, at least 0")
-    return Noise(*map(float, noise))
+def _pair(numbers: Any) -> tuple[float, float]:
+    low, high = numbers
+    return float(low), float(high)
 
 
-def check_render_mode(mode: str | None) -> None:
-    if mode not in (None, "rgb_array"):
-        raise ValueError(f"render_mode={mode!r}: expected 'rgb_array' or None")
+@checked
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class TableOptions(Options):
+    """And those of one player's games."""
+
+    observation: str = "box"
+    most_shots: int | None = None
+    hashes: bool = False
 
 
-def spaces_of(rules: Rules, observation: str) -> tuple[spaces.Space[Any], spaces.Box]:
-    """What is observed, and what is done."""
-    game = rules.game
-    places = len(game.ids) + len(game.points(States(np.empty((1, len(game.ids), 2)), np.zeros((1, len(game.EXTRA)))))[0])
-    balls: spaces.Space[Any] = spaces.Box(-1.0, 1.0, (places, 3), np.float32)
-    if observation == "dict":
-        balls = spaces.Dict({"balls": balls, "legal": spaces.MultiBinary(len(game.ids))})
-    elif observation != "box":
-        raise ValueError(f"observation={observation!r}: expected 'box' or 'dict'")
-    return balls, spaces.Box(-1.0, 1.0, (rules.strikes.size,), np.float32)
+@checked
+class TablesEnv:
+    """What one table and many of them share as environments."""
+
+    _rules: Rules
+    _options: TableOptions
+    _tables: Tables
+
+    def _open(self, game: Game, tables: int, threads: int, options: dict[str, Any]) -> tuple[spaces.Space[Any], spaces.Box]:
+        """What is observed of each table, and what is done."""
+        self._options = TableOptions(**options)
+        if threads < 0:
+            raise ValueError(f"threads={threads}: expected at least 0")
+        self._rules = Rules(game, self._options.strikes(), self._options.noise_in(game), threads=threads, hashes=self._options.hashes)
+        self._tables = Tables(tables, self._rules, game.SHOTS if self._options.most_shots is None else self._options.most_shots)
+        places = len(game.ids) + game.points(self._tables.states).shape[1]
+        balls: spaces.Space[Any] = spaces.Box(-1.0, 1.0, (places, 3), np.float32)
+        if self._options.observation == "dict":
+            balls = spaces.Dict({"balls": balls, "legal": spaces.MultiBinary(len(game.ids))})
+        elif self._options.observation != "box":
+            raise ValueError(f"observation={self._options.observation!r}: expected 'box' or 'dict'")
+        return balls, spaces.Box(-1.0, 1.0, (self._rules.strikes.size,), np.float32)
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """The balls, in the order of every array's ball axis."""
+        return self._rules.game.ids
+
+    @property
+    def states(self) -> States:
+        """The tables as they are, a copy; of a `TableEnv` one row."""
+        return self._tables.states.take(slice(None))
+
+    def rollout(self, states: States, actions: ArrayLike, *, noise_seed: int | None = None, threads: int = 1) -> Rollout:
+        """Plays n actions on n tables at once, as many as you like, for search; this environment does not change. `env.states.take([0] * n)` is the
+        first table n times.
+
+        noise_seed: None plays the strikes as they are meant; otherwise shot i has the errors of shot i of this seed
+        """
+        n, rules = len(states.xy), self._rules
+        seeds = None if noise_seed is None else np.full(n, noise_seed, np.uint64)
+        search = Rules(rules.game, rules.strikes, rules.noise, threads=threads, hashes=rules.hashes)
+        return search.rollout(states, actions, seeds, np.arange(n))
+
+    def _observe_all(self) -> Observation:
+        """Of all tables, in arrays of their own."""
+        game, states = self._rules.game, self._tables.states
+        balls = game.observe(states)
+        return balls if self._options.observation == "box" else {"balls": balls, "legal": game.legal(states).astype(np.int8)}
 
 
-def observed(game: Game, states: States, observation: str) -> Observation:
-    """Of all tables, in arrays of their own."""
-    balls = game.observe(states)
-    return balls if observation == "box" else {"balls": balls, "legal": game.legal(states).astype(np.int8)}
+def row(observation: Observation, table: int) -> Observation:
+    """What is observed of one of the tables."""
+    return {key: values[table] for key, values in observation.items()} if isinstance(observation, dict) else observation[table]
 
 
 def plain(value: Any) -> Any:
@@ -77,24 +135,17 @@ def plain(value: Any) -> Any:
     return bool(value) if isinstance(value, np.bool_) else value.copy() if isinstance(value, np.ndarray) else value
 
 
-def searched(rules: Rules, states: States, actions: ArrayLike, noise_seed: int | None, threads: int) -> Rollout:
-    """Shots of a search, on threads of its own."""
-    n = len(states.xy)
-    seeds = None if noise_seed is None else np.full(n, noise_seed, np.uint64)
-    search = Rules(rules.game, rules.strikes, rules.noise, threads=threads, hashes=rules.hashes)
-    return search.rollout(states, actions, seeds, np.arange(n))
-
-
-class TableEnv(gymnasium.Env[Observation, Any]):
+@checked
+class TableEnv(TablesEnv, gymnasium.Env[Observation, Any]):
     """One table. The subclasses in carom.gym say which game.
 
-    aim, speed, elevation_deg: how an action is a strike (`carom.gym.Strikes`)
-    noise: errors of the strike: "fastfiz", "ai3603" (`carom.games.Noise.named`) or five standard deviations
-    observation: "box", or "dict" with the mask of the balls that may be hit first beside it
-    most_shots: an episode with as many shots is truncated; None leaves it to the game
-    hashes: info["hash"] is that of the shot's record
-    render_mode: "rgb_array" or None
-    size: width and height of pictures [pixels]
+    aim="angle", speed=(0.3, 6.0), elevation_deg=0.0: how an action is a strike (`carom.gym.Strikes`)
+    noise="none": errors of the strike: "fastfiz", "ai3603" (`carom.games.Noise.named`) or five standard deviations
+    observation="box": or "dict" with the mask of the balls that may be hit first beside it
+    most_shots=None: an episode with as many shots is truncated; None leaves it to the game
+    hashes=False: info["hash"] is that of the shot's record
+    render_mode=None: or "rgb_array"
+    size=(640, 360): width and height of pictures [pixels]
 
     Info of a step: "status" (a number of `carom.ShotStatus`), "events", "duration" [s], "first_hit" (a ball's place in `ids`, or -1), "pocket"
     and "cushions" of every ball, "cue" (the strike that was made: speed, aim_deg, elevation_deg, side, height), "foul" (its name, or ""), and "message" for a shot
@@ -106,36 +157,10 @@ class TableEnv(gymnasium.Env[Observation, Any]):
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 1}
 
-    def __init__(
-        self,
-        game: Game,
-        *,
-        aim: str = "angle",
-        speed: tuple[float, float] = (0.3, 6.0),
-        elevation_deg: float | tuple[float, float] = 0.0,
-        noise: str | Sequence[float] = "none",
-        observation: str = "box",
-        most_shots: int | None = None,
-        hashes: bool = False,
-        render_mode: str | None = None,
-        size: tuple[int, int] = (640, 360),
-    ) -> None:
-        check_render_mode(render_mode)
-        self._rules = rules_of(game, aim, speed, elevation_deg, noise, 1, hashes)
-        self.observation_space, self.action_space = spaces_of(self._rules, observation)
-        self.render_mode, self._observation, self._size = render_mode, observation, (int(size[0]), int(size[1]))
-        self._tables = Tables(1, self._rules, game.SHOTS if most_shots is None else most_shots)
+    def __init__(self, game: Game, **options: Any) -> None:
+        self.observation_space, self.action_space = self._open(game, 1, 1, options)
+        self.render_mode = self._options.render_mode
         self._seeded = False
-
-    @property
-    def ids(self) -> tuple[str, ...]:
-        """The balls, in the order of every array's ball axis."""
-        return self._rules.game.ids
-
-    @property
-    def states(self) -> States:
-        """The table as it is, a copy with one row."""
-        return self._tables.states.take(slice(None))
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
         super().reset(seed=seed)
@@ -153,13 +178,6 @@ class TableEnv(gymnasium.Env[Observation, Any]):
         said |= {"message": text for text in played.shots.messages.values()}
         return self._observe(), float(played.reward[0]), bool(played.terminated[0]), bool(played.truncated[0]), said
 
-    def rollout(self, states: States, actions: ArrayLike, *, noise_seed: int | None = None, threads: int = 1) -> Rollout:
-        """Plays n actions on n tables at once, for search; this environment does not change. `env.states.take([0] * n)` is this table n times.
-
-        noise_seed: None plays the strikes as they are meant; otherwise shot i has the errors of shot i of this seed
-        """
-        return searched(self._rules, states, actions, noise_seed, threads)
-
     def record(self) -> Record:
         """The last shot with everything that happened, for pictures and pages. Raises RuntimeError before the first shot."""
         if np.isnan(self._tables.cue[0, 0]):
@@ -168,15 +186,13 @@ class TableEnv(gymnasium.Env[Observation, Any]):
 
     def render(self) -> NDArray[np.uint8] | None:
         """The table as it is, from above: (height, width, 3) bytes."""
-        if self.render_mode is None:
-            return None
-        return next(render(self._rules.game.scene_of(self._tables.states.xy[0]), camera="top", size=self._size, times=[0.0]))
+        return None if self.render_mode is None else self._options.picture(self._rules.game, self._tables.states.xy[0])
 
     def _observe(self) -> Observation:
-        all_of = observed(self._rules.game, self._tables.states, self._observation)
-        return {key: values[0] for key, values in all_of.items()} if isinstance(all_of, dict) else all_of[0]
+        return row(self._observe_all(), 0)
 
 
+@checked
 class FeaturePlanes(gymnasium.ObservationWrapper[Any, Any, Any]):
     """Observes a `TableEnv` as planes for a convolution: float32 (4, height, width), y of the table along the width. One each for the cue ball, the balls that may be hit
     first, the other balls, and what the game shows beside them (a target). A ball is a cone over two radii.

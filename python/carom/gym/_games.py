@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from carom import _carom
+from carom._arguments import checked
 from carom._record import Record
-from carom._scene import Scene
+from carom._scene import Scene, SceneLike, as_scene
 from carom._simulate import Shots, ShotStatus, _columns_of, simulate, simulate_many
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ _ROOM = 1e-3
 _TRIES = 1000
 
 
+@checked
 class States(NamedTuple):
     """n tables between two shots. Copy it, cut it, repeat it: `states.take([0] * 1000)`."""
 
@@ -45,6 +47,7 @@ class Judged(NamedTuple):
     foul: NDArray[np.object_]  # (n,) its name, or ""
 
 
+@checked
 class Game:
     """A game of one player. The subclasses say what stands on the table and what a shot is worth."""
 
@@ -53,7 +56,8 @@ class Game:
     #: An episode with as many shots is truncated, unless the environment's option says otherwise.
     SHOTS = 1000
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: SceneLike) -> None:
+        scene = as_scene(scene)
         record = simulate(scene, until=0.0)
         self.scene, self.ids, self.radii = scene, scene.ids, record.radii
         self.table, self.colors = record.table, record.colors
@@ -78,8 +82,9 @@ class Game:
     # What subclasses say.
 
     def start(self, states: NDArray[np.uint64]) -> States:
-        """New tables, one for each of the generators, which move on."""
-        raise NotImplementedError
+        """New tables, one for each of the generators, which move on: random layouts, unless a subclass says otherwise."""
+        xy = self.random_places(states, len(self.ids))
+        return States(xy, self.no_extra(len(xy)))
 
     def legal(self, states: States) -> NDArray[np.bool_]:
         """(n, balls) which balls may be hit first."""
@@ -144,16 +149,13 @@ def _placed(ids: Mapping[str, tuple[float, float]]) -> list[dict[str, Any]]:
     return [{"id": ball, "position": list(place)} for ball, place in ids.items()]
 
 
+@checked
 class Pot(Game):
     """One object ball and one shot, from a random layout: 1 for the ball in any pocket, -1 for a foul (the cue ball in a pocket, a ball off the
     table), 0 otherwise."""
 
-    def __init__(self, *, table: str = "nine_foot", scene: Scene | None = None) -> None:
+    def __init__(self, *, table: str = "nine_foot", scene: SceneLike | None = None) -> None:
         super().__init__(scene or Scene(table=table, ball=_placed({"cue": (0.4, 0.5), "1": (0.5, 1.2)}), cue={"speed": 2.0, "aim_deg": 90.0}))
-
-    def start(self, states: NDArray[np.uint64]) -> States:
-        xy = self.random_places(states, len(self.ids))
-        return States(xy, self.no_extra(len(xy)))
 
     def judge(self, states: States, cue: NDArray[np.float64], shots: Shots) -> Judged:
         foul = self.scratch(shots)
@@ -165,6 +167,7 @@ class Pot(Game):
         return Judged(behind, reward, np.ones(len(reward), bool), foul)
 
 
+@checked
 class Position(Pot):
     """As Pot, and the cue ball should come to rest at a target: the reward is less by the distance to it, in diagonals of the table. A foul is -1."""
 
@@ -185,19 +188,16 @@ class Position(Pot):
         return states.extra[:, None]
 
 
+@checked
 class _Ruled(Game):
     """A game whose shots are judged by `carom.games`. An episode is a player's turn."""
 
     #: The name of the game in `carom.games`.
     RULES = ""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: SceneLike) -> None:
         super().__init__(scene)
         self._fouls = np.array([*_carom.foul_names(), ""], object)
-
-    def start(self, states: NDArray[np.uint64]) -> States:
-        xy = self.random_places(states, len(self.ids))
-        return States(xy, self.no_extra(len(xy)))
 
     def legal(self, states: States) -> NDArray[np.bool_]:
         out = np.empty(states.xy.shape[:2], np.uint8)
@@ -236,23 +236,25 @@ class _Ruled(Game):
         return states.extra[:, 0].astype(np.int32) if self.EXTRA else np.zeros(len(states.xy), np.int32)
 
 
+@checked
 class ThreeCushion(_Ruled):
     """Three-cushion from a random layout, for as long as you score: 1 for a point. The cue ball is the white one."""
 
     RULES = "three_cushion"
 
-    def __init__(self, *, table: str = "carom", scene: Scene | None = None) -> None:
+    def __init__(self, *, table: str = "carom", scene: SceneLike | None = None) -> None:
         places = {"white": (0.5, 0.7), "yellow": (0.7, 0.7), "red": (0.7, 2.1)}
         super().__init__(scene or Scene(table=table, balls="carom", ball=_placed(places), cue={"ball": "white", "speed": 4.0, "aim_deg": 0.0}))
 
 
+@checked
 class SumToThree(_Ruled):
     """Two balls on a table without pockets, ten shots: 1 for a shot that hits the other ball, and in which the two meet three cushions together."""
 
     RULES = "sum_to_three"
     SHOTS = 10
 
-    def __init__(self, *, table: str = "carom", scene: Scene | None = None) -> None:
+    def __init__(self, *, table: str = "carom", scene: SceneLike | None = None) -> None:
         places = {"cue": (0.5, 0.7), "object": (0.7, 2.1)}
         super().__init__(scene or Scene(table=table, balls="carom", ball=_placed(places), cue={"speed": 4.0, "aim_deg": 0.0}))
 
@@ -265,16 +267,18 @@ def _pool(table: str, rack: str) -> Scene:
     return Scene(table=table, rack=rack, ball=[cue], cue={"speed": 4.0, "aim_deg": 90.0})
 
 
+@checked
 class NineBallRun(_Ruled):
     """Nine-ball from a random layout of all balls, for as long as you stay at the table: 1 for every ball that falls in a fair shot. The episode ends with a
     miss, a foul, or the nine."""
 
     RULES = "nine_ball"
 
-    def __init__(self, *, table: str = "nine_foot", scene: Scene | None = None) -> None:
+    def __init__(self, *, table: str = "nine_foot", scene: SceneLike | None = None) -> None:
         super().__init__(scene or _pool(table, "nine_ball"))
 
 
+@checked
 class EightBallRun(_Ruled):
     """Eight-ball from a random layout on an open table, for as long as you stay at the table: 1 for every ball that falls in a fair shot. The first of your balls
     that falls is taken as called, so luck counts. The episode ends with a miss, a foul, or the eight."""
@@ -282,7 +286,7 @@ class EightBallRun(_Ruled):
     RULES = "eight_ball"
     EXTRA = ("group",)  # 0: the table is open, 1: solids, 2: stripes
 
-    def __init__(self, *, table: str = "nine_foot", scene: Scene | None = None) -> None:
+    def __init__(self, *, table: str = "nine_foot", scene: SceneLike | None = None) -> None:
         super().__init__(scene or _pool(table, "eight_ball"))
 
 

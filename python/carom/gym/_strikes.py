@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom import _carom
+from carom._arguments import checked
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,6 +22,7 @@ def _norm(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.sqrt(vectors[..., 0] * vectors[..., 0] + vectors[..., 1] * vectors[..., 1]))
 
 
+@checked
 @dataclasses.dataclass(frozen=True)
 class Strikes:
     """How an action in [-1, 1]^5 (6 with an elevation of its own) is a strike. Every action is a legal one: numbers outside [-1, 1] are brought

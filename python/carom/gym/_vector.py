@@ -10,20 +10,21 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from carom._render import render
-from carom.gym._env import Observation, check_render_mode, observed, plain, rules_of, searched, spaces_of
-from carom.gym._games import Game, States
-from carom.gym._tables import Rollout, Tables
+from carom._arguments import checked
+from carom.gym._env import Observation, TablesEnv, row
+from carom.gym._games import Game
+from carom.gym._tables import Rollout
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
 _Step = tuple[Observation, "NDArray[np.float64]", "NDArray[np.bool_]", "NDArray[np.bool_]", dict[str, Any]]
 
 
-class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
+@checked
+class TableVectorEnv(TablesEnv, VectorEnv[Observation, Any, "NDArray[Any]"]):
     """n tables. Table i does what a `TableEnv` does that was seeded with its seed: the same bits. The other options are those of `TableEnv`.
 
     autoreset_mode: when a table whose episode is over is reset: at its next step, which plays no shot then ("NextStep"); in the same step ("SameStep",
@@ -40,40 +41,20 @@ class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
         *,
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
         threads: int = 1,
-        aim: str = "angle",
-        speed: tuple[float, float] = (0.3, 6.0),
-        elevation_deg: float | tuple[float, float] = 0.0,
-        noise: str | Sequence[float] = "none",
-        observation: str = "box",
-        most_shots: int | None = None,
-        hashes: bool = False,
-        render_mode: str | None = None,
-        size: tuple[int, int] = (640, 360),
+        **options: Any,
     ) -> None:
         super().__init__()
         if num_envs < 1:
             raise ValueError(f"num_envs={num_envs}: expected at least 1")
-        check_render_mode(render_mode)
-        self.num_envs, self.render_mode, self._observation, self._size = num_envs, render_mode, observation, (int(size[0]), int(size[1]))
+        self.num_envs = num_envs
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = {**type(self).metadata, "autoreset_mode": self.autoreset_mode}
-        self._rules = rules_of(game, aim, speed, elevation_deg, noise, threads, hashes)
-        self.single_observation_space, self.single_action_space = spaces_of(self._rules, observation)
+        self.single_observation_space, self.single_action_space = self._open(game, num_envs, threads, options)
+        self.render_mode = self._options.render_mode
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self._tables = Tables(num_envs, self._rules, game.SHOTS if most_shots is None else most_shots)
         self._seeded = np.zeros(num_envs, bool)
         self._over = np.zeros(num_envs, bool)
-
-    @property
-    def ids(self) -> tuple[str, ...]:
-        """The balls, in the order of every array's ball axis."""
-        return self._rules.game.ids
-
-    @property
-    def states(self) -> States:
-        """The tables as they are, a copy."""
-        return self._tables.states.take(slice(None))
 
     def reset(self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
         n = self.num_envs
@@ -92,7 +73,7 @@ class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
         self._seeded[rows] = True
         self._tables.reset(rows, _cut(rest, mask))
         self._over[rows] = False
-        return self._observe(), {}
+        return self._observe_all(), {}
 
     def step(self, actions: Any) -> _Step:
         if not self._seeded.all():
@@ -118,29 +99,23 @@ class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
             else:
                 infos = self._infos(~over, {key: self._whole(rows, values) for key, values in info.items()}, self._messages(rows, played))
         self._over = terminated | truncated if mode != AutoresetMode.SAME_STEP else np.zeros(self.num_envs, bool)
-        return self._observe(), reward, terminated, truncated, infos
-
-    def rollout(self, states: States, actions: ArrayLike, *, noise_seed: int | None = None, threads: int = 1) -> Rollout:
-        """Plays n actions on n tables at once, as many as you like, for search, as `TableEnv.rollout`; this environment does not change."""
-        return searched(self._rules, states, actions, noise_seed, threads)
+        return self._observe_all(), reward, terminated, truncated, infos
 
     def render(self) -> tuple[Any, ...] | None:
         """The tables as they are, from above."""
         if self.render_mode is None:
             return None
-        scenes = (self._rules.game.scene_of(xy) for xy in self._tables.states.xy)
-        return tuple(next(render(scene, camera="top", size=self._size, times=[0.0])) for scene in scenes)
+        return tuple(self._options.picture(self._rules.game, xy) for xy in self._tables.states.xy)
 
     def _same_step(self, played: Rollout, info: dict[str, Any], ended: NDArray[np.bool_]) -> dict[str, Any]:
         """Resets the tables whose episode is over. The info of the others, and how these ended."""
         said = played.shots.messages
         infos = {} if ended.all() else self._infos(~ended, info, said)
-        last = self._observe()  # nobody else's, so that its rows need no copies
+        last = self._observe_all()  # nobody else's, so that its rows need no copies
         final = np.full(self.num_envs, None, object)
         which = np.flatnonzero(ended)
-        dicts = isinstance(last, dict)
-        for row in which.tolist():
-            final[row] = {key: values[row] for key, values in last.items()} if dicts else last[row]
+        for table in which.tolist():
+            final[table] = row(last, table)
         infos["final_obs"], infos["_final_obs"] = final, ended.copy()
         infos["final_info"], infos["_final_info"] = self._infos(ended, info, said), ended.copy()
         self._tables.reset(slice(None) if len(which) == self.num_envs else which, None)
@@ -175,9 +150,6 @@ class TableVectorEnv(VectorEnv[Observation, Any, "NDArray[Any]"]):
         """Messages of shots by their tables."""
         said = played.shots.messages
         return said if isinstance(rows, slice) else {int(rows[shot]): text for shot, text in said.items()}
-
-    def _observe(self) -> Observation:
-        return observed(self._rules.game, self._tables.states, self._observation)
 
 
 def _mask(mask: Any, n: int) -> NDArray[np.bool_]:

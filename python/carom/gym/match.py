@@ -15,18 +15,14 @@ except ImportError as error:
     raise ImportError("carom.gym.match needs PettingZoo: pip install 'carom-billiards[gym]'") from error
 
 from carom import games
-from carom._errors import SimulationError
+from carom._arguments import checked
 from carom._record import Record
-from carom._render import render
 from carom._scene import Scene
-from carom._simulate import ShotStatus, simulate
-from carom.gym._env import check_render_mode, noise_of
+from carom._simulate import ShotStatus, SimulationError, simulate
+from carom.gym._env import Options
 from carom.gym._games import Game, States
-from carom.gym._strikes import Strikes
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
 #: By the names of PettingZoo's kind: the rules, the table, and the cue ball's place at the break as parts of width and length.
@@ -40,19 +36,21 @@ _MOST_EVENTS = 1_000_000
 _PHASES = ("strike", "place")
 
 
+@checked
 def env(game: str, **options: Any) -> MatchEnv:
     """A game by its name: "EightBall", "NineBall" or "Snooker". Raises ValueError for another one."""
     return MatchEnv(game, **options)
 
 
+@checked
 class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # PettingZoo has no types
     """A game of two players by the rules of `carom.games`, from the break to its end: 1 for who wins, -1 for who loses.
 
-    aim, speed, elevation_deg, noise: as for `carom.gym.TableEnv`
-    called: eight-ball: two more numbers of an action choose the ball, among those that may be called, and the pocket. Without it the first of your balls that
+    aim, speed, elevation_deg, noise: as for `carom.gym.TableEnv`; speed is (0.3, 8.0)
+    called=False: eight-ball: two more numbers of an action choose the ball, among those that may be called, and the pocket. Without it the first of your balls that
         falls is taken as called, so luck counts
-    most_shots: a game with as many shots is truncated
-    render_mode: "rgb_array" or None
+    most_shots=1000: a game with as many shots is truncated
+    render_mode, size: as for `carom.gym.TableEnv`
 
     An action is Box(-1, 1): a strike as for the other environments. A cue ball in hand is an action of its own: while observation["phase"] is 1 the first two
     numbers are its place, across the area where it may lie; where a ball is in the way, the nearest free place is taken. The same player strikes then. A break
@@ -70,27 +68,22 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         self,
         game: str,
         *,
-        aim: str = "angle",
-        speed: tuple[float, float] = (0.3, 8.0),
-        elevation_deg: float | tuple[float, float] = 0.0,
-        noise: str | Sequence[float] = "none",
         called: bool = False,
         most_shots: int = 1000,
-        render_mode: str | None = None,
-        size: tuple[int, int] = (640, 360),
+        **options: Any,
     ) -> None:
         super().__init__()
         if game not in _GAMES:
             raise ValueError(f"game={game!r}: expected {', '.join(_GAMES)}")
-        check_render_mode(render_mode)
         if called and game != "EightBall":
             raise ValueError("called: only eight-ball has calls")
         self._rules, self._table, self._break_from = _GAMES[game]
-        self._strikes = Strikes(aim, speed, elevation_deg)
+        self._options = Options(**{"speed": (0.3, 8.0)} | options)
+        self._strikes = self._options.strikes()
         self._called, self._most_shots = called, most_shots
-        self.render_mode, self._size = render_mode, size
+        self.render_mode = self._options.render_mode
         self._game = Game(self._rack(1))
-        self._noise = noise_of(noise, self._game)
+        self._noise = self._options.noise_in(self._game)
         self.possible_agents = ["player_0", "player_1"]
         balls = len(self._game.ids)
         self._observation_space = spaces.Dict(
@@ -165,9 +158,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
 
     def render(self) -> NDArray[np.uint8] | None:
         """The table as it is, from above: (height, width, 3) bytes."""
-        if self.render_mode is None:
-            return None
-        return next(render(self._game.scene_of(self._xy), camera="top", size=self._size, times=[0.0]))
+        return None if self.render_mode is None else self._options.picture(self._game, self._xy)
 
     def record(self) -> Record:
         """The last shot. Raises RuntimeError before the first one of a rack."""

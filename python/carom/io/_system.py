@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import json
-import os
 import tomllib
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.io.pooltool import POCKETS, STATES
+from carom._files import whole_file
+from carom._record import Record
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from carom._record import Record
-
+#: The names of pooltool's motion states, by number.
+STATES = ("stationary", "spinning", "sliding", "rolling", "pocketed")
+#: Pockets in the order of carom's p1 to p6.
+POCKETS = ("lb", "lc", "lt", "rt", "rc", "rb")
 #: Seconds between two states where pooltool has no formula for the motion.
 _STEP = 0.005
 #: How deep a pocket is in pooltool's pictures [m].
@@ -45,15 +47,8 @@ def write(record: Record, name: str) -> None:
     if np.ptp(record.radii) > 0 or np.ptp(record.masses) > 0:
         raise ValueError(f"{name}: the balls differ in radius or mass, and pooltool has none that do")
     text = json.dumps(_Writer(record).system(), allow_nan=False)
-    temporary = f"{name}.{os.getpid()}.tmp"
-    try:
-        with open(temporary, "w", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(temporary, name)
-    except BaseException:
-        if os.path.exists(temporary):
-            os.remove(temporary)
-        raise
+    with whole_file(name) as file:
+        file.write(text.encode())
 
 
 class _Writer:

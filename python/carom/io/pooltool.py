@@ -9,20 +9,17 @@ from __future__ import annotations
 import json
 import math
 import os
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
+from carom._arguments import checked
 from carom._errors import SceneError
+from carom._record import Record
 from carom._scene import Scene
-
-if TYPE_CHECKING:
-    from carom._record import Record
+from carom.io import _system
+from carom.io._system import POCKETS, STATES
 
 __all__ = ["load", "save"]
 
-#: The names of pooltool's motion states, by number.
-STATES = ("stationary", "spinning", "sliding", "rolling", "pocketed")
-#: Pockets in the order of carom's p1 to p6.
-POCKETS = ("lb", "lc", "lt", "rt", "rc", "rb")
 #: The friction of balls in pooltool, a + b exp(-c u), which is part of its models and not of a file.
 FRICTION = (0.009951, 0.108, 1.088)
 
@@ -72,6 +69,7 @@ class _Tree:
         return str(self.value)
 
 
+@checked
 def load(path: str | os.PathLike[str]) -> Scene:
     """The scene of a System, from its start; of one that was simulated, what was simulated.
 
@@ -178,7 +176,6 @@ def _parameters(params: _Tree) -> tuple[float, float, dict[str, dict[str, Any]]]
     return radius, params.at("m").number(), {"balls": balls, "physics": physics}
 
 
-
 def _struck(root: _Tree) -> bool:
     """Whether the shot begins with the cue: of a System that was simulated, as it was; of another, as pooltool would."""
     events = [event.at("event_type").text() for event in root.at("events").parts()]
@@ -204,6 +201,7 @@ def _cue(root: _Tree) -> dict[str, Any] | None:
     }
 
 
+@checked
 def save(record: Record, path: str | os.PathLike[str]) -> None:
     """Writes a record as a simulated System, whole or not at all, which pooltool 0.6.0 loads, shows and evaluates.
 
@@ -214,8 +212,6 @@ def save(record: Record, path: str | os.PathLike[str]) -> None:
 
     Raises ValueError for a name that does not end in .json and for balls that are not alike, OSError where the file cannot be written.
     """
-    from carom.io import _system
-
     name = os.fspath(path)
     if not name.endswith(".json"):
         raise ValueError(f"{name}: a System is saved as .json")

@@ -10,9 +10,9 @@ import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from carom._errors import SceneError
 from carom.sweep import _folder, _run, _slurm
 from carom.sweep._plan import Plan, SweepError, plan
+from carom.sweep._shard import need
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -67,8 +67,6 @@ def _new_plan(args: argparse.Namespace) -> int:
         _usage("--scene needs --vary and --shots")
     try:
         made = plan(args.scene, args.vary, args.shots, seed=args.seed, shard=args.shard, hashes=args.hashes)
-    except SceneError as error:
-        return _complain(error, 2)
     except ValueError as error:
         return _complain(error, 2)
     made.save(args.plan)
@@ -141,8 +139,6 @@ def _play(args: argparse.Namespace, of: Plan, folder: str) -> int:
 
 
 def _dask_client(address: str) -> Any:
-    from carom.sweep._shard import need
-
     need("distributed")
     import distributed
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import collections
 import itertools
+import json
 import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
+from carom._arguments import checked
 from carom.sweep._plan import Plan, SweepError
 from carom.sweep._shard import UNFINISHED, ContentHash, _first_line, footer, need, schema_of
 
@@ -45,6 +48,7 @@ class Check(NamedTuple):
         return not self.faults and not self.missing
 
 
+@checked
 def status(folder: str | os.PathLike[str]) -> Status:
     """Which shards of a sweep are there. No file but the plan is read: one that has its name is whole. Raises SweepError where there is
     no plan."""
@@ -64,6 +68,12 @@ def status(folder: str | os.PathLike[str]) -> Status:
     return Status(plan, plan.shards - len(missing), tuple(missing), rows, tuple(unfinished), tuple(sorted(there)))
 
 
+def those_there(found: Status, wanted: Iterable[int]) -> list[int]:
+    """Of some shards those that are there."""
+    missing = set(found.missing)
+    return [shard for shard in wanted if shard not in missing]
+
+
 def in_parallel(work: Callable[[int], _Result], shards: Iterable[int], threads: int = 0) -> Iterator[_Result]:
     """The results of `work` on shards, in their order, on threads; few of them at a time are in memory."""
     todo = iter(shards)
@@ -80,8 +90,6 @@ def _described(schema: pyarrow.Schema) -> tuple[object, ...]:
 
 def _check_shard(plan: Plan, shard: int, path: str) -> dict[str, int]:
     """Reads a whole shard; its outcomes. Raises SweepError for anything that is not as it was written."""
-    import json
-
     import pyarrow.parquet
 
     about = footer(plan, shard, path)
@@ -101,6 +109,7 @@ def _check_shard(plan: Plan, shard: int, path: str) -> dict[str, int]:
     return outcomes
 
 
+@checked
 def check(folder: str | os.PathLike[str], *, threads: int = 0) -> Check:
     """Reads every file of a sweep and compares its content with its hash and its description with the plan.
 
@@ -111,11 +120,9 @@ def check(folder: str | os.PathLike[str], *, threads: int = 0) -> Check:
     need("pyarrow.parquet")
     name = os.fspath(folder)
     found = status(name)
-    missing = set(found.missing)
-    shards = [shard for shard in range(found.plan.shards) if shard not in missing]
+    shards = those_there(found, range(found.plan.shards))
     faults = {stranger: f"{os.path.join(name, stranger)}: a file that is none of this plan's" for stranger in found.strangers}
-    outcomes: dict[str, int] = {}
-    rows = 0
+    outcomes: collections.Counter[str] = collections.Counter()
 
     def look(shard: int) -> dict[str, int] | SweepError:
         try:
@@ -126,13 +133,12 @@ def check(folder: str | os.PathLike[str], *, threads: int = 0) -> Check:
     for shard, result in zip(shards, in_parallel(look, shards, threads)):
         if isinstance(result, SweepError):
             faults[found.plan.file(shard)] = str(result)
-            continue
-        rows += sum(result.values())
-        for outcome, count in result.items():
-            outcomes[outcome] = outcomes.get(outcome, 0) + count
-    return Check(found.plan, rows, outcomes, faults, found.missing)
+        else:
+            outcomes.update(result)
+    return Check(found.plan, outcomes.total(), dict(outcomes), faults, found.missing)
 
 
+@checked
 def open(folder: str | os.PathLike[str], *, verify: bool = True, partial: bool = False) -> pyarrow.dataset.Dataset:
     """The rows of a sweep as a pyarrow Dataset, in the order of the shots. Its columns are those of `carom sweep`, with their units.
 
@@ -152,15 +158,13 @@ def open(folder: str | os.PathLike[str], *, verify: bool = True, partial: bool =
         raise SweepError(f"{name}: {len(found.missing)} of {plan.shards} shards are missing; run the sweep again, or open with partial=True what is there")
     if found.strangers:
         raise SweepError(f"{os.path.join(name, found.strangers[0])}: a file that is none of this plan's; remove it")
-    missing = set(found.missing)
-    shards = [shard for shard in range(plan.shards) if shard not in missing]
+    shards = those_there(found, range(plan.shards))
     paths = [os.path.join(name, plan.file(shard)) for shard in shards]
     if verify:
         for fault in check(name).faults.values():
             raise SweepError(fault)
     else:
-        for _ in in_parallel(lambda shard: footer(plan, shard, os.path.join(name, plan.file(shard))), shards):
-            pass
+        collections.deque(in_parallel(lambda shard: footer(plan, shard, os.path.join(name, plan.file(shard))), shards), 0)
     pages = pyarrow.dataset.ParquetFileFormat(
         default_fragment_scan_options=pyarrow.dataset.ParquetFragmentScanOptions(page_checksum_verification=True)
     )

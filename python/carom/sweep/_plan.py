@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 from carom import _carom
-from carom._scene import Scene
+from carom._arguments import checked
+from carom._files import whole_file
+from carom._scene import Scene, SceneLike, as_scene
 from carom.sweep._columns import MOST_SHOTS, Player
 
 FORMAT = "carom sweep plan 1"
@@ -26,6 +30,7 @@ class SweepError(RuntimeError):
     """A plan, a folder or a worker that does not fit, or a file that is not what it has to be. `str()` names them and says what to do."""
 
 
+@checked
 class Plan(NamedTuple):
     """What the shots of a sweep are. Make one by `plan`, or read one by `Plan.load`."""
 
@@ -74,8 +79,6 @@ class Plan(NamedTuple):
 
     def text(self) -> str:
         """The file: JSON."""
-        import json
-
         return json.dumps({**self._content(), "sha256": self.id}, indent=1, ensure_ascii=False) + "\n"
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -85,13 +88,15 @@ class Plan(NamedTuple):
             if Plan.load(name) != self:
                 raise SweepError(f"{name}: there is another plan already; remove it, or write to another place")
             return
-        write_whole(name, self.text().encode())
+        try:
+            with whole_file(name) as file:
+                file.write(self.text().encode())
+        except OSError as error:
+            raise SweepError(f"{name}: cannot write it: {error.strerror}") from None
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Plan:
         """Reads a plan. Raises SweepError for a file that is none, or that was changed."""
-        import json
-
         name = os.fspath(path)
         try:
             with open(name, encoding="utf-8") as file:
@@ -113,40 +118,12 @@ class Plan(NamedTuple):
 
 
 def sha256(data: bytes) -> str:
-    import hashlib
-
     return hashlib.sha256(data).hexdigest()
 
 
 def canonical(tree: Any) -> bytes:
     """A tree as bytes that are equal if and only if the trees are."""
-    import json
-
     return json.dumps(tree, ensure_ascii=False, sort_keys=True, separators=(",", ":")).encode()
-
-
-def write_whole(path: str, data: bytes) -> None:
-    """The file appears complete or not at all, and stays after a power cut."""
-    temporary = f"{path}.{os.urandom(4).hex()}.tmp"
-    try:
-        with open(temporary, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
-    except OSError as error:
-        if os.path.exists(temporary):
-            os.unlink(temporary)
-        raise SweepError(f"{path}: cannot write it: {error.strerror}") from None
-    sync_folder(os.path.dirname(path) or ".")
-
-
-def sync_folder(path: str) -> None:
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 @lru_cache(maxsize=8)
@@ -173,8 +150,9 @@ def wrong_worker(plan: Plan) -> str:
     return ""
 
 
+@checked
 def plan(
-    scene: Scene | str | os.PathLike[str],
+    scene: SceneLike,
     vary: Mapping[str, Any] | Sequence[str],
     shots: int,
     *,
@@ -184,7 +162,7 @@ def plan(
 ) -> Plan:
     """The plan of a sweep; it plays no more than the first few shots.
 
-    scene: or the path of its file
+    scene: or the path of its file, or its tree
     vary: rules as for `carom sweep --vary`, or a mapping from keys to distributions ("normal(0.5)") or lists of values
     shots: at most 2**53
     seed: of all draws
@@ -195,8 +173,7 @@ def plan(
     Raises ValueError for a number out of its range and for a rule that cannot be read or that gives no valid scene, SceneError
     for the scene.
     """
-    if not isinstance(scene, Scene):
-        scene = Scene.load(scene)
+    scene = as_scene(scene)
     if not 1 <= shots <= MOST_SHOTS:
         raise ValueError(f"shots={shots}: expected 1 to 2**53")
     if shard < 1:

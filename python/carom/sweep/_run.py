@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
+import itertools
+import json
 import os
 import queue
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
+from collections.abc import Callable, Generator, Iterable, Mapping
+from concurrent.futures import BrokenExecutor, CancelledError, ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from carom.sweep._folder import PLAN, in_parallel, status
+from carom._arguments import checked
+from carom.sweep._folder import PLAN, in_parallel, status, those_there
 from carom.sweep._plan import Plan, SweepError, wrong_worker
-from carom.sweep._shard import Stopped, Tally, footer, make_shard, need, run_shard, tables
+from carom.sweep._shard import Tally, footer, make_shard, need, run_shard, tables
 
 if TYPE_CHECKING:
     import pyarrow
@@ -45,24 +50,19 @@ class Progress(NamedTuple):
 
 
 class _Count:
-    """Makes Progress of the results of shards."""
+    """Makes Progress of the results of shards, and tells it."""
 
-    def __init__(self, plan: Plan, wanted: int, tell: Callable[[Progress], None] | None) -> None:
-        self.plan, self.wanted, self.tell = plan, wanted, tell
-        self.start = time.perf_counter()
-        self.done = self.rows = self.played = 0
-        self.outcomes: dict[str, int] = {}
+    def __init__(self, shards: int, tell: Callable[[Progress], None] | None) -> None:
+        self.tell, self.start = tell, time.perf_counter()
+        self.now = Progress(shards, 0, 0, 0, 0.0, {})
 
-    def add(self, outcomes: Mapping[str, int], played: bool) -> None:
-        rows = sum(outcomes.values())
-        self.done += 1
-        self.rows += rows
-        self.played += rows if played else 0
-        for name, count in outcomes.items():
-            self.outcomes[name] = self.outcomes.get(name, 0) + count
+    def add(self, outcomes: dict[str, int], played: bool) -> None:
+        rows, now = sum(outcomes.values()), self.now
+        whole = {name: now.outcomes.get(name, 0) + outcomes.get(name, 0) for name in now.outcomes | outcomes}
+        self.now = now._replace(done=now.done + 1, rows=now.rows + rows, played=now.played + rows * played, outcomes=whole)
 
     def progress(self) -> Progress:
-        return Progress(self.wanted, self.done, self.rows, self.played, time.perf_counter() - self.start, dict(self.outcomes))
+        return self.now._replace(seconds=time.perf_counter() - self.start)
 
     def show(self) -> None:
         if self.tell is not None:
@@ -117,8 +117,6 @@ class _Tasks:
 
     def next(self) -> tuple[int, Any]:
         """The shard whose work has ended, and its result."""
-        from concurrent.futures import CancelledError
-
         while True:
             shard, future = self.ended.get()
             if self.running.pop(shard, None) is None:
@@ -141,59 +139,49 @@ class _Tasks:
             future.cancel()
 
 
-def _results(executor: Any, work: Callable[..., Any], arguments: Callable[[int], tuple[Any, ...]], shards: Iterable[int], retries: int) -> Iterator[Any]:
-    """The results of `work` on shards, as they come."""
+def _call(work: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+    """For what has `map` alone, whose functions have one argument."""
+    return work(*arguments)
+
+
+def _results(
+    executor: Any, work: Callable[..., Any], arguments: Callable[[int], tuple[Any, ...]], shards: Iterable[int], retries: int, *, in_order: bool = False
+) -> Generator[Any, None, None]:
+    """The results of `work` on shards as they come, or in the order of the shards: then few of them wait for earlier ones."""
     if not hasattr(executor, "submit"):
-        each = getattr(executor, "imap_unordered", executor.map)
-        yield from each(_Call(work), (arguments(shard) for shard in shards))
+        each = getattr(executor, "imap" if in_order else "imap_unordered", executor.map)
+        yield from each(functools.partial(_call, work), map(arguments, shards))
         return
-    tasks, window, todo = _Tasks(executor, work, arguments, retries), _window(executor, _WINDOW), iter(shards)
+    tasks, window = _Tasks(executor, work, arguments, retries), _window(executor, _WINDOW_OF_RESULTS if in_order else _WINDOW)
+    todo, waiting = iter(shards), dict[int, Any]()
+    begun = dict[int, None]()  # in their order, until their results are given
     try:
-        for shard in todo:
-            tasks.begin(shard)
-            if len(tasks.running) >= window:
-                yield tasks.next()[1]
-        while tasks.running:
-            yield tasks.next()[1]
+        while True:
+            for shard in itertools.islice(todo, window - len(begun)):
+                tasks.begin(shard)
+                begun[shard] = None
+            if not begun:
+                return
+            ended, result = tasks.next()
+            waiting[ended] = result
+            ready: int | None = next(iter(begun)) if in_order else ended
+            while ready is not None and ready in waiting:
+                del begun[ready]
+                yield waiting.pop(ready)
+                ready = next(iter(begun), None)
     finally:
         tasks.give_up()
 
 
-class _Call:
-    """For what has `map` alone: a function of one argument, which pickles."""
-
-    def __init__(self, work: Callable[..., Any]) -> None:
-        self.work = work
-
-    def __call__(self, arguments: tuple[Any, ...]) -> Any:
-        return self.work(*arguments)
-
-
-def _in_order(executor: Any, work: Callable[..., Any], arguments: Callable[[int], tuple[Any, ...]], count: int, retries: int) -> Iterator[Any]:
-    """The results of `work` on shards 0, 1, ..., in this order; few of them wait for earlier ones."""
-    if not hasattr(executor, "submit"):
-        yield from getattr(executor, "imap", executor.map)(_Call(work), (arguments(shard) for shard in range(count)))
-        return
-    tasks, window, waiting, begun = _Tasks(executor, work, arguments, retries), _window(executor, _WINDOW_OF_RESULTS), {}, 0
-    try:
-        for wanted in range(count):
-            while wanted not in waiting:
-                while begun < min(count, wanted + window):
-                    tasks.begin(begun)
-                    begun += 1
-                shard, result = tasks.next()
-                waiting[shard] = result
-            yield waiting.pop(wanted)
-    finally:
-        tasks.give_up()
-
-
-def _executor(executor: Any) -> Any:
-    if executor != "threads" and not hasattr(executor, "submit") and not hasattr(executor, "map"):
+def _workers(executor: Any, threads: int) -> contextlib.AbstractContextManager[Any]:
+    if executor == "threads":
+        return _Threads(threads)
+    if not hasattr(executor, "submit") and not hasattr(executor, "map"):
         raise ValueError(f'executor={executor!r}: expected "threads", an executor of concurrent.futures, a Dask client, or what has submit or map')
-    return executor
+    return contextlib.nullcontext(executor)
 
 
+@checked
 def run(
     plan: Plan,
     folder: str | os.PathLike[str],
@@ -217,45 +205,28 @@ def run(
     SweepError where the folder holds something else or a worker has another carom; OSError where a file cannot be written.
     """
     need("pyarrow.parquet")
-    _executor(executor)
+    workers = _workers(executor, threads)
     name = os.path.abspath(folder)
+    path = os.path.join(name, PLAN)
     os.makedirs(name, exist_ok=True)
-    plan.save(os.path.join(name, PLAN))
+    plan.save(path)
     wanted = range(plan.shards) if shards is None else sorted(set(shards))
     for shard in wanted if shards is not None else ():
         plan.range(shard)
-    missing = set(status(name).missing)
-    count = _Count(plan, len(wanted), progress)
-    _count_what_is_there(count, name, (shard for shard in wanted if shard not in missing))
+    found = status(name)
+    missing, there = set(found.missing), those_there(found, wanted)
+    count = _Count(len(wanted), progress)
+    for about in in_parallel(lambda shard: footer(plan, shard, os.path.join(name, plan.file(shard))), there):
+        count.add(json.loads(about["carom.outcomes"]), played=False)
     count.show()
-    todo = [shard for shard in wanted if shard in missing]
-    if executor == "threads":
-        with _Threads(threads) as local:
-            results = _results(local, make_shard, lambda shard: (plan, shard, name, 1), todo, 0)
-            _take(count, results)
-    else:
-        # Workers read the plan from the folder: a task stays small.
-        _take(count, _results(executor, run_shard, lambda shard: (os.path.join(name, PLAN), shard, name), todo, retries))
-    return count.progress()
-
-
-def _take(count: _Count, results: Iterator[Any]) -> None:
-    try:
+    work: tuple[Any, Any] = (make_shard, lambda shard: (plan, shard, name, 1))
+    if executor != "threads":  # its workers read the plan from the folder: a task stays small
+        work = (run_shard, lambda shard: (path, shard, name))
+    with workers as those, contextlib.closing(_results(those, *work, (shard for shard in wanted if shard in missing), retries)) as results:
         for result in results:
             count.add(result["outcomes"], result["played"])
             count.show()
-    finally:
-        close = getattr(results, "close", None)
-        if close is not None:
-            close()
-
-
-def _count_what_is_there(count: _Count, folder: str, shards: Iterable[int]) -> None:
-    import json
-
-    plan = count.plan
-    for about in in_parallel(lambda shard: footer(plan, shard, os.path.join(folder, plan.file(shard))), shards):
-        count.add(json.loads(about["carom.outcomes"]), played=False)
+    return count.progress()
 
 
 def _reduced(plan: Plan, shard: int, fn: Callable[[pyarrow.Table], Any], stop: Callable[[], bool] = lambda: False) -> tuple[Any, dict[str, int]]:
@@ -280,6 +251,7 @@ def _merge(a: Any, b: Any) -> Any:
     return a + b
 
 
+@checked
 def reduce(
     plan: Plan,
     fn: Callable[[pyarrow.Table], Any],
@@ -299,21 +271,14 @@ def reduce(
     as for `run`; but a reduction that is killed begins anew.
     """
     need("pyarrow")
-    _executor(executor)
-    count = _Count(plan, plan.shards, progress)
-
-    def merged(results: Iterator[tuple[Any, dict[str, int]]]) -> Any:
-        whole: Any = None
+    workers = _workers(executor, threads)
+    count = _Count(plan.shards, progress)
+    whole: Any = None
+    with workers as those, contextlib.closing(
+        _results(those, _reduced, lambda shard: (plan, shard, fn), range(plan.shards), retries, in_order=True)
+    ) as results:
         for number, (part, outcomes) in enumerate(results):
             whole = part if number == 0 else merge(whole, part)
             count.add(outcomes, played=True)
             count.show()
-        return whole
-
-    if executor == "threads":
-        with _Threads(threads) as local:
-            return merged(_in_order(local, _reduced, lambda shard: (plan, shard, fn), plan.shards, 0))
-    return merged(_in_order(executor, _reduced, lambda shard: (plan, shard, fn), plan.shards, retries))
-
-
-__all__ = ["Progress", "Stopped", "reduce", "run"]
+    return whole

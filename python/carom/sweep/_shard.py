@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
+import importlib
+import json
 import os
 import threading
 import time
@@ -11,9 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom import _carom
+from carom._arguments import checked
+from carom._files import whole_file
 from carom._simulate import Shots
-from carom.sweep._columns import OUTCOMES, Column, arrow, arrow_schema
-from carom.sweep._plan import HASH_EVERY, Plan, SweepError, canonical, player_of, sha256, sync_folder, wrong_worker
+from carom.sweep._columns import OUTCOMES, Column, arrow, arrow_schema, provenance
+from carom.sweep._plan import HASH_EVERY, Plan, SweepError, canonical, player_of, sha256, wrong_worker
 
 if TYPE_CHECKING:
     import pyarrow
@@ -35,8 +40,6 @@ class Stopped(Exception):
 
 def need(name: str) -> None:
     """Raises ImportError that says where the package comes from."""
-    import importlib
-
     try:
         importlib.import_module(name)
     except ImportError as error:
@@ -47,8 +50,6 @@ class ContentHash:
     """SHA-256 of a table's content: names, types, values. It does not depend on how the table is cut, nor on what wrote a file."""
 
     def __init__(self, schema: pyarrow.Schema) -> None:
-        import hashlib
-
         import pyarrow
 
         with _FIRST_ARRAY:
@@ -88,22 +89,14 @@ class ContentHash:
         return sha256(canonical([self.rows, streams]))
 
 
-def provenance(plan: Plan, first: int, last: int) -> dict[str, str]:
+def about_rows(plan: Plan, first: int, last: int) -> dict[str, str]:
     """What every file and dataset of a plan says about itself."""
-    return {
-        "carom.plan": plan.id,
-        "carom.version": plan.version,
-        "carom.scene": plan.scene,
-        "carom.scene_sha256": sha256(plan.scene.encode()),
-        "carom.vary": "\n".join(plan.vary),
-        "carom.seed": str(plan.seed),
-        "carom.first": str(first),
-        "carom.last": str(last),
-    }
+    own = {"carom.plan": plan.id, "carom.version": plan.version, "carom.scene": plan.scene, "carom.scene_sha256": sha256(plan.scene.encode())}
+    return own | provenance(plan.scene, plan.vary, plan.seed, first, last)
 
 
 def schema_of(plan: Plan, first: int, last: int) -> pyarrow.Schema:
-    return arrow_schema(plan.types(), provenance(plan, first, last))
+    return arrow_schema(plan.types(), about_rows(plan, first, last))
 
 
 def footer(plan: Plan, shard: int, path: str) -> dict[str, str]:
@@ -118,7 +111,7 @@ def footer(plan: Plan, shard: int, path: str) -> dict[str, str]:
         raise SweepError(f"{path}: no whole Parquet file ({_first_line(error)}); remove it, and it is made again") from None
     digest = said.pop("carom.sha256", None)
     if "carom.plan" in said and digest == sha256(canonical(said)):
-        for name, wanted in provenance(plan, *plan.range(shard)).items():
+        for name, wanted in about_rows(plan, *plan.range(shard)).items():
             if said.get(name) != wanted:
                 words = f"shots {said.get('carom.first')} to {said.get('carom.last')}" if said["carom.plan"] == plan.id else f"plan {said['carom.plan']}"
                 raise SweepError(f"{path}: a file of {words}, not of shard {shard} of plan {plan.id}; take another folder, or remove the file")
@@ -157,8 +150,6 @@ class Tally:
     """Of the shots of a shard: how they ended, and the digest of their records."""
 
     def __init__(self) -> None:
-        import hashlib
-
         self.counts = np.zeros(len(OUTCOMES), np.int64)
         self.records: Any = hashlib.sha256()
 
@@ -221,7 +212,7 @@ def _write(plan: Plan, shard: int, file: Any, threads: int, stop: Callable[[], b
         for table in tables(plan, shard, threads, stop, tally):
             content.add(table)
             writer.write_table(table, row_group_size=_ROW_GROUP)
-        about = provenance(plan, first, last) | {
+        about = about_rows(plan, first, last) | {
             "carom.writer": f"pyarrow {pyarrow.__version__}",
             "carom.content": content.hexdigest(),
             "carom.records": "" if plan.hashes == "none" else tally.records.hexdigest(),
@@ -268,20 +259,14 @@ def make_shard(plan: Plan, shard: int, folder: str, threads: int, stop: Callable
         raise SweepError(f"{folder}: there is no such folder on {_host()}; all workers have to see the folder of the sweep")
     growing = os.path.join(folder, UNFINISHED)
     temporary = os.path.join(growing, f"{name}.{_host()}.{os.getpid()}.{os.urandom(4).hex()}.tmp")
+    about: dict[str, str] = {}
     try:
         os.makedirs(growing, exist_ok=True)
         _forget_the_dead(growing, name)
-        with open(temporary, "xb") as file:
-            about = _write(plan, shard, file, threads, stop)
-            file.flush()
-            os.fsync(file.fileno())
-        _publish(plan, shard, temporary, path, about)
-        sync_folder(folder)
+        with whole_file(path, temporary, lambda *_: _publish(plan, shard, temporary, path, about)) as file:
+            about |= _write(plan, shard, file, threads, stop)
     except OSError as error:
         raise OSError(error.errno, f"cannot write: {error.strerror or error}", path) from None
-    finally:
-        if os.path.exists(temporary):
-            os.unlink(temporary)
     return _result(plan, shard, path, about, played=True, start=start)
 
 
@@ -295,8 +280,6 @@ def _publish(plan: Plan, shard: int, temporary: str, path: str, about: dict[str,
 
 
 def _result(plan: Plan, shard: int, path: str, about: dict[str, str], *, played: bool, start: float) -> dict[str, Any]:
-    import json
-
     first, last = plan.range(shard)
     return {
         "shard": shard,
@@ -314,6 +297,7 @@ def _result(plan: Plan, shard: int, path: str, about: dict[str, str], *, played:
     }
 
 
+@checked
 def run_shard(plan: Plan | str | os.PathLike[str], shard: int, folder: str | os.PathLike[str], *, threads: int = 1) -> dict[str, Any]:
     """Makes one shard, unless it is there. The file appears whole or not at all, and is the same whoever makes it, and how often.
 

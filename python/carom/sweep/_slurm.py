@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
+import subprocess
 import sys
 from collections.abc import Callable, Sequence
 
@@ -19,8 +20,6 @@ def command(plan: Plan, folder: str, elements: int) -> str:
 
 def submit(plan: Plan, folder: str, elements: int, options: str, numbers: Callable[[Sequence[int]], str]) -> str:
     """Submits an array whose elements make what is missing; what was done, in words. Raises SweepError where sbatch fails."""
-    import subprocess
-
     folder = os.path.abspath(folder)
     os.makedirs(folder, exist_ok=True)
     plan.save(os.path.join(folder, PLAN))

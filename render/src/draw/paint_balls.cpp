@@ -4,8 +4,9 @@
 #include <cmath>
 #include <cstddef>
 
+#include "carom/render/look.h"
 #include "draw/shaders.h"
-#include "font/glyphs.h"
+#include "draw/skin.h"
 
 namespace carom::render {
 
@@ -14,17 +15,13 @@ namespace {
 using namespace lanes;
 
 // Screen values to radiance and back, as in shaders/common.glsl.
-Vec from_screen(float r, float g, float b) {
-    return {all(r * r), all(g * g), all(b * b)};
+Vec from_screen(const look::Color& screen) {
+    const Vec c = vec(screen);
+    return c * c;
 }
 Floats to_screen(Floats c) {
     const Floats over = 1.0F + max(c - 0.5F, 0.0F);
     return sqrt(clamp(c, 0.0F, 0.5F) + 0.5F - 0.5F / (over * over));
-}
-
-// Coverage: 1 inside. x increases outwards; w is the width of a pixel in the same unit.
-Floats inside(Floats x, Floats w) {
-    return clamp(0.5F - x / w, 0.0F, 1.0F);
 }
 
 // The lamp, seen from a ball.
@@ -35,8 +32,8 @@ struct LampOnBalls {
         half_y = endless ? 0.5F * height : view.lamp_half[1];
     }
 
-    // Light on a ball: the centre of the lamp is accurate enough. The 0.6 stands for its size, light past the terminator; the square lets the
-    // light end without an edge.
+    // Light on a ball: the centre of the lamp is accurate enough. The 0.6 stands for its size, light past the
+    // terminator; the square lets the light end without an edge.
     Floats light(const Vec& p, const Vec& n) const {
         const Vec to = endless ? Vec{all(0.0F), all(0.0F), all(height)} : Vec{x - p.x, y - p.y, height - p.z};
         const Floats inverse = inversesqrt(dot(to, to));
@@ -60,81 +57,8 @@ struct LampOnBalls {
     float x, y, half_x = 0.0F, half_y = 0.0F;
 };
 
-// The colours of one ball.
-class Skin {
-  public:
-    Skin(const BallInstance& ball, const std::vector<std::uint8_t>& glyphs)
-        : base_{all(ball.color_number[0]), all(ball.color_number[1]), all(ball.color_number[2])},
-          pattern_(static_cast<BallPattern>(std::lround(ball.pattern[0]))),
-          number_(static_cast<int>(std::lround(ball.color_number[3]))),
-          glyphs_(glyphs) {
-        const float* q = ball.orientation;
-        axis_ = {all(-q[0]), all(-q[1]), all(-q[2])};
-        turn_ = all(q[3]);
-        const bool bright =
-            0.3F * ball.color_number[0] + 0.6F * ball.color_number[1] + 0.1F * ball.color_number[2] > 0.3F;
-        dots_ = bright ? from_screen(0.72F, 0.05F, 0.07F) : from_screen(0.93F, 0.90F, 0.82F);
-    }
-
-    // At the normal n; w is the width of a pixel in radii. shine: how much of the mirror image of the lamp is seen; print must stay legible.
-    Vec albedo(const Vec& n, Floats w, Floats& shine) const {
-        const Vec b = n + cross(axis_, cross(axis_, n) + n * turn_) * all(2.0F);
-        Vec base = base_;
-        const Vec ivory = from_screen(0.95F, 0.93F, 0.86F);
-        shine = all(1.0F);
-        if (pattern_ == BallPattern::kStripe) base = mix(ivory, base, inside(abs(b.x) - 0.60F, w));
-        if (pattern_ == BallPattern::kDots) base = mix(base, dots_, dots(b, w));
-        if (pattern_ == BallPattern::kHalves)
-            base = mix(base, mix(base, Vec{all(1.0F), all(1.0F), all(1.0F)}, all(0.65F)), inside(b.x, w));
-        if (number_ <= 0) return base;
-        // The number is at both ends of the body's z axis, upright for a camera whose right-hand side is +y.
-        const Floats spot = inside(sqrt(b.x * b.x + b.y * b.y) - 0.52F, w);
-        if (!any(spot > 0.0F)) return base;
-        base = mix(base, ivory, spot);
-        const Floats ink = spot * number_ink(b.y, choose(b.z > 0.0F, -b.x, b.x), w);
-        shine = 1.0F - 0.85F * ink;
-        return mix(base, Vec{all(0.012F), all(0.012F), all(0.012F)}, ink);
-    }
-
-  private:
-    // One of the six is larger, so that a fast turn does not look like a slow one backwards.
-    static Floats dots(const Vec& b, Floats w) {
-        const Vec square = b * b;
-        const Floats most = max(max(square.x, square.y), square.z);
-        const Floats from_axis = sqrt(max(square.x + square.y + square.z - most, 0.0F));
-        const Floats radius = choose((square.z >= most) & (b.z > 0.0F), all(0.34F), all(0.17F));
-        return inside(from_axis - radius, w);
-    }
-
-    // Coverage by the digits; x and y are in radii of the ball, upright. Of two digits side by side each pixel reads one.
-    Floats number_ink(Floats x, Floats y, Floats w) const {
-        const bool two = number_ > 9;
-        const float box_x = two ? 0.215F : 0.33F, box_y = two ? 0.41F : 0.48F;  // half a cell of the atlas
-        Floats near{};
-        const Floats place_x = (two ? choose(x < 0.0F, x + 0.192F, x - 0.192F) : x) / box_x,
-                     place_y = y / box_y;
-        for (int i = 0; i < kLanes; ++i) {
-            if (std::abs(place_x[i]) > 1.0F || std::abs(place_y[i]) > 1.0F) continue;
-            const int digit = two && x[i] < 0.0F ? number_ / 10 : number_ % 10;
-            near[i] = glyph_nearness(glyphs_, digit, std::clamp(place_x[i] * 0.5F + 0.5F, 0.02F, 0.98F),
-                                     1.0F - std::clamp(place_y[i] * 0.5F + 0.5F, 0.02F, 0.98F));
-        }
-        // The strokes are 1.3 units thick; the height of a cell is 9 units.
-        Floats ink = inside((1.0F - near) * 1.5F - 0.62F, max(w * (4.5F / box_y), 0.05F));
-        ink = choose((abs(place_x) > 1.0F) | (abs(place_y) > 1.0F), all(0.0F), ink);
-        if (number_ != 6 && number_ != 9) return ink;
-        // A bar below the digit distinguishes 6 from 9 in every orientation.
-        return max(ink, inside(max(abs(y + 0.43F) - 0.035F, abs(x) - 0.17F), w));
-    }
-
-    Vec base_, dots_{}, axis_{};
-    Floats turn_{};
-    BallPattern pattern_;
-    int number_;
-    const std::vector<std::uint8_t>& glyphs_;
-};
-
-// Share of the light at normal n that reaches the ball past its neighbours: each hides (r / d)^2 cos of the sky.
+// Share of the light at normal n that reaches the ball past its neighbours: each hides (r / d)^2 cos of the
+// sky.
 Floats past_neighbours(const BallInstance& ball, const Vec& n) {
     const float R = ball.center_radius[3];
     Floats open = all(1.0F);
@@ -179,9 +103,11 @@ void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
     const View& view = canvas.view();
     const float *center = ball.instance.center_radius, R = center[3];
     const float strength = std::clamp(center[2] / R, 0.0F, 1.0F);  // a ball that falls has no shadow left
-    // The shadow of a ball in the air is wider, in proportion to the height of its centre, and so farther off.
+    // The shadow of a ball in the air is wider, in proportion to the height of its centre, and so farther
+    // off.
     const float lift = std::max(center[2] / R, 1.0F), unit = 1.0F / (R * lift);
-    // Centre of the lamp's shadow relative to the point of contact, in radii: limited to 0.65, so that the whole shadow lies within the reach.
+    // Centre of the lamp's shadow relative to the point of contact, in radii: limited to 0.65, so that the
+    // whole shadow lies within the reach.
     const bool endless = view.lamp_endless > 0.5F;
     float away_x = endless ? 0.0F : (center[0] - view.lamp[0]) / (view.lamp[2] - center[2]);
     float away_y = endless ? 0.0F : (center[1] - view.lamp[1]) / (view.lamp[2] - center[2]);
@@ -197,8 +123,8 @@ void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
                                  std::size_t first, int count, const Vec& ray) {
         const Floats way = -eye_z / ray.z;  // to the plane of the cloth
         const Floats px = (ray.x * way + from_x) * unit, py = (ray.y * way + from_y) * unit;
-        // Share of the sky hidden by a sphere that rests on a plane: (1 + d^2)^(-3/2) at d radii from the contact. The polynomial differs by less
-        // than 0.03 up to 2 radii and ends.
+        // Share of the sky hidden by a sphere that rests on a plane: (1 + d^2)^(-3/2) at d radii from the
+        // contact. The polynomial differs by less than 0.03 up to 2 radii and ends.
         const Floats near = max(1.0F - (px * px + py * py) * (1.0F / (kReach * kReach)), 0.0F);
         if (!any(near > 0.0F)) return;
         const Floats hidden = near * near * near;
@@ -222,8 +148,14 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
     const float* up = view.up_scaled;
     const float pixel_size = 2.0F * std::sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]) / view.size[1];
     const LampOnBalls lamp(view);
-    const Skin skin(ball.instance, glyphs);
-    const Vec cloth = from_screen(0.055F, 0.50F, 0.345F), dim{all(0.10F), all(0.10F), all(0.10F)};
+    const float* c = ball.instance.color_number;
+    const Skin skin({{all(c[0]), all(c[1]), all(c[2])},
+                     from_screen(look::is_bright(c[0], c[1], c[2]) ? look::kRedDot : look::kPaleDot),
+                     from_screen(look::kIvory),
+                     number(look::kInk)},
+                    static_cast<BallPattern>(std::lround(ball.instance.pattern[0])),
+                    static_cast<int>(std::lround(c[3])), ball.instance.orientation, glyphs);
+    const Vec cloth = from_screen(look::kCloth), dim{all(0.10F), all(0.10F), all(0.10F)};
     const bool sunk = center[2] < 0.999F * R;
     const bool plain = ball.plain;
     const BallInstance instance = ball.instance;
@@ -239,8 +171,8 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
         Floats cover = clamp(0.5F + (R - miss) / pixel, 0.0F, 1.0F);
         if (!any(cover > 0.0F)) return;
         const Floats rise = sqrt(max(R * R - miss2, 0.0F));
-        const Vec n = (perpendicular - dir * rise) *
-                      (1.0F / max(miss, R));  // R long inside, outside as far as the ray is from the centre
+        // R long inside, outside as far as the ray is from the centre
+        const Vec n = (perpendicular - dir * rise) * (1.0F / max(miss, R));
         const Vec p = middle + n * all(R);
         if (!plain) cover *= background.seen(first, count, (along - rise) * per_depth - 0.001F);
 

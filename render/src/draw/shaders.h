@@ -14,8 +14,9 @@ inline constexpr double kShadowReach = 2.5;  ///< [radii] where the shading arou
 inline constexpr int kMaxHoles = 128;  ///< [-] largest number of holes that a program accepts: MAX_HOLES
 inline constexpr int kMaxNear = 6;     ///< [-] neighbours that darken a ball: as many as fit around it
 
-// Each of these lines, put before kTableFragment, selects one kind of surface. A software renderer executes both
-// sides of every branch, so there is one program per kind. The floor has no discard, so hidden pixels cost nothing.
+// Each of these lines, put before kTableFragment, selects one kind of surface. A software renderer executes
+// both sides of every branch, so there is one program per kind. The floor has no discard, so hidden pixels
+// cost nothing.
 inline constexpr const char* kClothOnly = "#define CLOTH\n";
 inline constexpr const char* kWoodOnly = "#define WOOD\n";
 inline constexpr const char* kFloorOnly = "#define FLOOR\n";
@@ -25,8 +26,8 @@ inline constexpr const char* kTheRest = "#define REST\n";
 /// Added to one of these where a hole may be: what lies in a hole is not drawn.
 inline constexpr const char* kHoles = "#define HOLES\n";
 
-/// One stage of a program (gl::make_stage()): the source after the version of the language, the shared numbers, `defines` (whole lines) and
-/// shaders/common.glsl. @throws RenderError with the compiler's log
+/// One stage of a program (gl::make_stage()): the source after the version of the language, the shared
+/// numbers, `defines` (whole lines) and shaders/common.glsl. @throws RenderError with the compiler's log
 GLuint make_stage(const gl::Api& api, GLenum stage, const char* source, const std::string& defines = "");
 
 }  // namespace carom::render::shaders

@@ -50,8 +50,8 @@ class StaticLayer {
     void read_depths(std::vector<float>& depths);
 
     const gl::Api& api_;
-    std::array<Program, kPartCount>
-        programs_;  ///< made when they are first needed, like this one, which they share:
+    // Made when they are first needed, like the vertex program, which they share.
+    std::array<Program, kPartCount> programs_;
     GLuint vertex_program_ = 0;
     GLint jitter_ = -1;  ///< location of its u_jitter
     TableParts parts_;   ///< without the vertices, which are in buffer_

@@ -17,6 +17,9 @@ long frame_count(double from, double to, double fps) {
     if (!std::isfinite(from) || !std::isfinite(to))
         throw RenderError("the first and last time must be finite");
     if (to < from) return 0;
+    if (to + 1.0 / fps == to)
+        throw RenderError(
+            "at that time the instants of frames cannot be told apart; lower --fps, --from or --to");
     const double frames = (to - from) * fps;
     if (frames > 1e9) throw RenderError("more than 1e9 frames; lower --fps or give --to");
     // The product above is rounded; the time that frame_time() gives for each frame decides.

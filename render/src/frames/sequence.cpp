@@ -1,23 +1,25 @@
 #include "carom/render/sequence.h"
 
 #include <algorithm>
-#include <array>
+#include <charconv>
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 
-#include "base/fnv.h"
-#include "base/output_file.h"
+#include "base/file_lock.h"
+#include "carom/engine/tolerances.h"
 #include "carom/render/draw_list.h"
 #include "carom/render/kept_png.h"
 #include "carom/render/png.h"
 #include "carom/render/renderer.h"
+#include "frames/frame_mark.h"
 #include "frames/writer.h"
 
 namespace carom::render {
@@ -25,8 +27,6 @@ namespace carom::render {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-constexpr int kLargestSheet = 16384;  // pixels, height
 
 void make_folder(const std::string& pattern) {
     const std::filesystem::path folder = std::filesystem::path(frame_path(pattern, 0)).parent_path();
@@ -39,78 +39,76 @@ void make_folder(const std::string& pattern) {
     }
 }
 
-/// Says of which shot and picture frames are; not how many there are, nor how they are encoded.
-std::string shot_and_picture(const Record& record, const SequenceOptions& options) {
-    Fnv all;
-    all.add(record.hash());
-    for (const double x : {record.balls.R, record.table.width, record.table.length, options.fps, options.from,
-                           options.view.fov_deg, double(options.size.width), double(options.size.height),
-                           double(options.table_samples)})
-        all.add(x);
-    for (const std::optional<Vec3>& point : {options.view.eye, options.view.target})
-        for (int k = 0; point && k < 3; ++k) all.add((*point)[k]);
-    const Overlay& o = options.overlay;
-    for (const bool drawn : {o.trails, o.ball_trails, o.events, o.spin, o.ghost, o.clock, o.margin})
-        all.add(std::uint64_t{drawn});
-    for (const BallTrack& track : record.tracks) all.add(track.id);
-    all.add(options.camera);
-    all.add(options.view.ball);
-    std::array<char, 17> digits{};
-    std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(all.value()));
-    return digits.data();
-}
-
-/// Beside the frames, "frames/.%05d.png.shot" says which shot and picture they are of. The frames themselves do not: their bytes
-/// depend on their pixels alone.
-std::string mark_path(const std::string& pattern) {
-    const std::filesystem::path path(pattern);
-    return (path.parent_path() / ("." + path.filename().string() + ".shot")).string();
-}
-
-void mark_frames(const Record& record, const SequenceOptions& options) {
-    OutputFile file(mark_path(options.pattern));
-    file.write(shot_and_picture(record, options) + "\n");
-    file.commit();
-}
-
-/// @throws RenderError unless the frames that are there are of this shot and picture
-void check_mark(const Record& record, const SequenceOptions& options) {
-    std::array<char, 17> digits{};
-    if (std::FILE* file = std::fopen(mark_path(options.pattern).c_str(), "rb")) {
-        if (std::fread(digits.data(), 1, digits.size() - 1, file) != digits.size() - 1) digits[0] = '\0';
-        std::fclose(file);
+/// The number k for which this is the name of frame k, or -1.
+long frame_of(const std::string& pattern, const std::string& name) {
+    for (std::size_t at = 0; at < name.size(); ++at) {
+        long k = 0;
+        const auto [end, error] = std::from_chars(name.data() + at, name.data() + name.size(), k);
+        if (error == std::errc() && k >= 0 &&
+            std::filesystem::path(frame_path(pattern, k)).filename() == name)
+            return k;
     }
-    if (shot_and_picture(record, options) == digits.data()) return;
-    throw RenderError(options.pattern + ": " +
-                      (digits[0] == '\0' ? "nothing says which shot the frames there are of"
-                                         : "the frames there are of another shot, camera, overlay or size") +
-                      "; render without --resume");
+    return -1;
 }
 
-// Whether the file is a whole PNG of this size.
-bool is_frame_of_size(const std::string& path, FrameSize size) {
-    std::FILE* file = std::fopen(path.c_str(), "rb");
-    if (file == nullptr) return false;
-    std::array<unsigned char, 24> head{};
-    // The last chunk is empty: only a power cut leaves a file without it, because a frame gets its name when it is complete.
-    constexpr std::array<unsigned char, 12> kEnd{0, 0, 0, 0, 'I', 'E', 'N', 'D', 0xAE, 0x42, 0x60, 0x82};
-    std::array<unsigned char, 12> tail{};
-    const bool whole = std::fread(head.data(), 1, head.size(), file) == head.size() &&
-                       std::fseek(file, -static_cast<long>(tail.size()), SEEK_END) == 0 &&
-                       std::fread(tail.data(), 1, tail.size(), file) == tail.size() && tail == kEnd;
-    std::fclose(file);
-    const auto number = [&](std::size_t i) {
-        return (unsigned{head[i]} << 24U) | (unsigned{head[i + 1]} << 16U) | (unsigned{head[i + 2]} << 8U) |
-               head[i + 3];
-    };
-    // The signature is followed by the header chunk, which contains width and height.
-    constexpr std::array<unsigned char, 8> kSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-    return whole && std::equal(kSignature.begin(), kSignature.end(), head.begin()) &&
-           number(16) == static_cast<unsigned>(size.width) &&
-           number(20) == static_cast<unsigned>(size.height);
-}
+/// The frames in files of one run. No other run writes them meanwhile, and frames of other pictures go before the first one is
+/// written, so that a film which is interrupted and resumed is of one picture.
+class FrameFiles {
+  public:
+    /// @param count  of frames; one by itself leaves the others alone, and others may be drawn meanwhile
+    FrameFiles(const SequenceOptions& options, std::string picture, long count)
+        : options_(options),
+          count_(count),
+          picture_(std::move(picture)),
+          lock_(options.pattern + ".lock", count > 1) {}
 
-std::vector<FrameTiming> frames_to_do(const Record& record, const SequenceOptions& options) {
+    /// Whether frame k is there.
+    bool is_done(long k) const { return mark_of(frame_path(options_.pattern, k)) == mark(k); }
+
+    /// @throws RenderError where frames are there, and none of them is of this picture
+    void check() const {
+        bool some = false, marked = false;
+        for (long k = 0; k < count_; ++k) {
+            if (is_done(k)) return;
+            const std::string path = frame_path(options_.pattern, k);
+            some = some || std::filesystem::exists(path);
+            marked = marked || !mark_of(path).empty();
+        }
+        if (some)
+            throw RenderError(options_.pattern + ": " +
+                              (marked ? "the frames there are of another shot, camera, overlay or size"
+                                      : "nothing says which shot the frames there are of") +
+                              "; render without --resume");
+    }
+
+    /// Removes what this run will write, and behind it what carom drew of other pictures.
+    void remove_old() const {
+        if (count_ <= 1) return;
+        std::error_code error;
+        const std::filesystem::path folder =
+            std::filesystem::path(frame_path(options_.pattern, 0)).parent_path();
+        for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, error)) {
+            if (entry.is_symlink(error) || !entry.is_regular_file(error)) continue;
+            const long k = frame_of(options_.pattern, entry.path().filename().string());
+            if (k < 0) continue;
+            const std::string found = mark_of(entry.path().string());
+            const bool ours = found == mark(k);
+            if (k < count_ ? !(options_.resume && ours) : !ours && !found.empty())
+                std::filesystem::remove(entry.path(), error);
+        }
+    }
+
+  private:
+    std::string mark(long k) const { return mark_at(picture_, frame_time(options_.from, k, options_.fps)); }
+
+    const SequenceOptions& options_;
+    const long count_;
+    std::string picture_;
+    FileLock lock_;
+};
+
+std::vector<FrameTiming> frames_to_do(const Record& record, const SequenceOptions& options,
+                                      const std::optional<FrameFiles>& files) {
     const long count = frame_count(options.from, options.to.value_or(record.duration), options.fps);
     if (options.frame && (*options.frame < 0 || *options.frame >= count)) {
         throw RenderError("no frame " + std::to_string(*options.frame) + ": there are " +
@@ -118,7 +116,7 @@ std::vector<FrameTiming> frames_to_do(const Record& record, const SequenceOption
     }
     std::vector<FrameTiming> frames;
     for (long k = options.frame.value_or(0); k < (options.frame ? *options.frame + 1 : count); ++k) {
-        if (options.resume && is_frame_of_size(frame_path(options.pattern, k), options.size)) continue;
+        if (options.resume && files->is_done(k)) continue;
         FrameTiming timing;
         timing.frame = k;
         timing.time = frame_time(options.from, k, options.fps);
@@ -153,13 +151,14 @@ void check_options(const SequenceOptions& options) {
 // Draws the frames in order.
 class FrameLoop {
   public:
-    FrameLoop(const Record& record, const SequenceOptions& options, std::vector<FrameTiming>& frames)
+    FrameLoop(const Record& record, const SequenceOptions& options, const std::string& picture,
+              std::vector<FrameTiming>& frames)
         : options_(options),
           frames_(frames),
           stage_(record, stage_options(options)),
           renderer_(options.backend),
           threads_(thread_count(options)),
-          writer_(options, threads_) {}
+          writer_(options, picture, threads_) {}
 
     void run(long skipped) {
         const long total = skipped + static_cast<long>(frames_.size());
@@ -239,17 +238,26 @@ class FrameLoop {
 std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOptions& options) {
     check_options(options);
     const bool files = !options.pattern.empty() && !options.raw;
-    if (files) frame_path(options.pattern, 0);
-    if (options.resume) check_mark(record, options);
-    std::vector<FrameTiming> frames = frames_to_do(record, options);
     const long count =
         options.frame ? 1 : frame_count(options.from, options.to.value_or(record.duration), options.fps);
-    if (files && count > 1 && !is_numbered(options.pattern))
+    const bool numbered = files && is_numbered(options.pattern);
+    if (files && count > 1 && !numbered)
         throw RenderError("bad frame pattern '" + options.pattern +
                           "'; give exactly one %d or %0Nd, like frames/%05d.png");
     if (files) make_folder(options.pattern);
-    if (files && !options.resume && count > 1) mark_frames(record, options);
-    FrameLoop(record, options, frames).run(count - static_cast<long>(frames.size()));
+    // One picture with a name of its own is no part of a film: its bytes depend on its pixels alone.
+    const std::string picture = numbered ? picture_of(record, options) : "";
+    std::optional<FrameFiles> kept;
+    try {
+        if (numbered) kept.emplace(options, picture, count);
+    } catch (const std::runtime_error& error) {
+        throw RenderError(error.what());
+    }
+    if (options.resume && !options.frame) kept->check();
+    std::vector<FrameTiming> frames = frames_to_do(record, options, kept);
+    FrameLoop loop(record, options, picture, frames);
+    if (numbered) kept->remove_old();
+    loop.run(count - static_cast<long>(frames.size()));
     return frames;
 }
 
@@ -266,10 +274,10 @@ void render_sheet(const Record& record, const SequenceOptions& options, int colu
             static_cast<int>(static_cast<long>(cell.size.width) * options.size.height / options.size.width);
     }
     if (!possible || cell.size.width < 14 || cell.size.height < 14 ||
-        rows > kLargestSheet / (cell.size.height + kGap)) {
+        rows > kMaxImageSize / (cell.size.height + kGap)) {
         throw RenderError(
             "a sheet needs at least one column and one row, 16 pixels for each, and a height of at most " +
-            std::to_string(kLargestSheet));
+            std::to_string(kMaxImageSize));
     }
     cell.overlay.clock = true;
     const Stage stage(record, cell);

@@ -8,6 +8,7 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -23,8 +24,9 @@ class Encoder {
   public:
     explicit Encoder(const SequenceOptions& options) : options_(options) {}
 
+    /// @param mark  of a PNG file (frame_mark.h); "" for none
     /// @returns the bytes, which stay until the next call
-    const std::vector<std::uint8_t>& encode(const KeptImage& image);
+    const std::vector<std::uint8_t>& encode(const KeptImage& image, const std::string& mark = "");
 
     /// The share of the last picture that was encoded anew, 0..1.
     double share() const { return share_; }
@@ -40,9 +42,10 @@ class Encoder {
 
 class FrameWriter {
   public:
-    /// threads = 0: submit() does the work itself. Raw frames need exactly one thread, which preserves their order.
+    /// @param picture  of the marks (frame_mark.h); "" for none
+    /// @param threads  0: submit() does the work itself. Raw frames need exactly one thread, which preserves their order.
     /// @throws RenderError if the system cannot start that many threads
-    FrameWriter(const SequenceOptions& options, int threads);
+    FrameWriter(const SequenceOptions& options, const std::string& picture, int threads);
 
     /// Drops the frames that have not been started and waits for the others.
     ~FrameWriter();
@@ -71,6 +74,7 @@ class FrameWriter {
     void write(const KeptImage& image, FrameTiming& timing, Encoder& encoder) const;
 
     const SequenceOptions& options_;
+    const std::string picture_;
     const std::size_t limit_;  // largest number of images
     Encoder encoder_;          // of a writer without threads
     std::mutex mutex_;

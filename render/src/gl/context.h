@@ -13,8 +13,8 @@ using Lookup = void* (*)(const char* name);
 
 class Context {
   public:
+    explicit Context(Lookup finder) : lookup_(finder) {}
     virtual ~Context() = default;
-    Context() = default;
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
@@ -22,12 +22,17 @@ class Context {
     virtual void make_current() = 0;
 
     /// The function that looks up the OpenGL functions of this context.
-    virtual Lookup lookup() const = 0;
+    Lookup lookup() const { return lookup_; }
+
+  private:
+    Lookup lookup_;
 };
 
 /// @throws RenderError naming the Debian package when the library is missing
 std::unique_ptr<Context> make_osmesa_context();
 std::unique_ptr<Context> make_egl_context();
 std::unique_ptr<Context> make_context(Backend backend);
+/// Whether the library of OSMesa is there and complete.
+bool has_osmesa();
 
 }  // namespace carom::render::gl

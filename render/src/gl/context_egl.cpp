@@ -12,8 +12,6 @@
 namespace carom::render::gl {
 namespace {
 
-constexpr const char* kPackage = "libegl1 (with libegl-mesa0)";
-
 using Handle = void*;  // EGLDisplay, EGLContext, EGLSurface, EGLConfig
 using EglInt = std::int32_t;
 constexpr unsigned kPlatformSurfaceless = 0x31DD;  // EGL_PLATFORM_SURFACELESS_MESA
@@ -25,38 +23,19 @@ constexpr EglInt kCoreProfile = 0x1;               // EGL_CONTEXT_OPENGL_CORE_PR
 constexpr EglInt kNone = 0x3038;                   // EGL_NONE
 
 struct EglLibrary {
-    Handle (*get_platform_display)(unsigned, void*, const std::intptr_t*);
-    unsigned (*initialize)(Handle, EglInt*, EglInt*);
-    unsigned (*bind_api)(unsigned);
-    Handle (*create_context)(Handle, Handle, Handle, const EglInt*);
-    unsigned (*destroy_context)(Handle, Handle);
-    unsigned (*make_current)(Handle, Handle, Handle, Handle);
-    void* (*get_proc_address)(const char*);
+    SharedLibrary library{{"libEGL.so.1", "libEGL.so"}, "libegl1 (with libegl-mesa0)"};
+    Handle (*get_platform_display)(unsigned, void*, const std::intptr_t*) = library["eglGetPlatformDisplay"];
+    unsigned (*initialize)(Handle, EglInt*, EglInt*) = library["eglInitialize"];
+    unsigned (*bind_api)(unsigned) = library["eglBindAPI"];
+    Handle (*create_context)(Handle, Handle, Handle, const EglInt*) = library["eglCreateContext"];
+    unsigned (*destroy_context)(Handle, Handle) = library["eglDestroyContext"];
+    unsigned (*make_current)(Handle, Handle, Handle, Handle) = library["eglMakeCurrent"];
+    Lookup get_proc_address = library["eglGetProcAddress"];
 };
 
 const EglLibrary& egl() {
-    static const EglLibrary library = [] {
-        const std::array<const char*, 2> names{"libEGL.so.1", "libEGL.so"};
-        void* handle = open_library(names.data(), static_cast<int>(names.size()), kPackage);
-        EglLibrary found{};
-        const auto find = [handle](auto& function, const char* symbol) {
-            function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
-                find_symbol(handle, symbol, kPackage));
-        };
-        find(found.get_platform_display, "eglGetPlatformDisplay");
-        find(found.initialize, "eglInitialize");
-        find(found.bind_api, "eglBindAPI");
-        find(found.create_context, "eglCreateContext");
-        find(found.destroy_context, "eglDestroyContext");
-        find(found.make_current, "eglMakeCurrent");
-        find(found.get_proc_address, "eglGetProcAddress");
-        return found;
-    }();
+    static const EglLibrary library;
     return library;
-}
-
-void* lookup_egl(const char* function) {
-    return egl().get_proc_address(function);
 }
 
 // The process has one display, which all contexts share and which is never terminated.
@@ -75,7 +54,7 @@ Handle display() {
 
 class EglContext final : public Context {
   public:
-    EglContext() {
+    EglContext() : Context(egl().get_proc_address) {
         Handle shared = display();
         egl().bind_api(kOpenGlApi);
         const std::array<EglInt, 7> attributes{kContextMajor, 3,    kContextMinor, 3, kProfileMask,
@@ -94,7 +73,6 @@ class EglContext final : public Context {
             throw RenderError("eglMakeCurrent without a surface failed; use --gl osmesa");
         }
     }
-    Lookup lookup() const override { return &lookup_egl; }
 
   private:
     Handle context_ = nullptr;

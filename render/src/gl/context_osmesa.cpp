@@ -13,8 +13,6 @@
 namespace carom::render::gl {
 namespace {
 
-constexpr const char* kOsmesaPackage = "libosmesa6";
-
 using Handle = void*;                       // OSMesaContext
 constexpr int kFormat = 0x22;               // OSMESA_FORMAT
 constexpr int kRgba = 0x1908;               // OSMESA_RGBA
@@ -26,37 +24,21 @@ constexpr int kDepthBits = 0x30;            // OSMESA_DEPTH_BITS
 constexpr unsigned kUnsignedByte = 0x1401;  // GL_UNSIGNED_BYTE
 
 struct OsmesaLibrary {
-    Handle (*create)(const int*, Handle);
-    void (*destroy)(Handle);
-    unsigned char (*make_current)(Handle, void*, unsigned, int, int);
-    void* (*get_proc_address)(const char*);
+    SharedLibrary library{{"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}, "libosmesa6"};
+    Handle (*create)(const int*, Handle) = library["OSMesaCreateContextAttribs"];
+    void (*destroy)(Handle) = library["OSMesaDestroyContext"];
+    unsigned char (*make_current)(Handle, void*, unsigned, int, int) = library["OSMesaMakeCurrent"];
+    Lookup get_proc_address = library["OSMesaGetProcAddress"];
 };
 
 const OsmesaLibrary& osmesa() {
-    static const OsmesaLibrary library = [] {
-        const std::array<const char*, 3> names{"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"};
-        void* handle = open_library(names.data(), static_cast<int>(names.size()), kOsmesaPackage);
-        OsmesaLibrary found{};
-        const auto find = [handle](auto& function, const char* symbol) {
-            function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
-                find_symbol(handle, symbol, kOsmesaPackage));
-        };
-        find(found.create, "OSMesaCreateContextAttribs");
-        find(found.destroy, "OSMesaDestroyContext");
-        find(found.make_current, "OSMesaMakeCurrent");
-        find(found.get_proc_address, "OSMesaGetProcAddress");
-        return found;
-    }();
+    static const OsmesaLibrary library;
     return library;
-}
-
-void* lookup_osmesa(const char* function) {
-    return osmesa().get_proc_address(function);
 }
 
 class OsmesaContext final : public Context {
   public:
-    OsmesaContext() {
+    OsmesaContext() : Context(osmesa().get_proc_address) {
         const std::array<int, 11> attributes{
             kFormat,    kRgba, kProfile, kOsmesaCoreProfile, kOsmesaContextMajor, 3, kOsmesaContextMinor, 3,
             kDepthBits, 0,     0};
@@ -70,7 +52,6 @@ class OsmesaContext final : public Context {
             throw RenderError("OSMesaMakeCurrent failed; use --gl egl");
         }
     }
-    Lookup lookup() const override { return &lookup_osmesa; }
 
   private:
     // [pixels] Side of the default framebuffer. It is never used: all drawing goes to framebuffer objects, as with EGL.
@@ -80,6 +61,15 @@ class OsmesaContext final : public Context {
 };
 
 }  // namespace
+
+bool has_osmesa() {
+    try {
+        osmesa();
+        return true;
+    } catch (const RenderError&) {
+        return false;
+    }
+}
 
 std::unique_ptr<Context> make_osmesa_context() {
     return std::make_unique<OsmesaContext>();

@@ -8,40 +8,18 @@
 
 namespace carom::render::gl {
 
-namespace {
-
-GLuint compile(const Api& api, GLenum stage, std::span<const char* const> sources) {
-    const GLuint shader = api.CreateShader(stage);
-    api.ShaderSource(shader, static_cast<GLsizei>(sources.size()), sources.data(), nullptr);
-    api.CompileShader(shader);
-    GLint compiled = 0;
-    api.GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
-    if (compiled == 0) {
-        std::string log(2048, '\0');
-        GLsizei length = 0;
-        api.GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
-        log.resize(static_cast<std::size_t>(length));
-        throw RenderError("the OpenGL driver rejects a shader of carom: " + log);
-    }
-    return shader;
-}
-
-}  // namespace
-
 GLuint make_stage(const Api& api, GLenum stage, std::span<const char* const> sources) {
-    const GLuint program = api.CreateProgram(), shader = compile(api, stage, sources);
-    api.ProgramParameteri(program, GL_PROGRAM_SEPARABLE, GL_TRUE);
-    api.AttachShader(program, shader);
-    api.LinkProgram(program);
-    api.DeleteShader(shader);
+    const GLuint program =
+        api.CreateShaderProgramv(stage, static_cast<GLsizei>(sources.size()), sources.data());
     GLint linked = 0;
     api.GetProgramiv(program, GL_LINK_STATUS, &linked);
     if (linked == 0) {
+        // The log of the compiler stands in it, too.
         std::string log(2048, '\0');
         GLsizei length = 0;
         api.GetProgramInfoLog(program, static_cast<GLsizei>(log.size()), &length, log.data());
         log.resize(static_cast<std::size_t>(length));
-        throw RenderError("the OpenGL driver cannot link a shader of carom: " + log);
+        throw RenderError("the OpenGL driver rejects a shader of carom: " + log);
     }
     return program;
 }

@@ -2,23 +2,27 @@
 
 #include <dlfcn.h>
 
+#include <utility>
+
 #include "carom/render/error.h"
 
 namespace carom::render {
 
-void* open_library(const char* const* names, int count, const std::string& package) {
+SharedLibrary::SharedLibrary(std::initializer_list<const char*> names, std::string package)
+    : package_(std::move(package)) {
     std::string reason;
-    for (int i = 0; i < count; ++i) {
-        if (void* library = dlopen(names[i], RTLD_NOW | RTLD_LOCAL)) return library;
+    for (const char* name : names) {
+        library_ = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+        if (library_ != nullptr) return;
         if (reason.empty()) reason = dlerror();
     }
-    throw RenderError(std::string("cannot load ") + names[0] + " (" + reason +
-                      "); install the Debian package " + package);
+    throw RenderError(std::string("cannot load ") + *names.begin() + " (" + reason +
+                      "); install the Debian package " + package_);
 }
 
-void* find_symbol(void* library, const char* symbol, const std::string& package) {
-    if (void* address = dlsym(library, symbol)) return address;
-    throw RenderError(std::string("the library of the Debian package ") + package + " has no " + symbol);
+SharedLibrary::Function SharedLibrary::operator[](const char* symbol) const {
+    if (void* address = dlsym(library_, symbol)) return {address};
+    throw RenderError("the library of the Debian package " + package_ + " has no " + symbol);
 }
 
 }  // namespace carom::render

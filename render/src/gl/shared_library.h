@@ -2,14 +2,30 @@
 // one is not safe.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 
 namespace carom::render {
 
-/// Tries the names in order. @throws RenderError "cannot load NAME (reason); install the package PACKAGE"
-void* open_library(const char* const* names, int count, const std::string& package);
+class SharedLibrary {
+  public:
+    /// Tries the names in order. @throws RenderError "cannot load NAME (reason); install the package PACKAGE"
+    SharedLibrary(std::initializer_list<const char*> names, std::string package);
 
-/// A function of an opened library. @throws RenderError that names the function if it is missing
-void* find_symbol(void* library, const char* symbol, const std::string& package);
+    /// A function of the library, which becomes a pointer of the type that it is assigned to.
+    struct Function {
+        void* address;
+        template <class F>
+        operator F*() const {  // NOLINT: the conversion is what it is for
+            return reinterpret_cast<F*>(address);
+        }
+    };
+    /// @throws RenderError that names the function if it is missing
+    Function operator[](const char* symbol) const;
+
+  private:
+    void* library_ = nullptr;
+    std::string package_;
+};
 
 }  // namespace carom::render

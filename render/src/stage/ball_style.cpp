@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "carom/render/draw_list.h"
+#include "carom/render/look.h"
 
 namespace carom::render {
 
@@ -17,7 +18,8 @@ struct NamedColor {
     Color color;
 };
 
-constexpr Color kWhite{0.95F, 0.93F, 0.86F};
+constexpr Color kWhite = {static_cast<float>(look::kIvory[0]), static_cast<float>(look::kIvory[1]),
+                          static_cast<float>(look::kIvory[2])};
 
 // Colours of the numbered balls 1 to 8 (8 is black); 9 to 15 have the first seven colours with stripes.
 constexpr std::array<Color, 8> kPool{{{0.96F, 0.73F, 0.06F},

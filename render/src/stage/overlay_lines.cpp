@@ -36,8 +36,8 @@ float line_width(const DrawList& list, double pixels_at_720) {
 // Straight pieces that stay within a quarter of a pixel of a curved path.
 int pieces_of(const Camera& camera, const Segment& segment, double lasts) {
     const Vec2 v = segment.v.head<2>();
-    const double across =
-        std::abs(cross(v, segment.a)) / v.norm();  // acceleration across the first direction
+    // acceleration across the first direction
+    const double across = std::abs(cross(v, segment.a)) / v.norm();
     if (!(across > 1e-9 * segment.a.norm())) return 1;
     // A piece of duration h is a h^2 / 8 away from its chord at most.
     double scale = 0.0;

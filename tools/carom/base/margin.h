@@ -16,7 +16,7 @@ namespace carom::tools {
 struct FrameSettings {
     /// Default: that of the scene.
     std::optional<FrameSize> size;
-    std::string gl = "osmesa";
+    std::string gl = "auto";
 };
 
 /// What is measured of a frame. simulate is the sum of the four behind it; a frame costs simulate and the

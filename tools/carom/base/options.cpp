@@ -17,6 +17,7 @@
 
 #include "base/console.h"
 #include "base/nearest.h"
+#include "base/output_file.h"
 #include "carom/engine/printable.h"
 
 namespace carom::tools {
@@ -93,8 +94,8 @@ void add_option(CLI::App& app, const Option& row, const std::string& names, T& v
 /// Gives a command's table to CLI11. `named` becomes the command that the command line names.
 void fill(CLI::App& app, const Options& command, const Options*& named) {
     if (!command.footer.empty()) app.footer(command.footer);
-    app.require_subcommand(
-        0, 1);  // if none is named, run_command_line reports it with a better message than that of CLI11
+    // if none is named, run_command_line reports it with a better message than that of CLI11
+    app.require_subcommand(0, 1);
     for (const Option& row : command.rows) {
         const auto names = fmt::format("{}", fmt::join(row.names, ","));
         std::visit(
@@ -166,7 +167,7 @@ void check_files(const Options& command, const CLI::App& app) {
     std::vector<Used> files;
     for (const Option& row : command.rows) {
         auto* const* const path = std::get_if<std::string*>(&row.target);
-        const bool written = row.value.starts_with("FILE");
+        const bool written = row.value.starts_with("FILE") || row.value == "PATTERN";
         if (path == nullptr || !(written || row.by_place())) continue;
         if (written && (*path)->empty() && asked->get_option(row.names.back())->count() > 0)
             throw UsageError(row.names.front() + ": a file without a name; give it one");
@@ -176,10 +177,8 @@ void check_files(const Options& command, const CLI::App& app) {
         if (!(*path)->empty()) files.push_back({row.names.front(), **path, written});
     }
     const auto same = [](const std::string& a, const std::string& b) {
-        namespace fs = std::filesystem;
         std::error_code none;
-        const fs::path x = fs::weakly_canonical(a, none), y = fs::weakly_canonical(b, none);
-        return a == b || (!x.empty() && x == y) || fs::equivalent(a, b, none);
+        return file_of(a) == file_of(b) || std::filesystem::equivalent(a, b, none);
     };
     for (std::size_t i = 0; i < files.size(); ++i) {
         for (std::size_t k = i + 1; k < files.size(); ++k) {

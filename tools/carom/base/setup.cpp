@@ -30,7 +30,9 @@ std::optional<FrameSize> two_numbers(const std::string& text) {
 }  // namespace
 
 void add_gl(Options& command, std::string& gl) {
-    command.option("--gl", &gl, "NAME", "OpenGL without a display").one_of({"osmesa", "egl"});
+    command
+        .option("--gl", &gl, "NAME", "OpenGL without a display; auto: osmesa where it is installed, else egl")
+        .one_of({"auto", "osmesa", "egl"});
 }
 
 void add_picture(Options& command, std::optional<double>& fps, std::string& size) {

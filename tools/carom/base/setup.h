@@ -16,7 +16,8 @@
 
 namespace carom::tools {
 
-// Each of these adds options. The variables hold the defaults; those of add_picture are empty, and the scene has the defaults.
+// Each of these adds options. The variables hold the defaults; those of add_picture are empty, and the scene
+// has the defaults.
 void add_gl(Options& command, std::string& gl);
 void add_picture(Options& command, std::optional<double>& fps, std::string& size);
 void add_repeat(Options& command, int& rounds, std::string description);
@@ -51,7 +52,8 @@ inline bool is_record(const std::string& path) {
     return path.ends_with(".json");
 }
 
-/// Reads exactly kCount numbers with a separator between them: "1280x720". Returns nothing if the text is anything else.
+/// Reads exactly kCount numbers with a separator between them: "1280x720". Returns nothing if the text is
+/// anything else.
 template <class Number, std::size_t kCount>
 std::optional<std::array<Number, kCount>> numbers_in(const std::string& text, char separator) {
     std::array<Number, kCount> list{};
@@ -76,7 +78,8 @@ FrameSize parse_sheet(const std::string& text);
 /// The frames per second that the user asked for, or else those of the scene. @throws UsageError
 double chosen_fps(std::optional<double> asked, const RenderSettings& settings);
 
-/// The number of frames k with from + k / fps <= to. @throws UsageError if that is more than the program can number
+/// The number of frames k with from + k / fps <= to. @throws UsageError if that is more than the program can
+/// number
 long checked_frame_count(double from, double to, double fps);
 
 }  // namespace carom::tools

@@ -8,11 +8,11 @@ const mix = (a, b, t) => a + (b - a) * t;
 const step = (a, b, x) => { const t = clamp((x - a) / (b - a), 0, 1); return t * t * (3 - 2 * t); };
 /** Screen value (0..1) of a radiance, with the soft shoulder of the renderer. */
 const toScreen = (c) => { const over = 1 + Math.max(c - 0.5, 0); return Math.sqrt(clamp(c, 0, 0.5) + 0.5 - 0.5 / (over * over)); };
-const fromScreen = (...c) => c.map((x) => x * x);
+const fromScreen = (c) => c.map((x) => x * x);
 
-const CLOTH = fromScreen(0.055, 0.50, 0.345), WOOD_DARK = fromScreen(0.23, 0.105, 0.055), WOOD_LIGHT = fromScreen(0.44, 0.225, 0.115);
-const TRIM = fromScreen(0.19, 0.175, 0.165), INLAY = fromScreen(0.88, 0.85, 0.76), IVORY = fromScreen(0.95, 0.93, 0.86);
-const RED_DOT = fromScreen(0.72, 0.05, 0.07), PALE_DOT = fromScreen(0.93, 0.90, 0.82);
+// The constants that begin with a k are those of render/include/carom/render/look.h; the build writes them here.
+const [CLOTH, WOOD_DARK, WOOD_LIGHT, TRIM, INLAY, IVORY, RED_DOT, PALE_DOT] =
+  [kCloth, kWoodDark, kWoodLight, kTrim, kInlay, kIvory, kRedDot, kPaleDot].map(fromScreen);
 
 function lattice(x, y) {
   let h = Math.imul(x, 0x9E3779B1) ^ Math.imul(y, 0x85EBCA77);
@@ -123,11 +123,11 @@ function paintTable(canvas, projection, shape) {
   }
   layer(shape.cloth, (x, y, out) => lit(out, CLOTH, nap(x, y), x, y, 0));
   shade(context, projection, shape);
-  layer(shape.chalk, (x, y, out) => lit(out, [0.75, 0.75, 0.75], 0.42, x, y, 0));
+  layer(shape.chalk, (x, y, out) => lit(out, [kChalk, kChalk, kChalk], 0.42, x, y, 0));
   plain();
   for (const hole of shape.holes) paintHole(context, projection, hole);
   layer(shape.trim, (x, y, out) => lit(out, TRIM, 1, x, y, top));
-  layer(shape.cushion, (x, y, out) => lit(out, CLOTH, 1.12 * nap(x, y), x, y, 0.04));
+  layer(shape.cushion, (x, y, out) => lit(out, CLOTH, kCushionGain * nap(x, y), x, y, 0.04));
   line(shape.cushion, 0.0025, "rgba(0,20,10,0.35)");
   layer(shape.inlay, (x, y, out) => lit(out, INLAY, 1, x, y, top));
   plain();
@@ -171,7 +171,7 @@ function paintHole(context, projection, hole) {
 
 const GLYPH = 96;  // [px] the square that a number is drawn into
 const glyphs = new Map();
-/** How much of the square from -0.52 to 0.52 radii the digits cover, as bytes. */
+/** How much of the square of the ivory disc the digits cover, as bytes. */
 function glyphOf(number) {
   if (!glyphs.has(number)) {
     const context = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
@@ -192,31 +192,31 @@ function albedo(style, b, w, out) {
   const blend = (colour, t) => { for (let k = 0; k < 3; ++k) out[k] = mix(out[k], colour[k], t); };
   for (let k = 0; k < 3; ++k) out[k] = style.base[k];
   if (style.pattern === "stripe") {
-    const band = inside(Math.abs(b[0]) - 0.6);
+    const band = inside(Math.abs(b[0]) - kStripe);
     for (let k = 0; k < 3; ++k) out[k] = mix(IVORY[k], style.base[k], band);
   } else if (style.pattern === "dots") {
     const [x, y, z] = b.map(Math.abs), upper = z >= x && z >= y;
     const away = upper ? Math.hypot(x, y) : x > y ? Math.hypot(y, z) : Math.hypot(x, z);
-    blend(style.bright ? RED_DOT : PALE_DOT, inside(away - (upper && b[2] > 0 ? 0.34 : 0.17)));
+    blend(style.bright ? RED_DOT : PALE_DOT, inside(away - (upper && b[2] > 0 ? kLargeDot : kDot)));
   } else if (style.pattern === "halves") {
-    blend(style.base.map((c) => mix(c, 1, 0.65)), inside(b[0]));
+    blend(style.base.map((c) => mix(c, 1, kPaleHalf)), inside(b[0]));
   }
   if (style.number === 0) return 1;
-  const spot = inside(Math.hypot(b[0], b[1]) - 0.52);
+  const spot = inside(Math.hypot(b[0], b[1]) - kSpot);
   if (spot === 0) return 1;
   blend(IVORY, spot);
-  const across = b[1] / 1.04 + 0.5, down = (b[2] > 0 ? b[0] : -b[0]) / 1.04 + 0.5;
+  const across = b[1] / (2 * kSpot) + 0.5, down = (b[2] > 0 ? b[0] : -b[0]) / (2 * kSpot) + 0.5;
   const i = Math.floor(clamp(across, 0, 0.999) * GLYPH), j = Math.floor(clamp(down, 0, 0.999) * GLYPH);
   const ink = spot * glyphOf(style.number)[j * GLYPH + i] / 255;
-  blend([0.012, 0.012, 0.012], ink);
+  blend([kInk, kInk, kInk], ink);
   return 1 - 0.85 * ink;
 }
 
 /** One ball as a small picture that is drawn anew when the ball has moved or turned. */
 class BallPicture {
   constructor(style) {
-    this.style = {...style, base: fromScreen(...style.color), bright: false};
-    this.style.bright = 0.3 * this.style.base[0] + 0.6 * this.style.base[1] + 0.1 * this.style.base[2] > 0.3;
+    this.style = {...style, base: fromScreen(style.color), bright: false};
+    this.style.bright = 0.3 * this.style.base[0] + 0.6 * this.style.base[1] + 0.1 * this.style.base[2] > kBright;
     this.context = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
     this.key = "";
   }

@@ -42,11 +42,22 @@ function spinAt(s, tau, R) {
   return [s.w[0] + tau * s.dw[0], s.w[1] + tau * s.dw[1], wz];
 }
 
+// [m] As the engine's: how far the floor lies below the cloth.
+const FLOOR_DEPTH = 0.76;
+
+/** Time until a ball that has left the table lies on the floor, as the engine's. */
+function untilFloor(s, R, g) {
+  if (s.state !== "out" || !(g > 0)) return Infinity;
+  const v = s.v[2], height = Math.max(0, s.r[2] + (FLOOR_DEPTH - R));
+  return (v + Math.sqrt(v * v + 2 * g * height)) / g;
+}
+
 /** State of a ball: {state, r, v, w, pocket}, in SI units. */
 function stateAt(record, ball, t) {
   t = Math.min(Math.max(t, 0), record.duration);
   const track = record.tracks[ball], s = track.segments[lastBefore(track.segments, t)];
-  const tau = s.duration === null ? t - s.start : Math.min(t - s.start, s.duration);
+  const R = radiusOf(record, ball), floor = untilFloor(s, R, record.gravity);
+  const tau = Math.min(t - s.start, s.duration === null ? Infinity : s.duration, floor);
   const r = [s.r[0] + tau * (s.v[0] + 0.5 * tau * s.a[0]), s.r[1] + tau * (s.v[1] + 0.5 * tau * s.a[1]), s.r[2]];
   const v = velocityAt(s, tau), g = record.gravity;
   if (s.state === "airborne" || s.state === "out") {
@@ -57,7 +68,8 @@ function stateAt(record, ball, t) {
     r[2] -= falls * falls / (2 * g);
     v[2] = -falls;
   }
-  return {state: s.state, r, v, w: spinAt(s, tau, radiusOf(record, ball)), pocket: s.state === "pocketed" ? track.pocket : -1};
+  if (tau === floor) return {state: s.state, r: [r[0], r[1], R - FLOOR_DEPTH], v: [0, 0, 0], w: [0, 0, 0], pocket: -1};
+  return {state: s.state, r, v, w: spinAt(s, tau, R), pocket: s.state === "pocketed" ? track.pocket : -1};
 }
 
 // Quaternions are [w, x, y, z].
@@ -121,7 +133,8 @@ function orientations(record) {
   return (ball, t) => {
     t = Math.min(Math.max(t, 0), record.duration);
     const segments = record.tracks[ball].segments, i = lastBefore(segments, t), s = segments[i];
-    return product(segmentTurn(s, s.duration === null ? t - s.start : Math.min(t - s.start, s.duration)), starts[ball][i]);
+    const floor = untilFloor(s, radiusOf(record, ball), record.gravity);
+    return product(segmentTurn(s, Math.min(t - s.start, s.duration === null ? Infinity : s.duration, floor)), starts[ball][i]);
   };
 }
 

@@ -34,8 +34,8 @@ struct BallBallModelInfo {
     bool reads_restitution = false;  ///< e_b matters
     bool reads_cloth = false;        ///< mu_s and the sign of the cloth slip matter
     bool reads_tolerance = false;    ///< the settings matter: an integration, no closed form
-    bool free =
-        false;  ///< balls on the cloth meet as free ones, and the cloth answers next: they may leave it
+    /// balls on the cloth meet as free ones, and the cloth answers next: they may leave it
+    bool free = false;
 };
 
 /// All models; equations and sources in docs/reference/physics.md, "Ball-ball impact".

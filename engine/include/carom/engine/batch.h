@@ -106,8 +106,8 @@ struct BatchArrays {
     std::int64_t* events = nullptr;
     std::int32_t *first_hit = nullptr, *contacts = nullptr, *approach_cushions = nullptr;
     double *x = nullptr, *y = nullptr;
-    std::size_t place_stride =
-        1;  ///< from a ball's number to the next one's in x and in y: 2 where x and y alternate
+    /// from a ball's number to the next one's in x and in y: 2 where x and y alternate
+    std::size_t place_stride = 1;
     std::int32_t *pocket = nullptr, *fell = nullptr, *cushions = nullptr;
     std::uint64_t* hash = nullptr;
 };
@@ -120,17 +120,23 @@ class BatchStopped : public std::runtime_error {
 /// Outcomes of n shots of b balls: arrays of n, or of n x b with the balls of a shot one after the other, in the order of
 /// Scene::ball. A shot without a result has 0 everywhere and -1 as ball and pocket.
 struct Batch {
+    Batch() = default;
+    /// Arrays for n shots of b balls, to be filled. @param hash  whether `hash` is wanted
+    Batch(std::size_t n, std::size_t b, bool hash = false);
+    /// Where simulate_many puts their values.
+    BatchArrays arrays();
+
     std::size_t shots = 0, balls = 0;
     std::vector<ShotStatus> status;       ///< n
     std::vector<double> duration;         ///< n [s]
     std::vector<std::int64_t> events;     ///< n
     std::vector<std::int32_t> first_hit;  ///< n: the first ball that the struck ball meets, or -1
     std::vector<std::int32_t> contacts;   ///< n: how many balls it meets
-    std::vector<std::int32_t>
-        approach_cushions;             ///< n: how many cushions it meets before the second of them, or at all
-    std::vector<double> x, y;          ///< n x b [m], at the end
-    std::vector<std::int32_t> pocket;  ///< n x b: index of the pocket that holds the ball, kOffTable, or -1
-    std::vector<std::int32_t> fell;    ///< n x b: 0 for the ball that fell first, 1, ..., or -1
+    /// n: how many cushions it meets before the second of them, or at all
+    std::vector<std::int32_t> approach_cushions;
+    std::vector<double> x, y;            ///< n x b [m], at the end
+    std::vector<std::int32_t> pocket;    ///< n x b: index of the pocket that holds the ball, kOffTable, or -1
+    std::vector<std::int32_t> fell;      ///< n x b: 0 for the ball that fell first, 1, ..., or -1
     std::vector<std::int32_t> cushions;  ///< n x b: how often the ball met a cushion or a jaw
     std::vector<std::uint64_t> hash;     ///< n, if asked for: Outcome::hash
     struct Message {
@@ -139,6 +145,11 @@ struct Batch {
     };
     std::vector<Message> messages;  ///< in the order of the shots
 };
+
+/// [-] Most shots of one batch: beyond it sizes of arrays would overflow.
+inline constexpr std::size_t kMostBatchShots = std::size_t{1} << 31;
+/// @throws std::invalid_argument for more shots than that
+void check_shots(std::size_t shots);
 
 /// Plays `shots` shots that differ in the numbers of some columns. Shot i has the results of simulate() for the scene with these
 /// numbers, bit for bit, whatever the number of threads. A shot that is invalid or fails has its status, and the others are played.

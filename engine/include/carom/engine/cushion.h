@@ -26,8 +26,7 @@ struct CushionContact {
 CushionContact cushion_contact(const BallParams& balls, const BallSize& size, double height,
                                const Vec2& normal, const Vec3& v, const Vec3& w);
 
-/// The friction at a slip [m/s] at the nose, and the restitution at a speed [m/s] along the normal.
-double cushion_friction(const BallParams& balls, double slip);
+/// The restitution at a speed [m/s] along the normal.
 double cushion_restitution(const BallParams& balls, double speed);
 
 /// Tangential impulse per mass [m/s] of a ball in the air at a nose, where nothing but the nose acts on it.

@@ -5,10 +5,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -41,6 +43,10 @@ constexpr bool is_gone(MotionState state) {
 /// Whether a ball moves without the cloth, on a parabola.
 constexpr bool flies(MotionState state) {
     return state == MotionState::kAirborne || state == MotionState::kOut;
+}
+/// Whether the centre moves up or down: in flight, or falling into a pocket.
+constexpr bool is_off_cloth(MotionState state) {
+    return flies(state) || state == MotionState::kFalling;
 }
 
 /// One ball between two events that touch it. Times inside are relative to `start`.
@@ -146,8 +152,8 @@ struct Event {
     int b = -1;       ///< the other ball, or the index of the cushion, jaw or pocket; -1 if none
     int detail = -1;  ///< kBallCluster: index into Record::clusters; cushions and jaws: of the round nose in
                       ///< Plan::noses, or -1
-    bool slow =
-        false;  ///< of a ball in the air, so slow that it parts at a speed of its own: the energy may rise
+    /// of a ball in the air, so slow that it parts at a speed of its own: the energy may rise
+    bool slow = false;
     bool operator==(const Event&) const = default;
 };
 
@@ -214,6 +220,10 @@ class Record {
     /// gives the start, t past the duration the state at the duration.
     BallState state_at(int ball, double t) const;
 
+    /// The same of every ball at many times, time after time: position, velocity and spin in nine numbers, and the kind of motion. Null: not
+    /// wanted.
+    void states_at(std::span<const double> times, double* rvw, std::uint8_t* kinds) const;
+
     /// Orientation (body to table) at time t, starting from the identity, by the integral of the angular
     /// velocity; exact where the axis is fixed, else by fourth-order Magnus steps of at most 0.2 rad (1e-7
     /// rad over a shot).
@@ -258,6 +268,17 @@ inline Vec3 velocity_at(const Segment& s, double tau) {
     return {s.v.x() + tau * s.a.x(), s.v.y() + tau * s.a.y(), 0.0};
 }
 Vec3 spin_at(const Segment& segment, double tau, double R);
+
+/// [m] How far the floor lies below the cloth, where a ball that has left the table comes to rest: the bed of a table is 29 1/4 to 31
+/// inches high (WPA Tournament Table & Equipment Specifications, 2), 0.743 to 0.787 m.
+inline constexpr double kFloorDepth = 0.76;
+
+/// Time from the start of a segment until a ball of radius R lies on the floor [s]; infinite for one that has not left the table.
+inline double until_floor(const Segment& s, double R, double gravity) {
+    if (s.state != MotionState::kOut || !(gravity > 0.0)) return std::numeric_limits<double>::infinity();
+    const double v = s.v.z(), height = std::max(0.0, s.r.z() + (kFloorDepth - R));
+    return (v + std::sqrt(v * v + 2.0 * gravity * height)) / gravity;
+}
 
 /// The scene for the next shot: that of the record with its balls where and as they are at the end, without the balls in
 /// pockets, without a cue. Whoever plays says who is struck, and puts fallen balls back. One that is falling does so

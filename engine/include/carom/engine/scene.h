@@ -63,6 +63,15 @@ inline constexpr Field<BallSize> kSizeFields[] = {
     field<&BallSize::m>("mass", kMass, "of this ball", {.standard = "as `[balls]`"}),
 };
 
+/// A coefficient that falls with a speed u [m/s]: at_rest + more exp(-fall u), and at_rest alone if `more` is 0.
+struct Falling {
+    double at_rest, more = 0.0, fall = 0.0;  // fall [s/m]
+    double operator()(double u) const;
+    bool constant() const { return more == 0.0; }
+    bool any() const { return at_rest != 0.0 || more != 0.0; }
+    double most() const { return at_rest + more; }
+};
+
 /// Properties shared by all balls of a scene (SI; frictions and restitutions are numbers).
 struct BallParams {
     double R, m;
@@ -91,8 +100,14 @@ struct BallParams {
     /// Share of the downward speed from a cushion that throws a ball up again. 0: the published planar cushions.
     double e_h = 0.0;
     BallSize size() const { return {R, m}; }
-    bool ball_friction() const { return mu_b != 0.0 || mu_b_more != 0.0; }
-    double most_cushion_friction() const { return f_c + f_c_more; }
+    /// Between two balls, by the slip of their surfaces at the contact. Source of the form: D. Alciatore, Technical Proof A.14:
+    /// a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact uses the value at the slip before it; in a compliant
+    /// cluster every contact has that of its own slip at every instant.
+    Falling ball_friction() const { return {mu_b, mu_b_more, mu_b_fall}; }
+    /// At a cushion, by the slip at the nose.
+    Falling cushion_friction() const { return {f_c, f_c_more, f_c_fall}; }
+    /// Of ball and cloth, by the speed towards the cloth.
+    Falling cloth_restitution() const { return {e_t, e_t_more, e_t_fall}; }
     bool operator==(const BallParams&) const = default;
 };
 inline constexpr Field<BallParams> kBallFields[] = {
@@ -160,11 +175,6 @@ inline constexpr Field<BallParams> kBallFields[] = {
                             "about 0.2 on a real table",
                             {.since = 2, .later = true}),
 };
-
-/// Friction between two balls whose surfaces slip by `slip` [m/s] at the contact. Source of the form: D.
-/// Alciatore, Technical Proof A.14: a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact takes it
-/// once, at the slip before it; in a compliant cluster every contact has that of its own slip at every instant.
-double ball_friction(const BallParams& balls, double slip);
 
 /// A ball at the start.
 struct BallStart {
@@ -316,8 +326,8 @@ extern const CushionModelInfo kHan2005;
 struct Physics {
     double gravity = 9.81;
     const BallBallModelInfo* ball_ball = &kMathavan;
-    const CushionModelInfo* cushion =
-        &kHan2005;  ///< straight noses; a ball preset brings the one that fits its game
+    /// straight noses; a ball preset brings the one that fits its game
+    const CushionModelInfo* cushion = &kHan2005;
     const CushionModelInfo* jaw = nullptr;  ///< round jaws; null: as the straight noses
     const CushionModelInfo* jaw_model() const { return jaw != nullptr ? jaw : cushion; }
     ClothSlipSign cloth_slip = ClothSlipSign::kConsistent;
@@ -406,7 +416,9 @@ struct Stop {
 };
 inline constexpr Field<Stop> kStopFields[] = {
     field<&Stop::time>("time", at_least(0.0, kMaxTime, "s"), "end after this much time"),
-    field<&Stop::events>("events", at_least(0.0, kAnyInteger), "end after this many events"),
+    field<&Stop::events>("events", at_least(0.0, kAnyInteger),
+                         "end after this many events; more than 10 million are an error",
+                         {.standard = "more than 1 million are an error"}),
 };
 
 inline constexpr const char* kCameras[] = {"top", "rail", "player", "follow"};

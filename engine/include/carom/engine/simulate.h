@@ -27,8 +27,8 @@ struct SimulateOptions {
     /// is not called at all.
     std::function<void(std::size_t, double)> progress;
     int progress_rounds = 64;
-    bool hash =
-        false;  ///< for an outcome: Outcome::hash, which takes the segments that it has no other use for
+    /// for an outcome: Outcome::hash, which takes the segments that it has no other use for
+    bool hash = false;
 };
 
 /// A run that cannot go on: too many events in one simulated microsecond, or a kernel that failed. what()
@@ -73,9 +73,11 @@ struct Outcome {
     std::int64_t events = 0;  ///< as many as the record would have
     int clusters = 0;         ///< of these events
     int struck = -1;  ///< the ball that the cue strikes, or else the first one that moves at the start; or -1
-    int first_hit = -1;         ///< the ball that it meets first: in a cluster the nearest one; or -1
-    int contacts = 0;           ///< balls that it meets, each of them once
-    int approach_cushions = 0;  ///< its contacts with cushions and jaws before the second of them, or all
+    int first_hit = -1;  ///< the ball that it meets first: in a cluster the nearest one; or -1
+    int contacts = 0;    ///< balls that it meets, each of them once
+    /// Its contacts with cushions and jaws before the second of them, or all; not with one that it was frozen to from the start and
+    /// has not left (still_frozen)
+    int approach_cushions = 0;
     std::vector<BallOutcome> balls;  ///< in the order of Scene::ball
     std::uint64_t hash = 0;          ///< Record::hash() as a number, if SimulateOptions::hash asked for it
     bool operator==(const Outcome&) const = default;

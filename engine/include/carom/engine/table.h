@@ -79,8 +79,8 @@ inline constexpr Field<Pocket> kPocketFields[] = {
 /// The presets list them clockwise as seen from above, starting at the pocket (or corner) at the origin.
 struct Table {
     std::string preset;  ///< "seven_foot", ..., or "" for a custom outline
-    std::optional<std::string> cloth =
-        std::nullopt;  ///< as the scene names it; its friction is in BallParams
+    /// as the scene names it; its friction is in BallParams
+    std::optional<std::string> cloth = std::nullopt;
     double width = 0.0,
            length = 0.0;         ///< playing surface between nose lines; the bounding box of a custom outline
     Vec2 corner = Vec2::Zero();  ///< its corner of smallest x and y: the origin, except for a custom outline

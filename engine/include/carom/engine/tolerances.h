@@ -2,8 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 
 namespace carom {
+
+/// [-] The distance from 1 to the next double.
+inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// [m] Balls that overlap, or reach into a cushion, by at most this much at the start are taken to touch;
 /// deeper is an error. A thousandth of the smallest gap that can be set on a real table, and far above the
@@ -17,6 +21,12 @@ inline constexpr double kRollingUlp = 8.0;
 /// [s] and [-] More events than this within one such span is an error with a dump, never a silent stop.
 inline constexpr double kEventCapSpan = 1e-6;
 inline constexpr int kEventCap = 10000;
+
+/// [-] More events than the first are an error of a run whose [stop] does not say how many may come, and more than the second of
+/// any run. The longest shot of a real table has some thousand; a million take 0.4 GB with their segments, and a record of them is
+/// as long as any that can be read (kMaxRecordSize).
+inline constexpr int kUsualEvents = 1000000;
+inline constexpr int kMostEvents = 10 * kUsualEvents;
 
 /// [m] Depth at which a pocketed ball comes to rest below the cloth; drawing only. pooltool 0.6.0's value.
 inline constexpr double kPocketDepth = 0.08;

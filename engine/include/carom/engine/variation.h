@@ -21,6 +21,9 @@ class VariationError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// What a column of values holds.
+enum class ValueKind : std::uint8_t { kNumber, kWhole, kText };
+
 /// One shot: the values drawn, and the scene that they make.
 struct VariedShot {
     std::vector<std::string> values;  ///< one per key; numbers read back to the same bits
@@ -56,6 +59,9 @@ class Variation {
     const std::vector<std::string>& keys() const;
     /// The unit of what the rule number `key` draws: "m/s", "degrees"; "" where it has none, or is no number of the scene.
     std::string unit(std::size_t key) const;
+
+    /// What that rule draws: it goes by the rule and not by what happens to come.
+    ValueKind kind(std::size_t key) const;
 
     /// Shot 0, 1, ...; any thread may ask. Where the balls are not those of the file (a rack of another
     /// size), there is no scene but an error: all shots share the columns of one table.

@@ -24,9 +24,8 @@ const BallBallModelInfo* ball_ball_model(std::string_view name) {
     return nullptr;
 }
 
-double ball_friction(const BallParams& balls, double slip) {
-    if (balls.mu_b_more == 0.0) return balls.mu_b;
-    return balls.mu_b + balls.mu_b_more * exponential(-balls.mu_b_fall * slip);
+double Falling::operator()(double u) const {
+    return more == 0.0 ? at_rest : at_rest + more * exponential(-fall * u);
 }
 
 }  // namespace carom

@@ -33,15 +33,10 @@ CushionContact cushion_contact(const BallParams& balls, const BallSize& size, do
                                const Vec2& normal, const Vec3& v, const Vec3& w) {
     CushionContact contact{
         .R = size.R, .m = size.m, .mu_s = balls.mu_s, .e_c = balls.e_c, .f_c = balls.f_c, .height = height};
-    if (balls.f_c_more != 0.0)
-        contact.f_c = cushion_friction(balls, detail::nose_contact(contact, normal, v, w).speed_t);
+    if (!balls.cushion_friction().constant())
+        contact.f_c = balls.cushion_friction()(detail::nose_contact(contact, normal, v, w).speed_t);
     if (balls.e_c_fall != 0.0) contact.e_c = cushion_restitution(balls, detail::approach_speed(normal, v));
     return contact;
-}
-
-double cushion_friction(const BallParams& balls, double slip) {
-    if (balls.f_c_more == 0.0) return balls.f_c;
-    return balls.f_c + balls.f_c_more * exponential(-balls.f_c_fall * slip);
 }
 
 double cushion_restitution(const BallParams& balls, double speed) {

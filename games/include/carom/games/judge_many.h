@@ -14,15 +14,15 @@ namespace carom::games {
 /// What comes of the shots, in memory of the caller's: arrays of n, and of n x balls in the order of Scene::ball. Of a shot that does not
 /// end at rest nothing is written.
 struct JudgedArrays {
-    double* xy =
-        nullptr;  ///< n x balls x 2 [m]: behind the shot, x and y in turns; NaN for a ball that is not on the table
-    std::int32_t* group =
-        nullptr;                   ///< n: eight-ball, the player's Group before the shot; then that behind it
+    /// n x balls x 2 [m]: behind the shot, x and y in turns; NaN for a ball that is not on the table
+    double* xy = nullptr;
+    /// n: eight-ball, the player's Group before the shot; then that behind it
+    std::int32_t* group = nullptr;
     std::int32_t* foul = nullptr;  ///< n: number of the first Foul, or -1
-    std::int32_t* points =
-        nullptr;  ///< n: of pool the balls that fell in a fair shot, otherwise Verdict::points
-    std::uint8_t* goes_on =
-        nullptr;  ///< n: whether it is still the player's turn, in a game that is not over
+    /// n: of pool the balls that fell in a fair shot, otherwise Verdict::points
+    std::int32_t* points = nullptr;
+    /// n: whether it is still the player's turn, in a game that is not over
+    std::uint8_t* goes_on = nullptr;
 };
 
 /// The state of a game in the middle of a turn of player 0, who has these balls of eight-ball.

@@ -37,14 +37,17 @@ constexpr auto names_of(BallOn) {
     return std::array{"colour", "red", "yellow", "green", "brown", "blue", "pink", "black"};
 }
 
+/// More points than any game has, and fewer than an int holds.
+inline constexpr int kMostPoints = 1000000000;
+
 /// All that a game remembers between two shots, beside where the balls lie. Players are 0 and 1. A game reads only what is its own.
 struct State {
     Game game = Game::kEightBall;
-    int turn = 0;                  ///< whose shot it is
-    bool opening = true;           ///< the break, or the first shot of a game of carom
-    InHand in_hand = InHand::kNo;  ///< the cue ball, for the player whose turn it is
-    std::array<int, 2> points = {0, 0};
-    int target = 0;  ///< three-cushion, sum to three: points that win; 0: no end
+    int turn = 0;                        ///< whose shot it is
+    bool opening = true;                 ///< the break, or the first shot of a game of carom
+    InHand in_hand = InHand::kNo;        ///< the cue ball, for the player whose turn it is
+    std::array<int, 2> points = {0, 0};  ///< each 0 to kMostPoints, as are target and fouls
+    int target = 0;                      ///< three-cushion, sum to three: points that win; 0: no end
     bool over = false;
     int winner = -1;                                            ///< -1: none, or not yet
     std::array<Group, 2> group = {Group::kOpen, Group::kOpen};  ///< eight-ball
@@ -152,8 +155,8 @@ struct Verdict {
     std::vector<Foul> fouls;  ///< by rule; empty for a fair shot
     int points = 0;           ///< scored by the shot
     int penalty = 0;          ///< snooker: what the other player receives
-    std::vector<Option>
-        options;  ///< at least one. Where there are several, the first is what happens unless `chooser` takes another
+    /// at least one. Where there are several, the first is what happens unless `chooser` takes another
+    std::vector<Option> options;
     int chooser = -1;  ///< the player who chooses; -1 where there is one option
     const State& next() const { return options.front().state; }
     const std::vector<Respot>& respots() const { return options.front().respots; }
@@ -170,13 +173,15 @@ const char* cue_ball(const State& state);
 
 /// Whether the cue ball may be placed there before the next shot: it is in hand there, lies on the table between the noses, and
 /// overlaps no ball. @param record  of the shot before
+/// @throws std::invalid_argument for an option with balls that the record does not have
 bool may_place(const Record& record, const Option& option, const Vec2& place);
 
 /// The table before the next shot, without a cue: what is gone is gone, what is respotted is back, the cue ball is placed.
 /// @param scene   that of the record
 /// @param option  one of the verdict's; not one that racks anew
 /// @param place   of the cue ball: needed where it is gone, allowed where it is in hand
-/// @throws std::invalid_argument for a place that is missing or not allowed (may_place), for a new rack, and for a game that is over
+/// @throws std::invalid_argument for a place that is missing or not allowed (may_place), for a new rack, for a game that is over, and
+/// for an option or a scene with other balls than the record's
 Scene table_after(const Scene& scene, const Record& record, const Option& option,
                   const std::optional<Vec2>& place = std::nullopt);
 

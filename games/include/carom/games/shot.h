@@ -14,8 +14,8 @@ struct Touch {
     double time = 0.0;  ///< [s]
     int ball = -1;
     int other = -1;  ///< the ball that it met; -1 for a cushion or a jaw
-    bool driven =
-        true;  ///< of a cushion: false where the ball was frozen to it from the start and had not left it
+    /// of a cushion: false where the ball was frozen to it from the start and had not left it
+    bool driven = true;
     bool cushion() const { return other < 0; }
     bool operator==(const Touch&) const = default;
 };
@@ -23,8 +23,8 @@ struct Touch {
 /// Balls are indices into Record::tracks.
 struct Shot {
     int struck = -1;  ///< the ball that the cue strikes
-    std::vector<int>
-        first_hits;  ///< the ball that it meets first; several where it meets them at once; empty for none
+    /// the ball that it meets first; several where it meets them at once; empty for none
+    std::vector<int> first_hits;
     double first_time = 0.0;  ///< [s] when
     /// Every contact of a ball with a cushion or a jaw, and every contact of the struck ball with another one
     std::vector<Touch> touches;

@@ -73,7 +73,7 @@ struct ContactPhaseInSpace {
     double* motion;  ///< per ball v (3 numbers), R w (3) [V]; replaced
     const HertzContactInSpace* contact;
     double* numbers;   ///< scratch memory of contact_phase_in_space_numbers() elements
-    double curvature;  ///< L/(2 R), > 0
+    double curvature;  ///< L/(2 R); 0: the normals stay as they are
 };
 
 constexpr std::size_t contact_phase_in_space_numbers(int balls, int contacts) noexcept {

@@ -38,8 +38,8 @@ const char* available_isas() noexcept;
 /// An instruction set, or in words why there is none.
 struct IsaChoice {
     Isa isa;
-    char problem
-        [160];  ///< "" where `isa` is valid; else what is wrong with CAROM_ISA and which sets are available here
+    /// "" where `isa` is valid; else what is wrong with CAROM_ISA and which sets are available here
+    char problem[160];
 };
 
 /// The instruction set that CAROM_ISA in the environment names; where it is unset or empty, Isa::kFastest. An unknown or

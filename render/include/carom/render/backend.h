@@ -7,11 +7,15 @@
 namespace carom::render {
 
 enum class Backend : std::uint8_t {
+    kAuto,    ///< default_backend(), looked for when it is needed
     kOsmesa,  ///< libOSMesa.so.8 (Debian package libosmesa6)
     kEgl,     ///< libEGL.so.1, surfaceless platform of Mesa (Debian packages libegl1 and libegl-mesa0)
 };
 
-/// "osmesa" or "egl"; @throws RenderError for another name
+/// OSMesa where the system has it, else EGL: the one default of the library, the program and Python.
+Backend default_backend();
+
+/// "auto", "osmesa" or "egl"; @throws RenderError for another name
 Backend backend_from_name(std::string_view name);
 const char* name(Backend backend);
 

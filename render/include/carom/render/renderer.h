@@ -15,7 +15,7 @@ namespace carom::render {
 class Renderer {
   public:
     /// @throws RenderError if the library is missing (the message names its package) or has no OpenGL 3.3
-    explicit Renderer(Backend backend = Backend::kOsmesa);
+    explicit Renderer(Backend backend = Backend::kAuto);
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;

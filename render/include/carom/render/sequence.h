@@ -49,12 +49,12 @@ struct SequenceOptions {
     int table_samples = 16;
     /// zlib level 0..9: libpng encodes every frame as a whole. Default: only what changed is encoded (kept_png.h)
     std::optional<int> libpng_level;
-    Backend backend = Backend::kOsmesa;
+    Backend backend = Backend::kAuto;
     /// Number of threads that encode and write. 1: everything runs on the calling thread, so that the timings do not
     /// disturb each other. 0: one per core, or 1 with an empty pattern, which is used for measurements.
     int jobs = 0;
-    /// Skip frames whose file is there, and a whole PNG of this size. A mark beside the files says of which shot and picture they
-    /// are; it has to be this one.
+    /// Skip frames whose file is there, a whole PNG. A comment in each says of which picture and instant it is. Frames of other
+    /// pictures are drawn anew; where there are others only, it is an error.
     bool resume = false;
     RawSink raw;  ///< instead of PNG files; the pattern is not used
     RawFormat raw_format = RawFormat::kRgb;
@@ -79,7 +79,8 @@ double frame_time(double from, long k, double fps);
 long frame_count(double from, double to, double fps);
 
 /// Renders and writes the frames (to a temporary name, then renamed). Creates the folder of the pattern if its
-/// parent exists. Skipped frames (`resume`) have no timing. Memory does not grow with the number of frames.
+/// parent exists. Frames with these numbers that are there go first, and behind them those of other pictures that carom drew; one
+/// frame by itself leaves the others. Another run with the same pattern is refused meanwhile. Skipped frames (`resume`) have no timing. Memory does not grow with the number of frames.
 /// @throws RenderError naming the file; finished frames stay, and no incomplete file is left
 std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOptions& options);
 

@@ -32,7 +32,7 @@ bool in_hole(vec2 p) {
 }
 
 vec3 cloth_albedo(vec2 p) {
-    vec3 base = from_screen(vec3(0.055, 0.50, 0.345));
+    vec3 base = from_screen(kCloth);
     // A coarse weave that is visible only from near: it fades out before its threads are one to two pixels wide.
     float pixel = length(fwidth(v_position));
     float fine = 1.0 - smoothstep(0.0006, 0.0016, pixel);
@@ -47,8 +47,7 @@ vec3 wood_albedo(vec2 uv) {
     float pixel = length(fwidth(uv)) * 160.0;
     float fine = mix(noise(vec2(uv.x * 9.0, uv.y * 160.0)), 0.5, smoothstep(0.5, 1.2, pixel));
     float rings = noise(vec2(uv.x * 2.2, uv.y * 38.0)) * 0.65 + fine * 0.35;
-    vec3 dark = from_screen(vec3(0.23, 0.105, 0.055)), light = from_screen(vec3(0.44, 0.225, 0.115));
-    return mix(dark, light, smoothstep(0.15, 0.85, rings));
+    return mix(from_screen(kWoodDark), from_screen(kWoodLight), smoothstep(0.15, 0.85, rings));
 }
 
 vec3 lit(vec3 albedo, vec3 n) {
@@ -68,14 +67,13 @@ vec3 glossy(vec3 base, vec3 n, vec3 tint, float blur) {
 vec3 pocket_wall(vec3 p, vec3 n, float bottom) {
     // Leather that is lit only through the mouth of the pocket: the light decreases with depth.
     float fade = exp(min(p.z, 0.0) / 0.035);
-    vec3 leather = from_screen(vec3(0.17, 0.13, 0.11));
-    return leather * mix(0.06, 0.75, fade) * (bottom > 0.5 ? 0.5 : 0.6 + 0.4 * lamp_light(p, n));
+    return from_screen(kLeather) * mix(0.06, 0.75, fade) * (bottom > 0.5 ? 0.5 : 0.6 + 0.4 * lamp_light(p, n));
 }
 
 vec3 floor_color(vec3 p) {
     vec2 half_size = 0.5 * (u_inner.zw - u_inner.xy), e = abs(p.xy - 0.5 * (u_inner.xy + u_inner.zw)) - half_size;
     float away = length(max(e, 0.0));
-    vec3 near = from_screen(vec3(0.16, 0.145, 0.135)) * (0.10 + 0.9 * smoothstep(0.0, 1.0, away));
+    vec3 near = from_screen(kFloor) * (0.10 + 0.9 * smoothstep(0.0, 1.0, away));
     // The floor fades into the dark room, which has the colour of the background.
     return mix(vec3(0.004), near, 1.0 / (1.0 + 0.25 * away * away));
 }
@@ -89,13 +87,13 @@ void main() {
     if (in_hole(p)) discard;
 #endif
 #if defined(CLOTH)
-    color = written(lit(cloth_albedo(p) * (v_material == 0 ? 1.0 : 1.12), n));
+    color = written(lit(cloth_albedo(p) * (v_material == 0 ? 1.0 : kCushionGain), n));
 #elif defined(CHALK)
     // The share of the width of this pixel that lies within the mark.
     float across = max(fwidth(v_uv.y), 1e-4);
     float cover = min(v_uv.y + 0.5 * across, 1.0) - max(v_uv.y - 0.5 * across, -1.0);
     cover = v_uv.x * clamp(cover / across, 0.0, 1.0);
-    color = written(mix(lit(cloth_albedo(p), n), lit(vec3(0.75), n), cover));
+    color = written(mix(lit(cloth_albedo(p), n), lit(vec3(kChalk), n), cover));
 #elif defined(SHADE)
     // Only the opacity counts: black is blended over the cloth. In screen values, of which the square is the radiance,
     // the same darkening needs another opacity.
@@ -108,8 +106,8 @@ void main() {
     if (v_material == 3)
         color = written(pocket_wall(v_position, n, v_uv.x));
     else if (v_material == 4)
-        color = written(glossy(lit(from_screen(vec3(0.19, 0.175, 0.165)), n), n, vec3(6.0), 0.5));
+        color = written(glossy(lit(from_screen(kTrim), n), n, vec3(6.0), 0.5));
     else
-        color = written(glossy(lit(from_screen(vec3(0.88, 0.85, 0.76)), n), n, vec3(3.0), 0.2));
+        color = written(glossy(lit(from_screen(kInlay), n), n, vec3(3.0), 0.2));
 #endif
 }

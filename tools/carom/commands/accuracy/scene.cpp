@@ -1,5 +1,6 @@
 // carom accuracy SCENE: the measurement.
 #include "commands/accuracy/scene.h"
+#include "carom/engine/printable.h"
 
 #include <fmt/format.h>
 
@@ -223,7 +224,7 @@ namespace {
 int run(const AccuracySceneArgs& args) {
     const SceneAccuracy result = measure_scene_accuracy(plan_for_accuracy(args).scene, args);
     write_report(args.csv, table_csv(scene_accuracy_table(result)));
-    print(args.json ? scene_accuracy_json(result) : scene_accuracy_text(result, args.scene));
+    print(args.json ? scene_accuracy_json(result) : scene_accuracy_text(result, harmless(args.scene)));
     return kOk;
 }
 

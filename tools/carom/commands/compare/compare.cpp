@@ -13,6 +13,7 @@
 #include "base/console.h"
 #include "base/options.h"
 #include "base/setup.h"
+#include "carom/engine/printable.h"
 #include "commands/compare/difference.h"
 #include "report/table.h"
 
@@ -211,7 +212,7 @@ int run(const CompareArgs& args) {
         throw UsageError("--tolerance: expected a length in m of at least 0");
     const Record a = shot_to_compare(args.a), b = shot_to_compare(args.b);
     const ShotDifference d = difference(a, b);
-    const ComparedShot shot_a{args.a, a}, shot_b{args.b, b};
+    const ComparedShot shot_a{harmless(args.a), a}, shot_b{harmless(args.b), b};
     print(args.json ? difference_json(shot_a, shot_b, d, args.tolerance)
                     : difference_text(shot_a, shot_b, d, args.tolerance));
     return d.within(args.tolerance) ? kOk : kFailed;

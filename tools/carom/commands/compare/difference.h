@@ -16,8 +16,8 @@ namespace carom::tools {
 struct BallEnd {
     MotionState state = MotionState::kStationary;
     std::string pocket;  ///< that holds it, or ""
-    Vec3 position =
-        Vec3::Zero();  ///< [m]; of a ball that is gone (in a pocket, off the table) the last one before
+    /// [m]; of a ball that is gone (in a pocket, off the table) the last one before
+    Vec3 position = Vec3::Zero();
     bool operator==(const BallEnd&) const = default;
 
     bool gone() const { return is_gone(state); }
@@ -56,8 +56,8 @@ struct NamedEvent {
 /// The events of both shots, one after the other.
 struct EventDifference {
     std::size_t alike = 0;  ///< so many from the first on are alike
-    std::optional<std::size_t>
-        first_apart;              ///< of these the first, from 0, whose times are not the same bit for bit
+    /// of these the first, from 0, whose times are not the same bit for bit
+    std::optional<std::size_t> first_apart;
     double farthest_apart = 0.0;  ///< [s] between the times of one of these
     std::vector<NamedEvent> a, b;
 

@@ -151,12 +151,7 @@ void page_command(std::string& out, const Options& command, const std::string& p
             out += "\n";
         }
     }
-    if (command.footer.empty()) return;
-    // Of a footer with more lines than one, the others are a list.
-    const std::size_t first = command.footer.find('\n');
-    out += fmt::format("\n{}\n", markdown(command.footer.substr(0, first)));
-    if (first != command.footer.npos)
-        out += replaced("\n" + markdown(command.footer.substr(first + 1)), "\n  ", "\n* ") + "\n";
+    if (!command.footer.empty()) out += fmt::format("\n{}\n", markdown(command.footer));
 }
 
 std::string command_line_page(const Options& program) {

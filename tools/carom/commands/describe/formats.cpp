@@ -7,25 +7,18 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
 #include "carom/engine/scene.h"
-#include "page/page.h"
 
 namespace carom::tools {
-
-/// The pages of docs/reference that the build put into the program.
-const std::vector<PageFile>& format_files();
-
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -214,9 +207,9 @@ std::string effects_lines() {
     return text;
 }
 
-/// A page of docs/reference as it was when the program was built.
-std::string published(std::string_view name) {
-    for (const PageFile& file : format_files())
+/// A file that the build put into the program.
+std::string built_in(std::string_view name) {
+    for (const PageFile& file : describe_files())
         if (file.name == name) return file.text;
     throw std::logic_error(fmt::format("{} is not in the program", name));
 }
@@ -279,23 +272,22 @@ std::string record_schema() {
     Json render = object_of(kRenderFields, RenderSettings{}, kRecord);
     render["dependencies"] = {{"eye", {"target"}}, {"target", {"eye"}}};
     const Json size = object_of(kSizeFields, BallSize{}, kRecord)["properties"];
-    Json schema = Json::parse(published("record.schema.json"));
-    for (const auto& [pointer, part] : std::initializer_list<std::pair<const char*, Json>>{
-             {"/properties/render", render},
-             {"/properties/table", table},
-             {"/properties/balls", object_of(kBallFields, BallParams{}, kRecord)},
-             {"/definitions/cushion", object_of(kCushionFields, {}, kRecord)},
-             {"/definitions/jaw", object_of(kJawFields, {}, kRecord)},
-             {"/definitions/pocket", object_of(kPocketFields, {}, kRecord)},
-             {"/definitions/track/properties/radius", size["radius"]},
-             {"/definitions/track/properties/mass", size["mass"]}})
-        schema.at(Json::json_pointer(pointer)) = part;
+    const Json parts = {{"/properties/render", render},
+                        {"/properties/table", table},
+                        {"/properties/balls", object_of(kBallFields, BallParams{}, kRecord)},
+                        {"/definitions/cushion", object_of(kCushionFields, {}, kRecord)},
+                        {"/definitions/jaw", object_of(kJawFields, {}, kRecord)},
+                        {"/definitions/pocket", object_of(kPocketFields, {}, kRecord)},
+                        {"/definitions/track/properties/radius", size["radius"]},
+                        {"/definitions/track/properties/mass", size["mass"]}};
+    Json schema = Json::parse(built_in("record.schema.json"));
+    for (const auto& [pointer, part] : parts.items()) schema.at(Json::json_pointer(pointer)) = part;
     return schema.dump(2) + "\n";
 }
 
 std::string scene_format() {
     constexpr const char* kHeader = "| key | default | values | meaning |";
-    std::string page = published("scene_format.md");
+    std::string page = built_in("scene_format.md");
     put_table(page, "table", kHeader, lines_of(kTableFields, make_table(kStandardTable)));
     put_table(page, "outline", "| list | key | default | values | meaning |",
               lines_of(kCushionFields, {}, "`[[table.cushion]]`") +

@@ -2,14 +2,21 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "page/page.h"
 
 namespace carom::tools {
 
+/// record.schema.json beside this file, and docs/reference/scene_format.md as they were when the program was built.
+const std::vector<PageFile>& describe_files();
+
 /// A JSON Schema of scene files: docs/reference/scene.schema.json.
 std::string scene_schema();
-/// A JSON Schema of records: docs/reference/record.schema.json, its parts that are tables in the program written anew.
+/// A JSON Schema of record files: docs/reference/record.schema.json. Its fixed text stands beside this file, with null for what comes
+/// from the tables.
 std::string record_schema();
-/// The page of scene files: docs/reference/scene_format.md, its tables between <!-- begin NAME --> and <!-- end NAME -->
+/// The page of scene files: docs/reference/scene_format.md, its tables between the marks <!-- begin NAME --> and <!-- end NAME -->
 /// written anew.
 std::string scene_format();
 

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "base/console.h"
+
 namespace carom::tools {
 namespace {
 
@@ -26,12 +28,19 @@ std::vector<Piece> pieces_of(const Record& record, int ball) {
     for (std::size_t i = 0; i < segments.size(); ++i) {
         const Segment& s = segments[i];
         const double next = i + 1 < segments.size() ? segments[i + 1].start : record.duration;
-        const double to = std::min(next, record.duration), own_end = std::min(to, s.start + s.duration);
+        // On the floor, and not a rounding above it.
+        const double floor = until_floor(s, record.size(ball).R, record.gravity);
+        double end = s.start + std::min(s.duration, floor);
+        if (end - s.start < floor) end = std::nextafter(end, std::numeric_limits<double>::infinity());
+        const double to = std::min(next, record.duration), own_end = std::min(to, end);
         // Where a segment ends by itself before the next one begins, the ball stays as it is.
         for (const auto& [a, b] : {std::pair(s.start, own_end), std::pair(own_end, to)}) {
             if (!(static_cast<float>(b) > static_cast<float>(a))) continue;
-            // The state at its end is that just before: at the end itself the next segment is in force.
-            pieces.push_back({a, b, record.state_at(ball, a), record.state_at(ball, std::nextafter(b, a))});
+            // The state at its end is that just before: at the end itself the next segment is in force, or the floor.
+            double before = std::nextafter(b, a);
+            while (a == s.start && before > a && before - s.start >= floor)
+                before = std::nextafter(before, a);
+            pieces.push_back({a, b, record.state_at(ball, a), record.state_at(ball, before)});
         }
     }
     return pieces;
@@ -82,9 +91,11 @@ std::vector<PositionKey> sampled_position_keys(const Record& record, int ball, d
         append(keys, piece.from, piece.first, true);
         if (!moves(piece)) continue;
         const double first = std::floor(piece.from * fps) + 1.0;
-        for (double k = first; k / fps < piece.to; ++k)
+        for (double k = first; k / fps < piece.to; ++k) {
+            throw_if_interrupted();
             if (static_cast<float>(k / fps) > keys.back().time)
                 append(keys, k / fps, record.state_at(ball, k / fps), true);
+        }
         append(keys, piece.to, piece.last, false);
     }
     append(keys, record.duration, record.state_at(ball, record.duration), false);
@@ -116,7 +127,10 @@ std::vector<RotationKey> rotation_keys(const Record& record, int ball) {
             std::max(fastest * lasts / kLargestTurn, std::sqrt(change * lasts / (8.0 * kLargestError))), 1.0,
             kMostKeys));
         add(piece.from);
-        for (double k = 1.0; k <= count; ++k) add(piece.from + lasts * k / count);
+        for (double k = 1.0; k <= count; ++k) {
+            throw_if_interrupted();
+            add(piece.from + lasts * k / count);
+        }
     }
     return keys;
 }

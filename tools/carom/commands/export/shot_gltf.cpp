@@ -1,6 +1,5 @@
 #include "commands/export/shot_gltf.h"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +12,7 @@
 #include "base/console.h"
 #include "carom/render/ball_texture.h"
 #include "carom/render/draw_list.h"
+#include "carom/render/look.h"
 #include "carom/render/png.h"
 #include "commands/export/gltf.h"
 #include "commands/export/keys.h"
@@ -23,27 +23,28 @@ namespace {
 
 using Json = Gltf::Json;
 using render::Material;
+namespace look = render::look;
 
 constexpr int kVertices = 34962;                   // what a buffer is for, in the specification
 constexpr int kSpherePieces = 48;                  // [-] around a ball; half as many from pole to pole
 constexpr int kTextureWidth = 512, kPngLevel = 9;  // [px], of zlib
 
-/// What a material reflects (linear), and how rough it is: those of render/src/draw/shaders/table.frag.
+/// What a material reflects, and how rough it is.
 struct Surface {
     const char* name;
-    std::array<double, 3> color;  ///< screen values, whose squares are reflected
+    look::Color color;  ///< screen values, whose squares are reflected
     double roughness;
 };
 
 const Surface& surface_of(Material material) {
     static const std::map<Material, Surface> surfaces = {
-        {Material::kCloth, {"cloth", {0.055, 0.50, 0.345}, 1.0}},
-        {Material::kCushion, {"cushion", {0.058, 0.53, 0.365}, 1.0}},
-        {Material::kWood, {"wood", {0.35, 0.176, 0.091}, 0.45}},
-        {Material::kPocket, {"pocket", {0.12, 0.092, 0.078}, 0.9}},
-        {Material::kTrim, {"trim", {0.19, 0.175, 0.165}, 0.4}},
-        {Material::kInlay, {"inlay", {0.88, 0.85, 0.76}, 0.3}},
-        {Material::kChalk, {"chalk", {0.45, 0.62, 0.54}, 1.0}},
+        {Material::kCloth, {"cloth", look::kCloth, 1.0}},
+        {Material::kCushion, {"cushion", look::kPlainCushion, 1.0}},
+        {Material::kWood, {"wood", look::kPlainWood, 0.45}},
+        {Material::kPocket, {"pocket", look::kPlainPocket, 0.9}},
+        {Material::kTrim, {"trim", look::kTrim, 0.4}},
+        {Material::kInlay, {"inlay", look::kInlay, 0.3}},
+        {Material::kChalk, {"chalk", look::kPlainChalk, 1.0}},
     };
     return surfaces.at(material);
 }

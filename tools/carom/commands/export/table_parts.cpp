@@ -60,8 +60,9 @@ void cut_hole(const Corners& polygon, const render::Hole& hole, const Vec2& orig
         if (out.size() >= 3) outside.push_back(std::move(out));
         left = std::move(in);
     }
+    // it does not reach into the hole
     if (left.size() < 3)
-        kept.push_back(polygon);  // it does not reach into the hole
+        kept.push_back(polygon);
     else
         kept.insert(kept.end(), outside.begin(), outside.end());
 }

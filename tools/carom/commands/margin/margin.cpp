@@ -7,6 +7,7 @@
 
 #include "base/console.h"
 #include "base/setup.h"
+#include "carom/engine/printable.h"
 #include "report/table.h"
 
 namespace carom::tools {
@@ -33,7 +34,7 @@ int run(const MarginArgs& asked) {
     read_margin_args(args);
     const auto [margin, last] = measure_margin(plan_scene(args.scene), args);
     write_report(args.csv, table_csv(frames_table(margin, last)));
-    print(args.json ? margin_json(margin, last) : margin_text(margin, last, args.scene));
+    print(args.json ? margin_json(margin, last) : margin_text(margin, last, harmless(args.scene)));
     return kOk;
 }
 

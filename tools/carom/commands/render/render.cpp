@@ -29,9 +29,8 @@ struct RenderArgs {
     std::optional<long> frame;
     std::optional<double> at;
     std::string camera;  ///< empty: the scene's
-    std::string gl = "osmesa";
+    std::string gl = "auto";
     std::string png_writer = "changes";
-    std::optional<int> png_level;
     std::string eye, target;  ///< "x,y,z"; empty: a named camera
     std::string ball;         ///< followed by the camera "follow"; empty: the ball that moves first
     std::string overlay;      ///< list of names
@@ -150,7 +149,7 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     options.frame = args.frame;
     options.size = args.size.empty() ? settings.size() : parse_size(args.size);
     set_view(args, settings, options);
-    if (args.png_writer == "libpng") options.libpng_level = args.png_level.value_or(1);
+    if (args.png_writer == "libpng") options.libpng_level = 1;
     options.jobs = args.jobs;
     options.resume = args.resume;
     if (args.raw || args.y4m) {
@@ -160,11 +159,11 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
         };
     }
     options.backend = render::backend_from_name(args.gl);
-    const long frames = checked_frame_count(options.from, options.to.value_or(record.duration), options.fps);
-    if (frames < 1 || (args.at && *args.at > record.duration)) {
+    if (options.from > record.duration && !args.to) {
         throw UsageError(fmt::format("{} {}: the shot is over after {} s", args.at ? "--at" : "--from",
                                      options.from, record.duration));
     }
+    const long frames = checked_frame_count(options.from, options.to.value_or(record.duration), options.fps);
     if (args.frame && *args.frame >= frames) {
         throw UsageError(fmt::format("--frame {}: the last frame is {}", *args.frame, frames - 1));
     }
@@ -229,8 +228,6 @@ int run(const RenderArgs& args) {
     const char* const stream = args.raw ? "--raw" : "--y4m";
     if ((args.raw || args.y4m) && (args.resume || !args.sheet.empty()))
         throw UsageError(fmt::format("{} goes with neither --resume nor --sheet", stream));
-    if (args.png_writer != "libpng" && args.png_level)
-        throw UsageError("--png-level is of --png-writer libpng");
     if (!args.size.empty()) parse_size(args.size);
     SimulateOptions simulation;
     simulation.profile = overlay_of(args).margin;
@@ -320,10 +317,6 @@ void add_render(Options& program) {
         .option("--png-writer", &args.png_writer, "NAME",
                 "changes encodes what changed since the frame before, libpng every frame as a whole")
         .one_of({"changes", "libpng"});
-    Option& level = command.option("--png-level", &args.png_level, "L",
-                                   "Compression by libpng, 0 (large, fast) to 9 (small, slow) (default: 1)");
-    level.in(0, 9);
-    level.needs = "--png-writer";
 }
 
 }  // namespace carom::tools

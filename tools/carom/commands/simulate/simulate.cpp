@@ -7,10 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "base/console.h"
 #include "base/options.h"
 #include "base/setup.h"
+#include "carom/engine/printable.h"
 #include "carom/engine/verify.h"
 #include "report/csv.h"
 #include "report/table.h"
@@ -115,6 +117,14 @@ std::string summary(const Record& record, const std::string& scene) {
                        record.partner_id(event), event.time);
     }
     if (pocketed == 0) fmt::format_to(line, "  none\n");
+    const char* title = "\noff the table (m)\n";
+    for (const Event& event : record.events) {
+        if (event.type != EventType::kBallOut) continue;
+        const Vec3 there = record.state_at(event.a, event.time).position;
+        fmt::format_to(line, "{}  {:<6} left at {:.6f}, {:.6f}, {:.6f} high, at {:.4f} s\n",
+                       std::exchange(title, ""), record.tracks.at(event.a).id, there.x(), there.y(),
+                       there.z(), event.time);
+    }
     fmt::format_to(line, "\nballs at the end (m)\n");
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         const BallState s = record.state_at(static_cast<int>(i), record.duration);
@@ -208,7 +218,7 @@ int run(const SimulateArgs& args) {
     if (args.hash)
         print(record.hash() + "\n");
     else if (!taken)
-        print(summary(record, args.scene));
+        print(summary(record, harmless(args.scene)));
     if (args.list) print(event_list(record));
     if (args.profile) print(profile_report(record));
     return status;

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "base/file_lock.h"
 #include "base/output_file.h"
 
 namespace carom::tools {
@@ -33,7 +33,7 @@ PartialFile::PartialFile(const std::string& path, std::uint64_t id, const Seen& 
         return;
     }
     std::error_code error;
-    if (const fs::path real = fs::canonical(path, error); !error) target_ = real.string();
+    target_ = file_of(path);
     if (fs::is_directory(target_, error)) {
         errno = EISDIR;
         fail("cannot write");
@@ -42,17 +42,7 @@ PartialFile::PartialFile(const std::string& path, std::uint64_t id, const Seen& 
     name_ = direct ? target_ : fmt::format("{}.{:016x}.part", target_, id);
     open(direct);
     if (direct) return;
-    if (::flock(::fileno(file_), LOCK_EX | LOCK_NB) != 0) {
-        if (errno == EWOULDBLOCK)
-            throw std::runtime_error(fmt::format("{}: another program is writing this very file", name_));
-        fail("cannot lock");
-    }
-    // Between opening and locking, the other program may have finished and renamed it.
-    struct stat opened {};
-    struct stat named {};
-    if (::fstat(::fileno(file_), &opened) != 0 || ::lstat(name_.c_str(), &named) != 0 ||
-        opened.st_ino != named.st_ino)
-        throw std::runtime_error(fmt::format("{}: another program has just finished this very file", name_));
+    lock_file(::fileno(file_), name_);
     take_up(seen);
 }
 

@@ -1,16 +1,13 @@
 // How far a sweep is, in a file that other programs read while it runs.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <string>
 
-#include "carom/engine/batch.h"
+#include "commands/sweep/rows.h"
 
 namespace carom::tools {
-
-using Outcomes = std::array<std::uint64_t, kShotStatuses>;
 
 /// A JSON object in a file that is replaced as a whole: whoever reads it finds a complete one. Its keys are those of
 /// docs/guide/clusters.md.

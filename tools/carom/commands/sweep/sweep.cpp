@@ -1,21 +1,18 @@
 // carom sweep: simulates many shots of one scene and writes one row for each shot.
 //
-// A row depends only on the scene, the rules, the seed and its number; threads only decide when it is computed. Rows are
-// written in order: if the program is killed, the file contains the first rows of the whole table.
+// A row depends only on the scene, the rules, the seed and its number. The engine plays a block of shots on all threads, and their
+// rows are written in order: if the program is killed, the file contains the first rows of the whole table.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
-#include <exception>
 #include <filesystem>
-#include <map>
-#include <mutex>
-#include <optional>
+#include <future>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -24,7 +21,7 @@
 #include "base/options.h"
 #include "base/setup.h"
 #include "commands/sweep/partial_file.h"
-#include "commands/sweep/row.h"
+#include "commands/sweep/rows.h"
 #include "commands/sweep/status.h"
 
 namespace carom::tools {
@@ -46,12 +43,10 @@ using Clock = std::chrono::steady_clock;
 /// Doubles, and what reads tables as doubles, count to there.
 constexpr std::uint64_t kMostShots = std::uint64_t{1} << 53;
 constexpr std::uint64_t kMostShards = 1000000;
-/// A thread takes more shots at once as long as they last less than this, so that the queue costs nothing beside them.
-constexpr std::chrono::milliseconds kBlockTime(2);
-constexpr std::uint64_t kMostAtOnce = 256;
-/// Largest number of finished rows that wait for an earlier one; it limits the memory.
-constexpr std::uint64_t kMostWaiting = 4096;
-constexpr std::chrono::milliseconds kFlushEvery(200);
+/// A block of shots grows until it takes this long: what a kill can lose, and how often the progress moves.
+constexpr std::chrono::milliseconds kBlockTime(100);
+/// [shots] Limits the memory of a block.
+constexpr std::uint64_t kLargestBlock = std::uint64_t{1} << 16;
 
 /// Shots `first` to `last - 1`.
 struct ShotRange {
@@ -70,129 +65,11 @@ ShotRange shard_range(const std::string& text, std::uint64_t count) {
     throw UsageError(fmt::format("--shard {}: expected I/N with 1 <= I <= N, as in 2/4", text));
 }
 
-/// Rows of consecutive shots.
-struct SweepRows {
-    std::string text;  ///< with their line ends
-    std::uint64_t shots = 0;
-    Outcomes outcomes{};
-
-    void append(SweepPlayer& player, std::uint64_t index) {
-        ++outcomes[static_cast<std::size_t>(player.append(index, text))];
-        ++shots;
-    }
-};
-
-/// What makes the rows; every thread reads it.
+/// What makes the rows.
 struct Sweep {
     const Variation& variation;
     kernel::Isa isa;
-
-    std::string row(std::uint64_t index) const {
-        SweepRows rows;
-        SweepPlayer player(variation, isa);
-        rows.append(player, index);
-        return rows.text;
-    }
-};
-
-/// Gives shot numbers to the threads that compute, and the rows in order to the thread that writes.
-class Queue {
-  public:
-    Queue(std::uint64_t first, std::uint64_t last) : next_(first), last_(last), wanted_(first) {}
-
-    struct Shots {
-        std::uint64_t first, last;
-    };
-    /// Up to `most` shots to run; nothing when all are taken or the sweep stops.
-    std::optional<Shots> claim(std::uint64_t most) {
-        std::unique_lock lock(mutex_);
-        room_.wait(lock, [&] { return stopped_ || next_ == last_ || next_ < wanted_ + kMostWaiting; });
-        if (stopped_ || next_ == last_) return std::nullopt;
-        const std::uint64_t first = next_;
-        next_ += std::min(most, last_ - next_);
-        return Shots{first, next_};
-    }
-
-    void put(std::uint64_t first, SweepRows rows) {
-        const std::lock_guard lock(mutex_);
-        rows_.emplace(first, std::move(rows));
-        if (first == wanted_) ready_.notify_one();
-    }
-
-    /// Rows that are ready and next in order; waits a tenth of a second for some.
-    std::vector<SweepRows> take() {
-        std::unique_lock lock(mutex_);
-        ready_.wait_for(lock, std::chrono::milliseconds(100),
-                        [&] { return stopped_ || rows_.count(wanted_) != 0; });
-        if (error_) std::rethrow_exception(error_);
-        std::vector<SweepRows> rows;
-        for (auto it = rows_.begin(); it != rows_.end() && it->first == wanted_; it = rows_.erase(it)) {
-            wanted_ += it->second.shots;
-            rows.push_back(std::move(it->second));
-        }
-        if (!rows.empty()) room_.notify_all();
-        return rows;
-    }
-
-    void stop(std::exception_ptr error) {
-        const std::lock_guard lock(mutex_);
-        if (!stopped_) error_ = std::move(error);
-        stopped_ = true;
-        room_.notify_all();
-        ready_.notify_one();
-    }
-
-  private:
-    std::mutex mutex_;
-    std::condition_variable room_, ready_;
-    std::map<std::uint64_t, SweepRows> rows_;  // by their first shot
-    std::uint64_t next_, last_, wanted_;
-    bool stopped_ = false;
-    std::exception_ptr error_;
-};
-
-/// Threads that run shots; the destructor waits for the shots that have begun.
-class Workers {
-  public:
-    Workers(Queue& queue, const Sweep& sweep, unsigned jobs) : queue_(queue) {
-        try {
-            for (unsigned i = 0; i < jobs; ++i)
-                threads_.emplace_back([&queue, &sweep] { work(queue, sweep); });
-        } catch (const std::exception& error) {  // the system gives no more threads
-            const std::size_t started = threads_.size();
-            finish();
-            throw std::runtime_error(
-                fmt::format("only {} of {} threads could be started ({}); use fewer with --jobs", started,
-                            jobs, error.what()));
-        }
-    }
-    ~Workers() { finish(); }
-    Workers(const Workers&) = delete;
-    Workers& operator=(const Workers&) = delete;
-
-  private:
-    static void work(Queue& queue, const Sweep& sweep) noexcept {
-        try {
-            SweepPlayer player(sweep.variation, sweep.isa);
-            std::uint64_t most = 1;
-            while (const auto shots = queue.claim(most)) {
-                const Clock::time_point start = Clock::now();
-                SweepRows rows;
-                for (std::uint64_t shot = shots->first; shot < shots->last; ++shot) rows.append(player, shot);
-                queue.put(shots->first, std::move(rows));
-                if (Clock::now() - start < kBlockTime && most < kMostAtOnce) most *= 2;
-            }
-        } catch (...) {
-            queue.stop(std::current_exception());
-        }
-    }
-    void finish() {
-        queue_.stop(nullptr);
-        for (std::thread& thread : threads_) thread.join();
-    }
-
-    Queue& queue_;
-    std::vector<std::thread> threads_;
+    int threads;
 };
 
 /// The k-th value of a row as it stands there; of quotes only what is between them counts.
@@ -232,7 +109,8 @@ std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRan
     const std::uint64_t rows = static_cast<std::uint64_t>(file.lines()) - (range.header ? 1 : 0);
     std::string expected;
     if (rows <= range.last - range.first)
-        expected = rows == 0 ? sweep_header(sweep.variation) : sweep.row(range.first + rows - 1);
+        expected = rows == 0 ? sweep_header(sweep.variation)
+                             : play_rows(sweep.variation, range.first + rows - 1, 1, sweep.isa).text;
     if (!there.in_order || expected != file.last_line() + '\n')
         throw std::runtime_error(fmt::format("{}: {} not what this program computes; remove it to begin anew",
                                              file.name(),
@@ -242,37 +120,48 @@ std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRan
     return range.first + rows;
 }
 
-/// Runs the shots from `from` on and writes their rows.
+/// Runs the shots from `from` on, block by block, and writes their rows. The next block is played while one is waited for and
+/// written, so that no thread stands idle.
 Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& range, std::uint64_t from,
-                    unsigned jobs, SweepStatus& status) {
+                    SweepStatus& status) {
     Outcomes outcomes{};
-    Queue queue(from, range.last);
     ProgressLine line("sweep");
-    Clock::time_point flushed = Clock::now();
-    const Workers workers(queue, sweep, jobs);
+    auto block = 2 * static_cast<std::uint64_t>(sweep.threads);
+    std::uint64_t begun = from;
+    std::future<SweepRows> next;
+    const auto begin_next = [&] {
+        const std::uint64_t first = begun, shots = std::min(block, range.last - begun);
+        begun += shots;
+        next = std::async(std::launch::async, [&sweep, first, shots] {
+            return play_rows(sweep.variation, first, static_cast<std::size_t>(shots), sweep.isa,
+                             sweep.threads);
+        });
+    };
+    if (begun < range.last) begin_next();
     for (std::uint64_t done = from; done < range.last;) {
-        throw_if_interrupted();
-        for (const SweepRows& rows : queue.take()) {
-            file.append(rows.text);
-            for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += rows.outcomes[i];
-            done += rows.shots;
-        }
-        if (Clock::now() - flushed >= kFlushEvery) {
-            file.flush();
-            flushed = Clock::now();
-        }
+        const Clock::time_point start = Clock::now();
+        const std::uint64_t last = begun;
+        std::future<SweepRows> ready = std::exchange(next, {});
+        if (begun < range.last) begin_next();
+        const SweepRows rows = ready.get();
+        file.append(rows.text);
+        file.flush();
+        for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += rows.outcomes[i];
+        done = last;
+        if (Clock::now() - start < kBlockTime && block < kLargestBlock) block *= 2;
         status.show(done, outcomes);
         line.show_bar(static_cast<long>(done - range.first), static_cast<long>(range.last - range.first));
     }
     return outcomes;
 }
 
-std::string summary(const Outcomes& outcomes, const SweepArgs& args, unsigned jobs, double seconds) {
+std::string summary(const Outcomes& outcomes, const SweepArgs& args, int jobs, double seconds) {
     std::uint64_t shots = 0;
     for (const std::uint64_t n : outcomes) shots += n;
     std::string text =
         fmt::format("{}: {} in {:.2f} s on {}, {:.0f} a second\n", args.output, counted(shots, "shot"),
-                    seconds, counted(jobs, "thread"), static_cast<double>(shots) / std::max(seconds, 1e-9));
+                    seconds, counted(static_cast<std::size_t>(jobs), "thread"),
+                    static_cast<double>(shots) / std::max(seconds, 1e-9));
     for (int i = 0; i < kShotStatuses; ++i) {
         const std::uint64_t n = outcomes[i];
         if (n > 0) text += fmt::format("  {:<8}{:>10}\n", name(static_cast<ShotStatus>(i)), n);
@@ -303,19 +192,23 @@ int run(const SweepArgs& args) {
         throw UsageError(fmt::format(
             "-o {}: this file is there, perhaps of another shard; give each its own, or remove it",
             args.output));
-    const Sweep sweep{variation, isa};
+    const int jobs =
+        args.jobs > 0 ? args.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    const Sweep sweep{variation, isa, jobs};
     RowsThere there;
     PartialFile file(args.output, id,
                      [&](long number, std::string_view row) { there.see(sweep, range, number, row); });
     const std::uint64_t from = take_up(file, sweep, range, there);
     if (range.header && file.lines() == 0) file.append(sweep_header(sweep.variation));
-    const unsigned jobs =
-        args.jobs > 0 ? static_cast<unsigned>(args.jobs) : std::max(1u, std::thread::hardware_concurrency());
     const Clock::time_point start = Clock::now();
     Outcomes outcomes{};
     SweepStatus status(args.status, args.output, range.first, range.last, from);
     try {
-        outcomes = write_rows(file, sweep, range, from, jobs, status);
+        outcomes = write_rows(file, sweep, range, from, status);
+    } catch (const std::system_error& error) {
+        throw std::runtime_error(fmt::format("not all of {} could be started ({}); use fewer with --jobs",
+                                             counted(static_cast<std::size_t>(jobs), "thread"),
+                                             error.what()));
     } catch (const Interrupted&) {
         file.flush();
         status.end("stopped");

@@ -12,6 +12,7 @@
 #include "base/margin.h"
 #include "base/options.h"
 #include "base/setup.h"
+#include "carom/engine/printable.h"
 #include "page/shot_page.h"
 #include "report/margin_chart.h"
 #include "report/table.h"
@@ -24,7 +25,7 @@ using Json = nlohmann::ordered_json;
 struct ViewArgs {
     std::string input, second;  ///< a scene, or a record (.json); `second` may be empty
     std::string output = "shot.html";
-    std::string gl = "osmesa";
+    std::string gl = "auto";
     bool margin = true;
 };
 
@@ -43,7 +44,7 @@ MeasuredShot measured_scene(const ViewArgs& args) {
     runs.push_back(one_run(plan, &drawn, settings.fps, "the margin of every frame:"));
     Margin margin = combine(runs, settings.fps, true);
     margin.size = settings.size();
-    Json chart = margin_chart(margin, runs.front(), args.input);
+    Json chart = margin_chart(margin, runs.front(), harmless(args.input));
     return {std::move(runs.front().record), std::move(chart)};
 }
 
@@ -63,7 +64,7 @@ MeasuredShot read_record_shot(const ViewArgs& args) {
     const double fps = record.render.fps;
     runs.front().frames = costs_by_frame(record, 0.0, fps, checked_frame_count(0.0, record.duration, fps));
     for (const FrameCost& frame : runs.front().frames) add_simulation(runs.front(), frame);
-    Json chart = margin_chart(combine(runs, fps, false), runs.front(), args.input);
+    Json chart = margin_chart(combine(runs, fps, false), runs.front(), harmless(args.input));
     return {std::move(record), std::move(chart)};
 }
 
@@ -80,9 +81,9 @@ int run(const ViewArgs& args) {
     const MeasuredShot shot = first_shot(args);
     std::optional<Record> second;
     if (!args.second.empty()) second = read_shot(args.second, {});
-    const std::string title = second ? args.input + " and " + args.second : args.input;
+    const std::string title = harmless(second ? args.input + " and " + args.second : args.input);
     const std::string html = shot_page(shot.record, second ? &*second : nullptr, shot.margin,
-                                       {title, command_line(), program_version()});
+                                       {title, harmless(command_line()), program_version()});
     write_report(args.output, html);
     print(fmt::format("{}: {}, {} kB\n", args.output, shot_lead(shot.record), (html.size() + 500) / 1000));
     return kOk;

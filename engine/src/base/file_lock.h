@@ -1,0 +1,27 @@
+// Keeps two programs from writing the same files.
+#pragma once
+
+#include <string>
+
+namespace carom {
+
+/// Locks an open file that `name` names, for itself. Every failure is a std::runtime_error that begins with the name.
+void lock_file(int fd, const std::string& name);
+
+/// Files that a program works on, as long as it lives: an empty file beside them, which is removed at the end. One that a killed
+/// program left is taken over.
+class FileLock {
+  public:
+    /// @param alone  false: others that are not alone may work on the files too
+    /// @throws std::runtime_error that names the file, also where another program has the lock
+    FileLock(std::string name, bool alone);
+    ~FileLock();
+    FileLock(const FileLock&) = delete;
+    FileLock& operator=(const FileLock&) = delete;
+
+  private:
+    std::string name_;
+    int fd_ = -1;
+};
+
+}  // namespace carom

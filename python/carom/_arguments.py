@@ -1,0 +1,143 @@
+"""What callers may give: public functions say so in their annotations, and `checked` holds callers to that."""
+
+from __future__ import annotations
+
+import ast
+import functools
+import os
+import reprlib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from types import FunctionType
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+
+_Public = TypeVar("_Public")
+
+
+class ArgumentError(TypeError, ValueError):
+    """An argument of the wrong type. It is a ValueError besides, since that is what callers have caught."""
+
+
+class _Kind(NamedTuple):
+    words: str
+    takes: Callable[[Any], bool]
+
+
+def _is(*types: type) -> Callable[[Any], bool]:
+    return lambda value: isinstance(value, types)
+
+
+def _is_numbers(value: Any) -> bool:
+    if value is None or isinstance(value, (str, bytes)):
+        return False
+    try:
+        array = np.asarray(value)
+        return (array.astype(np.float64) if array.dtype.kind == "O" else array).dtype.kind in "biuf"
+    except (TypeError, ValueError):  # lists of different lengths, or no numbers
+        return False
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, (Sequence, np.ndarray)) and not isinstance(value, (str, bytes))
+
+
+_ANY = _Kind("anything", lambda value: True)
+_KINDS = {
+    "Any": _ANY,
+    "object": _ANY,
+    "Observation": _ANY,
+    "bool": _Kind("a truth value", _is(bool, np.bool_)),
+    "int": _Kind("a whole number", _is(int, np.integer)),
+    "float": _Kind("a number", _is(int, float, np.integer, np.floating)),
+    "str": _Kind("a text", _is(str)),
+    "Literal": _Kind("a text", _is(str)),
+    "PathLike": _Kind("a path", _is(os.PathLike)),
+    "Callable": _Kind("a function", callable),
+    "Mapping": _Kind("a mapping", _is(Mapping)),
+    "dict": _Kind("a dict", _is(dict)),
+    "Sequence": _Kind("a list", _is_list),
+    "tuple": _Kind("a list", _is_list),
+    "Iterable": _Kind("a list", lambda value: isinstance(value, Iterable) and not isinstance(value, (str, bytes, Mapping))),
+    "ArrayLike": _Kind("an array of numbers", _is_numbers),
+    "NDArray": _Kind("an array of numpy", _is(np.ndarray)),
+}
+
+
+def _either(one: _Kind, other: _Kind) -> _Kind:
+    return _ANY if _ANY in (one, other) else _Kind(f"{one.words} or {other.words}", lambda value: one.takes(value) or other.takes(value))
+
+
+def _named(name: str) -> _Kind:
+    """Of a class by its name: who imports it need not be imported here."""
+    return _Kind(f"{'an' if name[0] in 'AEIOU' else 'a'} {name}", lambda value: any(base.__name__ == name for base in type(value).__mro__))
+
+
+def _with_items(whole: _Kind, inner: _Kind, count: int | None) -> _Kind:
+    def takes(value: Any) -> bool:
+        # What can be read only once is not read here.
+        return whole.takes(value) and count in (None, len(value)) and (isinstance(value, Iterator) or all(map(inner.takes, value)))
+
+    return _Kind(f"{whole.words}{'' if count is None else f' of {count}'} with {inner.words} in each place", takes)
+
+
+def _kind(annotation: ast.expr) -> _Kind:
+    match annotation:
+        case ast.Constant(value=None):
+            return _Kind("None", lambda value: value is None)
+        case ast.BinOp(left=left, right=right):
+            return _either(_kind(left), _kind(right))
+        case ast.Subscript(value=ast.Name(id="Sequence" | "Iterable" as name), slice=inner):
+            return _with_items(_KINDS[name], _kind(inner), None)
+        case ast.Subscript(value=ast.Name(id="tuple"), slice=ast.Tuple(elts=[inner, *_] as items)):
+            return _with_items(_KINDS["tuple"], _kind(inner), len(items))
+        case ast.Subscript(value=whole):
+            return _kind(whole)
+        case ast.Attribute(attr=name) | ast.Name(id=name):
+            return _named(name) if name not in _KINDS else _KINDS[name]
+    return _ANY
+
+
+def may_be(alias: str, annotation: str) -> None:
+    """From now on `alias` in annotations stands for another one."""
+    _KINDS[alias] = _kind(ast.parse(annotation, mode="eval").body)
+
+
+def _checked(function: Any) -> Callable[..., Any]:
+    code = function.__code__
+    names = code.co_varnames[: code.co_argcount]
+    kinds: dict[str, _Kind] = {}
+    others = _ANY  # of **names
+
+    def read() -> None:
+        nonlocal kinds, others
+        kinds = {name: _kind(ast.parse(text, mode="eval").body) for name, text in function.__annotations__.items() if name != "return"}
+        if code.co_flags & 0x08:
+            others = kinds[code.co_varnames[code.co_argcount + code.co_kwonlyargcount]]
+
+    @functools.wraps(function)
+    def call(*arguments: Any, **named: Any) -> Any:
+        if not kinds:
+            read()
+        for name, value in (*zip(names, arguments), *named.items()):
+            kind = kinds.get(name, _ANY if name == "self" else others)
+            if not kind.takes(value):
+                words = kind.words.replace(" or ", ", ", kind.words.count(" or ") - 1)
+                raise ArgumentError(f"{name}: expected {words}, not {reprlib.repr(value)} ({type(value).__name__})")
+        return function(*arguments, **named)
+
+    return call
+
+
+def checked(of: _Public) -> _Public:
+    """A public function, or a class with its public methods, that raises ArgumentError for an argument that its annotation does not have."""
+    if not isinstance(of, type):
+        return _checked(of)  # type: ignore[return-value]
+    for name, part in list(vars(of).items()):
+        if name.startswith("_") and name != "__init__":
+            continue
+        if isinstance(part, FunctionType):
+            setattr(of, name, _checked(part))
+        elif isinstance(part, (classmethod, staticmethod)):
+            setattr(of, name, type(part)(_checked(part.__func__)))
+    return of

@@ -1,0 +1,52 @@
+// How a table and its balls look, for all that paint them. The build makes the same constants, with the same names, for the
+// shaders and for the pages (render/look.cmake), so each stands on a line of its own. A colour is a screen value: its square is
+// the radiance that is reflected.
+#pragma once
+
+#include <array>
+
+namespace carom::render::look {
+
+using Color = std::array<double, 3>;
+
+inline constexpr Color kCloth{0.055, 0.50, 0.345};
+inline constexpr Color kWoodDark{0.23, 0.105, 0.055};
+inline constexpr Color kWoodLight{0.44, 0.225, 0.115};
+inline constexpr Color kLeather{0.17, 0.13, 0.11};
+inline constexpr Color kTrim{0.19, 0.175, 0.165};
+inline constexpr Color kInlay{0.88, 0.85, 0.76};
+inline constexpr Color kFloor{0.16, 0.145, 0.135};
+/// [-] How much more of the light the cloth of a cushion reflects.
+inline constexpr double kCushionGain = 1.12;
+/// [-] What chalk reflects.
+inline constexpr double kChalk = 0.75;
+
+// Surfaces that are shaded by others, in one colour each: the mean of what is painted here.
+inline constexpr Color kPlainCushion{0.058, 0.53, 0.365};
+inline constexpr Color kPlainWood{0.35, 0.176, 0.091};
+inline constexpr Color kPlainPocket{0.12, 0.092, 0.078};
+inline constexpr Color kPlainChalk{0.45, 0.62, 0.54};
+
+// Balls; their own colours are those of ball_style().
+inline constexpr Color kIvory{0.95, 0.93, 0.86};
+inline constexpr Color kRedDot{0.72, 0.05, 0.07};
+inline constexpr Color kPaleDot{0.93, 0.90, 0.82};
+/// [-] What a digit reflects, and as a screen value.
+inline constexpr double kInk = 0.012;
+inline constexpr double kInkOnScreen = 0.11;
+/// [-] From this luminance on a ball is bright: its dots are red.
+inline constexpr double kBright = 0.3;
+/// [-] How much white is in the second half of a ball of two halves.
+inline constexpr double kPaleHalf = 0.65;
+/// [radii] Half the width of a stripe; the ivory disc behind a number, the dots, and the one that is larger.
+inline constexpr double kStripe = 0.60;
+inline constexpr double kSpot = 0.52;
+inline constexpr double kDot = 0.17;
+inline constexpr double kLargeDot = 0.34;
+
+/// Of a ball that reflects so much red, green and blue [-].
+inline bool is_bright(float r, float g, float b) {
+    return 0.3F * r + 0.6F * g + 0.1F * b > static_cast<float>(kBright);
+}
+
+}  // namespace carom::render::look

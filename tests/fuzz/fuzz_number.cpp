@@ -1,0 +1,72 @@
+// Any text as a number, wherever a scene or a rule takes one: it is refused, or it is the number that the text says.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "carom/engine/variation.h"
+
+namespace {
+
+const std::string kScene =
+    "[table]\npreset = \"nine_foot\"\n[rack]\ngame = \"eight_ball\"\njitter = 0.001\nseed = "
+    "0\n[[ball]]\nposition = [0.6, "
+    "0.5]\n"
+    "[cue]\nspeed = 1\n";
+
+void expect(bool holds) {
+    if (!holds) std::abort();
+}
+
+/// As a number: the nearest double of the digits, and of an integer no other one.
+void check_number(double got, const std::string& text) {
+    expect(got == std::strtod(text.c_str(), nullptr));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string text(reinterpret_cast<const char*>(data), size);
+    // Digits, a sign, a point and an exponent mean the same to strtod.
+    if (size > 400 || text.find_first_not_of("+-.0123456789eE") != text.npos) return 0;
+    for (const char* const key : {"gravity", "tolerance"}) {
+        try {
+            const carom::Scene scene =
+                carom::parse_scene(kScene + "[physics]\n" + key + " = " + text, "n.toml");
+            check_number(key[0] == 'g' ? scene.physics.gravity : scene.physics.tolerance, text);
+        } catch (const carom::SceneError& error) {
+            // An integer is named with its digits; toml++ names those that it cannot hold.
+            const bool whole = size < 100 && text.find_first_of("123456789") == 0 &&
+                               text.find_first_not_of("0123456789") == text.npos;
+            expect(!whole || error.message().find(text) != text.npos);
+        }
+    }
+    try {
+        const carom::Scene scene = carom::parse_scene(kScene + "[stop]\nevents = " + text, "n.toml");
+        expect(*scene.stop.events == std::strtoll(text.c_str(), nullptr, 10));
+    } catch (const carom::SceneError&) {
+    }
+    for (const std::string rule :
+         {"cue.speed=list(" + text + ")", "cue.speed=uniform(" + text + "," + text + ")",
+          "cue.speed=normal(" + text + ",0)", "rack.seed=list(" + text + ")",
+          "rack.seed=integer(" + text + "," + text + ")"}) {
+        try {
+            const carom::Variation rules = carom::Variation::from_text(kScene, "n.toml", {rule}, 1);
+            const carom::VariedShot shot = rules.shot(0);
+            if (rule[0] == 'c') check_number(shot.scene->cue->speed, text);
+            // What a batch sets without the file is what the file gives.
+            carom::Scene quick = rules.base();
+            std::vector<std::string> values;
+            if (!rules.put(0, quick, values)) continue;
+            expect(quick.cue->speed == shot.scene->cue->speed);
+            for (std::size_t i = 0; i < quick.ball.size(); ++i)
+                expect(quick.ball[i].position == shot.scene->ball[i].position);
+        } catch (const carom::SceneError&) {
+        } catch (const carom::VariationError&) {
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,85 @@
+#include "commands/sweep/rows.h"
+
+#include <future>
+#include <string_view>
+#include <vector>
+
+#include "base/console.h"
+#include "report/table.h"
+
+namespace carom::tools {
+namespace {
+
+/// The value of one column and shot. What a shot without a result has not is empty.
+void append_value(std::string& row, const SweepColumn& column, const ColumnValues& values, std::size_t shot,
+                  bool has_result) {
+    if (column.of_result && !has_result)
+        row += ',';
+    else if (column.kind == ValueKind::kNumber)
+        append_csv(row, values.numbers[shot]);
+    else if (column.kind == ValueKind::kWhole)
+        append_csv(row, values.wholes[shot]);
+    else
+        append_csv(row, std::string_view(values.texts[static_cast<std::size_t>(values.places[shot])]));
+}
+
+}  // namespace
+
+std::string sweep_header(const Variation& variation) {
+    std::vector<Cell> cells;
+    for (const SweepColumn& column : sweep_columns(variation)) cells.emplace_back(column.name);
+    return csv_line(cells);
+}
+
+SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa) {
+    BatchOptions options;
+    options.threads = 1;
+    options.stop = [] { return interrupted(); };
+    Batch batch(shots, variation.base().ball.size());
+    std::vector<std::string> draws;
+    try {
+        batch.messages = simulate_many(variation, first, shots, isa, options, batch.arrays(), draws);
+    } catch (const BatchStopped&) {
+        throw Interrupted();
+    }
+    const std::vector<SweepColumn> columns = sweep_columns(variation);
+    const std::vector<ColumnValues> values =
+        sweep_values(variation, first, shots, draws, batch.arrays(), batch.messages);
+    const std::size_t keys = variation.keys().size();
+    SweepRows rows;
+    for (std::size_t shot = 0; shot < shots; ++shot) {
+        ++rows.outcomes[static_cast<std::size_t>(batch.status[shot])];
+        for (std::size_t k = 0; k < columns.size(); ++k) {
+            // A key's value stands as it was drawn.
+            if (k >= 1 && k <= keys)
+                append_csv(rows.text, std::string_view(draws[shot * keys + k - 1]));
+            else
+                append_value(rows.text, columns[k], values[k], shot, has_result(batch.status[shot]));
+        }
+        rows.text.back() = '\n';
+    }
+    return rows;
+}
+
+SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa,
+                    int threads) {
+    const auto parts = static_cast<std::size_t>(threads);
+    std::vector<std::future<SweepRows>> played;
+    for (std::size_t i = 0; i < parts; ++i) {
+        const std::size_t from = shots * i / parts, to = shots * (i + 1) / parts;
+        if (to > from)
+            played.push_back(
+                std::async(std::launch::async, [&variation, isa, begin = first + from, count = to - from] {
+                    return play_rows(variation, begin, count, isa);
+                }));
+    }
+    SweepRows rows;
+    for (std::future<SweepRows>& part : played) {
+        const SweepRows more = part.get();
+        rows.text += more.text;
+        for (std::size_t i = 0; i < rows.outcomes.size(); ++i) rows.outcomes[i] += more.outcomes[i];
+    }
+    return rows;
+}
+
+}  // namespace carom::tools
