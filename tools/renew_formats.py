@@ -1,36 +1,26 @@
 #!/usr/bin/env python3
-"""Writes anew what docs/ says about file formats and the command line from the program's own tables:
-docs/reference/command_line.md, docs/reference/scene.schema.json, docs/reference/record.schema.json, and the tables of docs/reference/scene_format.md between the marks <!-- begin NAME --> and <!-- end NAME -->.
+"""Writes what the program prints of its file formats and command line into docs/reference.
+
+The program has scene_format.md as it was built, and puts its tables in; so build it behind every change of that page.
 
     cmake --build --preset release --target carom_program
     tools/renew_formats.py [BUILD_FOLDER]
 """
 import pathlib
-import re
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release") / "carom"
+PAGES = {"command-line": "command_line.md", "scene-schema": "scene.schema.json", "record-schema": "record.schema.json",
+         "scene-format": "scene_format.md"}
 
-
-def describe(what):
-    return subprocess.run([PROGRAM, "describe", what], check=True, capture_output=True, text=True).stdout
-
-
-def main():
-    (ROOT / "docs/reference/command_line.md").write_text(describe("command-line"))
-    (ROOT / "docs/reference/scene.schema.json").write_text(describe("scene-schema"))
-
-    (ROOT / "docs/reference/record.schema.json").write_text(describe("record-schema"))
-
-    path = ROOT / "docs/reference/scene_format.md"
-    page = path.read_text()
-    for block, name in re.findall(r"(<!-- begin (\w+) -->.*?<!-- end \2 -->)", describe("scene-format"), re.S):
-        page, found = re.subn(rf"<!-- begin {name} -->.*?<!-- end {name} -->", lambda _: block, page, flags=re.S)
-        if found != 1:
-            sys.exit(f"renew_formats: docs/reference/scene_format.md has the marks of {name} {found} times")
-    path.write_text(page)
-
-
-main()
+for what, name in PAGES.items():
+    path = ROOT / "docs/reference" / name
+    printed = subprocess.run([PROGRAM, "describe", what], check=True, capture_output=True, text=True).stdout
+    if printed == path.read_text():
+        continue
+    # A change that the program does not know yet would be lost.
+    if name == "scene_format.md" and path.stat().st_mtime > PROGRAM.stat().st_mtime:
+        sys.exit(f"renew_formats: {path.relative_to(ROOT)} is newer than {PROGRAM}; build carom_program first")
+    path.write_text(printed)

@@ -8,7 +8,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -205,11 +207,25 @@ std::string effects_lines() {
     return text;
 }
 
-std::string block(const char* name, const char* header, const std::string& lines) {
+/// A file that the build put into the program.
+std::string built_in(std::string_view name) {
+    for (const PageFile& file : describe_files())
+        if (file.name == name) return file.text;
+    throw std::logic_error(fmt::format("{} is not in the program", name));
+}
+
+/// Replaces what a page has between the marks of this name by a table.
+void put_table(std::string& page, const char* name, const char* header, const std::string& lines) {
+    const std::string begin = fmt::format("<!-- begin {} -->\n", name),
+                      end = fmt::format("<!-- end {} -->", name);
+    const std::size_t from = page.find(begin), to = page.find(end);
+    if (from == page.npos || to == page.npos || to < from)
+        throw std::logic_error(fmt::format("the page has no marks of the table {}", name));
     std::string rule = "|";
     for (std::size_t i = 1; header[i] != '\0'; ++i)
         if (header[i] == '|') rule += "---|";
-    return fmt::format("<!-- begin {} -->\n{}\n{}\n{}<!-- end {} -->\n", name, header, rule, lines, name);
+    const std::size_t first = from + begin.size();
+    page.replace(first, to - first, fmt::format("{}\n{}\n{}", header, rule, lines));
 }
 
 }  // namespace
@@ -264,27 +280,29 @@ std::string record_schema() {
                         {"/definitions/pocket", object_of(kPocketFields, {}, kRecord)},
                         {"/definitions/track/properties/radius", size["radius"]},
                         {"/definitions/track/properties/mass", size["mass"]}};
-    Json schema = Json::parse(describe_files().front().text);
+    Json schema = Json::parse(built_in("record.schema.json"));
     for (const auto& [pointer, part] : parts.items()) schema.at(Json::json_pointer(pointer)) = part;
     return schema.dump(2) + "\n";
 }
 
 std::string scene_format() {
     constexpr const char* kHeader = "| key | default | values | meaning |";
-    return block("table", kHeader, lines_of(kTableFields, make_table(kStandardTable))) +
-           block("outline", "| list | key | default | values | meaning |",
-                 lines_of(kCushionFields, {}, "`[[table.cushion]]`") +
-                     lines_of(kJawFields, {}, "`[[table.jaw]]`") +
-                     lines_of(kPocketFields, {}, "`[[table.pocket]]`")) +
-           block("balls", "| key | pool (default) | snooker | carom | values | meaning |", balls_lines()) +
-           block("ball", kHeader,
-                 lines_of(kBallStartFields, BallStart{}) + lines_of(kSizeFields, BallSize{})) +
-           block("rack", kHeader, lines_of(kRackFields, Rack{})) +
-           block("cue", kHeader, lines_of(kCueFields, Cue{})) +
-           block("physics", kHeader, lines_of(kPhysicsFields, Physics{})) +
-           block("effects", "| key | skipped when | keys it belongs to |", effects_lines()) +
-           block("stop", kHeader, lines_of(kStopFields, Stop{})) +
-           block("render", kHeader, lines_of(kRenderFields, RenderSettings{}));
+    std::string page = built_in("scene_format.md");
+    put_table(page, "table", kHeader, lines_of(kTableFields, make_table(kStandardTable)));
+    put_table(page, "outline", "| list | key | default | values | meaning |",
+              lines_of(kCushionFields, {}, "`[[table.cushion]]`") +
+                  lines_of(kJawFields, {}, "`[[table.jaw]]`") +
+                  lines_of(kPocketFields, {}, "`[[table.pocket]]`"));
+    put_table(page, "balls", "| key | pool (default) | snooker | carom | values | meaning |", balls_lines());
+    put_table(page, "ball", kHeader,
+              lines_of(kBallStartFields, BallStart{}) + lines_of(kSizeFields, BallSize{}));
+    put_table(page, "rack", kHeader, lines_of(kRackFields, Rack{}));
+    put_table(page, "cue", kHeader, lines_of(kCueFields, Cue{}));
+    put_table(page, "physics", kHeader, lines_of(kPhysicsFields, Physics{}));
+    put_table(page, "effects", "| key | skipped when | keys it belongs to |", effects_lines());
+    put_table(page, "stop", kHeader, lines_of(kStopFields, Stop{}));
+    put_table(page, "render", kHeader, lines_of(kRenderFields, RenderSettings{}));
+    return page;
 }
 
 }  // namespace carom::tools

@@ -8,7 +8,7 @@
 
 namespace carom::tools {
 
-/// record.schema.json, which the build puts into the program.
+/// record.schema.json beside this file, and docs/reference/scene_format.md as they were when the program was built.
 const std::vector<PageFile>& describe_files();
 
 /// A JSON Schema of scene files: docs/reference/scene.schema.json.
@@ -16,7 +16,8 @@ std::string scene_schema();
 /// A JSON Schema of record files: docs/reference/record.schema.json. Its fixed text stands beside this file, with null for what comes
 /// from the tables.
 std::string record_schema();
-/// The tables of docs/reference/scene_format.md, each between the marks <!-- begin NAME --> and <!-- end NAME -->.
+/// The page of scene files: docs/reference/scene_format.md, its tables between the marks <!-- begin NAME --> and <!-- end NAME -->
+/// written anew.
 std::string scene_format();
 
 }  // namespace carom::tools

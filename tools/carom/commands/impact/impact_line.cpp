@@ -76,14 +76,14 @@ constexpr struct {
     {"steps, ns", "steps of the kernel, and its time in nanoseconds"},
     {"error", "in place of an answer: what is wrong with the line"}};
 
-std::vector<std::string> wrapped_words(std::string text) {
+std::vector<std::string> words_of(std::string text) {
     std::istringstream in(std::move(text));
     return {std::istream_iterator<std::string>(in), {}};
 }
 
 /// Refuses a key that is not read: a misspelt key would silently give another result.
 void refuse_unknown(const Json& object, const std::string& known) {
-    const std::vector<std::string> names = wrapped_words(known);
+    const std::vector<std::string> names = words_of(known);
     for (const auto& item : object.items())
         if (std::find(names.begin(), names.end(), item.key()) == names.end())
             throw LineError(fmt::format("unknown key \"{}\"", item.key().substr(0, 40)));
