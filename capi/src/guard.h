@@ -49,7 +49,8 @@ carom_status made(T** out, Make&& make) {
     });
 }
 
-/// The instruction set in CAROM_ISA, or for every kernel the fastest one. @throws BadArgument if CAROM_ISA cannot be used here
+/// The instruction set in CAROM_ISA, or for every kernel the fastest
+/// one. @throws BadArgument if CAROM_ISA cannot be used here
 kernel::Isa chosen_isa();
 
 }  // namespace carom::c

@@ -22,12 +22,13 @@ namespace {
 using detail::cross;
 using detail::kDegrees;
 
-/// [-] Directions that are tried over the width of a pocket, before the ends of the widest run are looked for.
+/// [-] Directions that are tried over the width of a pocket,
+/// before the ends of the widest run are looked for.
 constexpr int kDirections = 144;
 /// [-] Halvings of the gap between a direction that enters and one that does not: to 1e-11 of it.
 constexpr int kHalvings = 36;
-/// [-] Cosine of the angle between a way and the middle of a pocket's mouth, beyond which a ball that rubs a facing is not expected to
-/// fall: 50 degrees. Along a rail into the corner it is 45.
+/// [-] Cosine of the angle between a way and the middle of a pocket's mouth, beyond which a ball that rubs a
+/// facing is not expected to fall: 50 degrees. Along a rail into the corner it is 45.
 constexpr double kSteepest = 0.643;
 /// [ball radii] A ball that lies against a cushion may run along it: the rounding of places.
 constexpr double kAlongCushion = 1e-9;
@@ -55,7 +56,8 @@ double way_to_circle(const Pocket& pocket, const Vec2& from, const Vec2& towards
     return std::max(0.0, along - std::sqrt(pocket.radius * pocket.radius - aside * aside));
 }
 
-/// The mouth of a pocket, from one jaw to the other: the two that are nearest to it. Nothing where there are none.
+/// The mouth of a pocket, from one jaw to the other: the two
+/// that are nearest to it. Nothing where there are none.
 std::optional<std::pair<Vec2, Vec2>> mouth_of(const Table& table, const Pocket& pocket) {
     if (table.jaws.size() < 2) return std::nullopt;
     std::vector<Vec2> jaws;
@@ -66,7 +68,8 @@ std::optional<std::pair<Vec2, Vec2>> mouth_of(const Table& table, const Pocket& 
     return std::pair(jaws[0], jaws[1]);
 }
 
-/// Way through the mouth of a pocket to the circle's edge or beside it; infinite where the line passes the mouth, or is too flat to it.
+/// Way through the mouth of a pocket to the circle's edge or beside it;
+/// infinite where the line passes the mouth, or is too flat to it.
 double way_through_mouth(const Table& table, const Pocket& pocket, const Vec2& from, const Vec2& towards) {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     const auto mouth = mouth_of(table, pocket);
@@ -86,7 +89,8 @@ double way_into(const Table& table, const Pocket& pocket, Goal goal, const Vec2&
                                  : way_through_mouth(table, pocket, from, towards);
 }
 
-/// Whether a cushion is the facing of a pocket: an end of it lies behind the noses. What rubs there still falls.
+/// Whether a cushion is the facing of a pocket: an end of
+/// it lies behind the noses. What rubs there still falls.
 bool is_facing(const Table& table, const Cushion& cushion) {
     const auto behind = [&](const Vec2& end) {
         const Vec2 in = end - table.corner;
@@ -134,8 +138,8 @@ double edge(double in, double out, const Enters& enters_at) {
 double direction_deg(const Vec2& direction) {
     const double size = std::sqrt(direction.x() * direction.x() + direction.y() * direction.y());
     if (!(size > 0.0)) return size;
-    // Of the cosine and the sine the smaller one says the angle: there the arc cosine is as exact as its argument. Below 1e-154
-    // squares lose digits, and a quotient may pass 1.
+    // Of the cosine and the sine the smaller one says the angle: there the arc cosine is as exact as its
+    // argument. Below 1e-154 squares lose digits, and a quotient may pass 1.
     const double cosine = std::clamp(direction.x() / size, -1.0, 1.0),
                  sine = std::clamp(direction.y() / size, -1.0, 1.0);
     if (std::abs(direction.x()) <= std::abs(direction.y()))

@@ -34,7 +34,8 @@ constexpr int kBankAims = 240;
 
 /// What one strike does to the ball that is to fall.
 struct Played {
-    /// Sine of the angle by which it leaves the wanted direction, to the left is positive; nothing where the strike misses
+    /// Sine of the angle by which it leaves the wanted direction,
+    /// to the left is positive; nothing where the strike misses
     std::optional<double> off;
     bool potted = false;  ///< in the wanted pocket
     int cushion = -1;     ///< the only cushion that it met before, or -1
@@ -97,7 +98,8 @@ std::string missed(const Record& record, const Shot& shot, int ball) {
     return "";
 }
 
-/// The first thing that stops a ball from running straight on after `time`: a cushion, a ball, a pocket, or its rest.
+/// The first thing that stops a ball from running straight on
+/// after `time`: a cushion, a ball, a pocket, or its rest.
 const Event* next_stop(const Record& record, int ball, double time) {
     for (const Event& e : record.events) {
         const EventKind& of = kind(e.type);
@@ -197,7 +199,8 @@ double half_view_deg(const Player& player) {
     return 90.0 - arc_cos(std::min(1.0, player.both() / distance)) * kDegrees;
 }
 
-/// By how much a cue ball that misses leaves its way to the ghost ball, by squirt and swerve [degrees], left is positive.
+/// By how much a cue ball that misses leaves its way to the ghost
+/// ball, by squirt and swerve [degrees], left is positive.
 double strays_deg(const Player& player, const Record& record, const Vec2& ghost) {
     const Vec2 way = ghost - player.cue_place();
     const int cue_ball = shot_of(record).struck;
@@ -239,14 +242,16 @@ Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::stri
         aim.why = played.why;
         return played.off;
     };
-    // Squirt and swerve may lead the cue ball past the ball altogether: by as much as it strays the aim goes the other way.
+    // Squirt and swerve may lead the cue ball past the ball
+    // altogether: by as much as it strays the aim goes the other way.
     Tried start = {aim.geometric_deg, 0.0};
     std::optional<double> first = play(start.aim_deg);
     for (int k = 0; k < kCorrections && !first; ++k) {
         start.aim_deg -= strays_deg(player, player.play(start.aim_deg), ghost);
         first = play(start.aim_deg);
     }
-    // A ball that runs too far to the left is met too far on its right: the aim goes left, in steps that double.
+    // A ball that runs too far to the left is met too far on
+    // its right: the aim goes left, in steps that double.
     if (first) {
         start.off = *first;
         Tried a = start, b = a;

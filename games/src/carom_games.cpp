@@ -13,8 +13,8 @@ namespace {
 constexpr int kCushions = 3;
 const std::string kRed = "red";
 
-/// Where a ball of three-cushion comes back for the player who shoots next: the red on the foot spot, the cue ball on the head
-/// spot, the other one in the middle.
+/// Where a ball of three-cushion comes back for the player who shoots next: the red
+/// on the foot spot, the cue ball on the head spot, the other one in the middle.
 Vec2 own_spot(const Table& table, const std::string& ball, int shooter) {
     if (ball == kRed) return foot_spot(table);
     return ball == own_ball(shooter) ? head_spot(table) : center_spot(table);
@@ -138,7 +138,8 @@ Verdict judge_sum_to_three(const Facts& facts) {
     std::vector<Foul> fouls;
     if (!facts.shot.out.empty()) fouls.push_back(Foul::kBallOff);
     const bool point = fouls.empty() && !facts.shot.first_hits.empty() && cushions == kCushions;
-    // The game says nothing of balls that are gone: the cue ball comes back behind the head spot, the other one behind the foot spot.
+    // The game says nothing of balls that are gone: the cue ball comes
+    // back behind the head spot, the other one behind the foot spot.
     Option next = {Decision::kPlayOn, after(facts.state, point), {}};
     for (int ball = 0; ball < static_cast<int>(facts.record.tracks.size()); ++ball) {
         if (!facts.shot.gone(ball)) continue;

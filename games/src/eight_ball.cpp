@@ -17,7 +17,8 @@ Group group_of(std::string_view ball) {
     return number >= 9 && number <= 15 ? Group::kStripes : Group::kOpen;
 }
 
-/// What a player shoots at: the own group, any ball but the eight while the table is open, and the eight when they are gone.
+/// What a player shoots at: the own group, any ball but the eight
+/// while the table is open, and the eight when they are gone.
 std::vector<std::string> targets(const State& state, const std::vector<std::string>& balls) {
     const Group own = state.group[static_cast<std::size_t>(state.turn)];
     std::vector<std::string> list;

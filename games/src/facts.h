@@ -30,13 +30,16 @@ class Facts {
     /// Whether the call names this ball and the pocket that holds it.
     bool fell_as_called() const;
     bool struck(std::string_view ball) const { return id(shot.struck) == ball; }
-    /// Whether one of the balls that are met first is in the list: where two are met at once, the shooter has the benefit.
+    /// Whether one of the balls that are met first is in the list:
+    /// where two are met at once, the shooter has the benefit.
     bool first_is_one_of(const std::vector<std::string>& ids) const;
     std::vector<std::string> ids() const;  ///< of all balls that were on the table
-    /// The balls that lie on the table at the end, without `left_out`. The cue ball keeps `cue_gap`, the others `gap` away.
+    /// The balls that lie on the table at the end, without `left_out`.
+    /// The cue ball keeps `cue_gap`, the others `gap` away.
     std::vector<Lying> lying(double cue_gap, double gap, const std::vector<std::string>& left_out = {}) const;
 
-    /// Adds the fouls that all pool games know: cue ball gone, wrong ball first, nothing hit, no cushion, ball off, placement.
+    /// Adds the fouls that all pool games know: cue ball gone, wrong
+    /// ball first, nothing hit, no cushion, ball off, placement.
     void add_pool_fouls(std::vector<Foul>& fouls, const std::vector<std::string>& first,
                         bool need_cushion) const;
 

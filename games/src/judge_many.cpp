@@ -28,7 +28,8 @@ Call lucky_call(const State& state, const Record& record) {
     return {};
 }
 
-/// Judges a shot into its row of the arrays. @param base  the scene with all balls; the shot may be without some of them
+/// Judges a shot into its row of the arrays. @param base  the scene with all balls; the shot may be without
+/// some of them
 void judge_row(Game game, const Scene& base, std::size_t row, const Outcome& outcome, const Record& record,
                const JudgedArrays& to) {
     const State before = state_of_turn(game, static_cast<Group>(to.group[row]));

@@ -19,7 +19,8 @@ bool is_back(const Option& option, const std::string& ball) {
                        [&](const Respot& r) { return r.ball == ball; });
 }
 
-/// The ball of an option. @throws std::invalid_argument where the record has none: the option is of another one
+/// The ball of an option. @throws std::invalid_argument
+/// where the record has none: the option is of another one
 int ball_of(const Record& record, const std::string& id) {
     const int index = index_of(record, id);
     if (index < 0)

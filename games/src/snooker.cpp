@@ -1,4 +1,5 @@
-// Snooker by the World Professional Billiards and Snooker Association, section 3. Misses, which a referee judges, are not.
+// Snooker by the World Professional Billiards and Snooker
+// Association, section 3. Misses, which a referee judges, are not.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -143,7 +144,8 @@ int Stroke::points() const {
     return points;
 }
 
-/// Colours come back, but for the one that is on in its turn and falls fairly. Those whose own spots are free first, then the highest.
+/// Colours come back, but for the one that is on in its turn and falls
+/// fairly. Those whose own spots are free first, then the highest.
 std::vector<Respot> Stroke::respots() const {
     const BallOn on = facts_.state.on;
     std::vector<std::string> back;
@@ -171,7 +173,8 @@ BallOn Stroke::next_on(const std::vector<std::string>& on_table) const {
     return facts_.state.on == BallOn::kRed && points() > 0 ? BallOn::kColour : lowest_on(on_table);
 }
 
-/// Whether the cue ball is snookered at the end: no ball on can be hit at both edges. In hand: from no place of a lattice in the D.
+/// Whether the cue ball is snookered at the end: no ball on can be
+/// hit at both edges. In hand: from no place of a lattice in the D.
 bool is_snookered(const Facts& facts, const State& next, const std::vector<Respot>& respots,
                   const std::vector<std::string>& on_table) {
     const std::vector<std::string> on_ids = balls_on(next.on, on_table);
@@ -207,8 +210,8 @@ bool is_snookered(const Facts& facts, const State& next, const std::vector<Respo
     return true;
 }
 
-/// The frame ends with the first score or foul when only the black is left; with equal points the black comes back, and lots decide
-/// who plays it.
+/// The frame ends with the first score or foul when only the black is left;
+/// with equal points the black comes back, and lots decide who plays it.
 Verdict end_of_frame(const Facts& facts, const Stroke& stroke, State next) {
     Verdict verdict;
     verdict.fouls = stroke.fouls;

@@ -1,8 +1,9 @@
 // Seeded random impacts between equal balls, for the tests, the benchmark and the accuracy report.
 //
-// The impacts are a mixture of six kinds: ball 1 slides into a resting ball, it rolls into a resting ball, both balls
-// roll, both have strong spin (up to 200 rad/s), ball 1 only glances a resting ball, both slide. The ranges are
-// 0.01..0.12 for mu_b, 0.1..0.4 for mu_s of each ball, 0.8..1 for e_b, and about 0.05..8 m/s for the approach speed.
+// The impacts are a mixture of six kinds: ball 1 slides into a resting ball, it rolls into a resting ball,
+// both balls roll, both have strong spin (up to 200 rad/s), ball 1 only glances a resting ball, both slide.
+// The ranges are 0.01..0.12 for mu_b, 0.1..0.4 for mu_s of each ball, 0.8..1 for e_b, and about 0.05..8 m/s
+// for the approach speed.
 #pragma once
 
 #include <cmath>
@@ -16,9 +17,9 @@ namespace carom::reference {
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;  // in radians
 
-/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014), so that a seed means the same impacts with every standard library.
-/// The engine has a SplitMix64 of its own for racks: the kernel may not include the engine, and its public headers,
-/// which both may include, are no place for random numbers.
+/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014), so that a seed means the same impacts with every standard
+/// library. The engine has a SplitMix64 of its own for racks: the kernel may not include the engine, and its
+/// public headers, which both may include, are no place for random numbers.
 class Generator {
   public:
     explicit Generator(std::uint64_t seed) : state_(seed) {}
@@ -61,8 +62,8 @@ inline Impact random_impact(Generator& rng) {
     b2.r[0] = b1.r[0] + 2.0 * p.R * nx;
     b2.r[1] = b1.r[1] + 2.0 * p.R * ny;
     const double speed = 0.05 * std::pow(160.0, rng.uniform());
-    // The cut angle, from the line of centres to the direction of ball 1. In a glancing impact the approach speed is
-    // 1e-3..0.1 of the speed.
+    // The cut angle, from the line of centres to the direction of ball 1.
+    // In a glancing impact the approach speed is 1e-3..0.1 of the speed.
     const double cut =
         kind == kGlancing ? std::acos(std::pow(10.0, rng.uniform(-3.0, -1.0))) : rng.uniform(-1.4, 1.4);
     const double c = std::cos(cut), s = std::sin(cut);

@@ -1,14 +1,14 @@
-// s = (x, z) is the slip between the balls and u = (a, b) the slip of the active ball, which is pressed on the cloth,
-// as in docs/design/impact_kernel.md. The independent variable is q, with dp = |s| |u| dq for the normal impulse p per
-// unit mass: in q neither the end of the slip (|s| -> 0) nor a cloth slip that passes close to zero is singular. With
-// ' = d/dq,
+// s = (x, z) is the slip between the balls and u = (a, b) the slip of the active ball, which is pressed on
+// the cloth, as in docs/design/impact_kernel.md. The independent variable is q, with dp = |s| |u| dq for the
+// normal impulse p per unit mass: in q neither the end of the slip (|s| -> 0) nor a cloth slip that passes
+// close to zero is singular. With ' = d/dq,
 //
 //     x' = -7 mu_b x |u| + mu_s mu_b z a             a' = mu_b x |u| - kappa mu_s mu_b z a
-//     z' = -5 mu_b z |u| + 5/2 mu_s mu_b z b         b' = |s| |u| - 5/2 sigma mu_b z |u| - kappa mu_s mu_b z b
-//     p' = |s| |u|    v' = 2 p' - mu_s mu_b z b      W' = v p'    D' = mu_b |s| p' + mu_s mu_b z |u|^2
+//     z' = -5 mu_b z |u| + 5/2 mu_s mu_b z b         b' = |s| |u| - 5/2 sigma mu_b z |u| - kappa mu_s mu_b z
+//     b p' = |s| |u|    v' = 2 p' - mu_s mu_b z b      W' = v p'    D' = mu_b |s| p' + mu_s mu_b z |u|^2
 //
-// With masses m_1 and m_2 impulses are over twice the reduced mass m_r, and what acts on the pressed ball a alone has the factor
-// f = 2 m_r/m_a: all of a' and b', and the terms with mu_s in x', z' and v'.
+// With masses m_1 and m_2 impulses are over twice the reduced mass m_r, and what acts on the pressed ball a
+// alone has the factor f = 2 m_r/m_a: all of a' and b', and the terms with mu_s in x', z' and v'.
 //
 // and the friction impulses are integrals of their own: X' = mu_b x |u|, Z' = mu_b z |u|, A' = mu_s mu_b z a,
 // B' = mu_s mu_b z b.

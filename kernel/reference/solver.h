@@ -1,5 +1,5 @@
-// The reference solution with which the ball-ball kernels are compared: the impact of the 2014 model (physics.md
-// section 3) by power series in extended precision. It shares no code with the kernels.
+// The reference solution with which the ball-ball kernels are compared: the impact of the 2014 model
+// (physics.md section 3) by power series in extended precision. It shares no code with the kernels.
 #pragma once
 
 #include "carom/kernel/impact.h"

@@ -25,8 +25,8 @@ const Entry kEntries[] = {{"scalar", &scalar::kKernels}, {"v3", nullptr}, {"v4",
 #endif
 
 #if defined(__x86_64__)
-// By feature, because clang 14 does not know the names of the levels. What is not asked for here comes with these on
-// every processor.
+// By feature, because clang 14 does not know the names of the levels.
+// What is not asked for here comes with these on every processor.
 bool has_v3() {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
            __builtin_cpu_supports("bmi2");
@@ -59,8 +59,8 @@ bool has_v4() {
 }
 #endif
 
-// What was measured (lab/notes/2026-11-ladder.md): on this kind of processor, the fastest instruction set for each kernel, in the
-// order of KernelKind.
+// What was measured (lab/notes/2026-11-ladder.md): on this kind of processor,
+// the fastest instruction set for each kernel, in the order of KernelKind.
 struct Measured {
     const char* processor;
     bool (*is_this)();

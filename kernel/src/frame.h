@@ -7,7 +7,8 @@
 namespace carom::kernel {
 namespace {
 
-// Velocities in the contact frame of the 2014 paper: y points from centre 1 to centre 2, z points up, x = y x z.
+// Velocities in the contact frame of the 2014 paper: y
+// points from centre 1 to centre 2, z points up, x = y x z.
 struct FrameState {
     double v1x, v1y, w1x, w1y, w1z;
     double v2x, v2y, w2x, w2y, w2z;
@@ -17,11 +18,11 @@ struct Frame {
     double yx, yy;  // the horizontal unit vector y in table coordinates; x is (yy, -yx)
 };
 
-// Largest difference of the heights of the centres, as a share of their distance: the impact is planar. It leaves
-// room for the rounding of heights that are meant to be equal.
+// Largest difference of the heights of the centres, as a share of their distance: the impact is planar. It
+// leaves room for the rounding of heights that are meant to be equal.
 constexpr double kHeightTolerance = 1e-9;
-// Smallest approach speed [m/s], and smallest share of the sum of all speeds: below it the square of the approach
-// speed underflows in the work integral, and the balls count as not approaching (hard case H30).
+// Smallest approach speed [m/s], and smallest share of the sum of all speeds: below it the square of the
+// approach speed underflows in the work integral, and the balls count as not approaching (hard case H30).
 constexpr double kSlowestApproach = 1e-150;
 
 inline bool finite(const double (&a)[3]) {
@@ -37,10 +38,10 @@ inline bool finite(const Ball& a, const Ball& b) {
     return wrong[0] + wrong[1] + wrong[2] == 0.0;
 }
 
-// A cloth slip [m/s] up to this floor is rounding noise of the v and R w of a rolling ball. It has no direction, and
-// the step takes no cloth friction, as at a slip of exactly zero. The floor exists for the consistent sign only:
-// there rolling balls meet u = 0 as a rule, and two correct marches would otherwise differ by the friction of a whole
-// step. The published code has no such floor.
+// A cloth slip [m/s] up to this floor is rounding noise of the v and R w of a rolling ball. It has no
+// direction, and the step takes no cloth friction, as at a slip of exactly zero. The floor exists for the
+// consistent sign only: there rolling balls meet u = 0 as a rule, and two correct marches would otherwise
+// differ by the friction of a whole step. The published code has no such floor.
 inline double cloth_slip_floor(const FrameState& s, double R, int sign) {
     if (sign > 0) return 0.0;
     const double v = absolute(s.v1x) + absolute(s.v1y) + absolute(s.v2x) + absolute(s.v2y);
@@ -76,8 +77,8 @@ inline bool in_range(const ImpactParams& p) {
            p.e_b <= 1.0 && (kAnyMasses || p.mass_ratio == 1.0);
 }
 
-// Checks the input and projects it into the contact frame. Any status but kOk means that there is nothing to compute;
-// `out` then holds the input.
+// Checks the input and projects it into the contact frame. Any status but
+// kOk means that there is nothing to compute; `out` then holds the input.
 template <bool kAnyMasses = false>
 inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactParams& p, Frame& f,
                                 FrameState& s, ImpactResult& out) {

@@ -1,5 +1,5 @@
-// The few functions of one number that the kernels need. Files that are built for one instruction set include no std
-// templates (simd.h says why); everything here is inline and in an anonymous namespace.
+// The few functions of one number that the kernels need. Files that are built for one instruction set include
+// no std templates (simd.h says why); everything here is inline and in an anonymous namespace.
 #pragma once
 
 namespace carom::kernel {

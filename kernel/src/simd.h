@@ -1,17 +1,17 @@
 // Vectors of doubles: Pack<N> holds N of them, Mask<N> one truth value for each (all bits or none).
 //
-// Every operation acts on each lane by itself and is + - * / or a square root, each correctly rounded; a sum over
-// lanes has one written order. Therefore all instruction sets, compilers and optimisation levels give the same bits.
-// There is no fused multiply-add: plain x86-64 would have to emulate it in software, and it would save little,
-// because square roots and divisions dominate.
+// Every operation acts on each lane by itself and is + - * / or a square root, each correctly rounded; a sum
+// over lanes has one written order. Therefore all instruction sets, compilers and optimisation levels give
+// the same bits. There is no fused multiply-add: plain x86-64 would have to emulate it in software, and it
+// would save little, because square roots and divisions dominate.
 //
-// A pack that fits into a register of the instruction set is the compiler's own vector type. A wider one is two
-// halves, because gcc 12 moves its own wide vectors through memory and takes them apart lane by lane in shuffles and
-// comparisons.
+// A pack that fits into a register of the instruction set is the compiler's own
+// vector type. A wider one is two halves, because gcc 12 moves its own wide vectors
+// through memory and takes them apart lane by lane in shuffles and comparisons.
 //
-// This header is included by files that are built once per instruction set: everything is inline and in an anonymous
-// namespace, and there are no std templates, because a weak symbol built for a higher instruction set could win at
-// link time and stop the program on an older processor.
+// This header is included by files that are built once per instruction set: everything is inline and in an
+// anonymous namespace, and there are no std templates, because a weak symbol built for a higher instruction
+// set could win at link time and stop the program on an older processor.
 #pragma once
 
 #if defined(__x86_64__)

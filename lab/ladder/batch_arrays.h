@@ -1,4 +1,5 @@
-// One impact of a batch on its way: from the arrays into the contact frame, and its result back into the arrays.
+// One impact of a batch on its way: from the arrays into
+// the contact frame, and its result back into the arrays.
 #pragma once
 
 #include "carom/kernel/batch.h"

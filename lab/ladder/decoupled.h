@@ -1,12 +1,13 @@
-// Past the paper: every step is done, and no step waits for a root. The state is two pairs, A = [x, a] and B = [|z|,
-// b], so that A A + B B is both squares at once; T = [1/c, 1/u] / sqrt(2), so that f = 1/2 - |.|^2 T^2 is the
-// relative error of T.
+// Past the paper: every step is done, and no step waits for a root. The state is two
+// pairs, A = [x, a] and B = [|z|, b], so that A A + B B is both squares at once; T =
+// [1/c, 1/u] / sqrt(2), so that f = 1/2 - |.|^2 T^2 is the relative error of T.
 //
-// The root of a step is extrapolated from the corrected roots of earlier steps and used as it is. Its error T f
-// corrects the history, and is added to the root of the step kLag later: no step waits for its own correction, and
-// only the corrections of the last steps of a run are lost. The chain from step to step is therefore two sums and a
-// product; the roots are computed beside it. The error is tested once in kBlock steps. A block in which it is too
-// large is repeated by slow steps: by the series, or by square root and division (at the start, near u = 0 or c = 0).
+// The root of a step is extrapolated from the corrected roots of earlier steps and used as it is. Its error T
+// f corrects the history, and is added to the root of the step kLag later: no step waits for its own
+// correction, and only the corrections of the last steps of a run are lost. The chain from step to step is
+// therefore two sums and a product; the roots are computed beside it. The error is tested once in kBlock
+// steps. A block in which it is too large is repeated by slow steps: by the series, or by square root and
+// division (at the start, near u = 0 or c = 0).
 #pragma once
 
 #include "ladder/stretches.h"

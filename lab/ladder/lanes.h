@@ -1,7 +1,7 @@
-// Section 3.8 and past it: independent impacts in the lanes of a vector of W lanes, which fills a register. U vectors
-// are interleaved, so that the latency of one is hidden behind the others. The step is that of reduced.h, with the
-// slip (a, b) of the pressed ball and (c, d) of the other; a lane whose vertical slip changes its sign swaps them.
-// Lanes share nothing: each result depends on its own impact alone.
+// Section 3.8 and past it: independent impacts in the lanes of a vector of W lanes, which fills a register. U
+// vectors are interleaved, so that the latency of one is hidden behind the others. The step is that of
+// reduced.h, with the slip (a, b) of the pressed ball and (c, d) of the other; a lane whose vertical slip
+// changes its sign swaps them. Lanes share nothing: each result depends on its own impact alone.
 #pragma once
 
 #include "ladder/batch_arrays.h"
@@ -67,7 +67,8 @@ inline void lane_step(Lanes<W>& s) {
     constexpr double kKappa = 1.0 - 2.5 * kSign;
     const V zero{};
     const V c2 = A::madd(s.x, s.x, s.size * s.size), u2 = A::madd(s.a, s.a, s.b * s.b);
-    // Everything that needs no root comes first: then only two operations lie between the roots and the next step.
+    // Everything that needs no root comes first: then only
+    // two operations lie between the roots and the next step.
     const V x1 = s.mu_h * s.x, t1 = s.mu_h * s.size, q1 = s.mu_hs * s.size, a1 = q1 * s.a, b1 = q1 * s.b;
     const V b_pushed = s.b + s.h, d_pushed = s.d + s.h, v_pushed = s.v_n + s.h2;
     V C, U;  // 1/c and 1/u; 0 where the slip has no direction: below the published cutoff, or below the floor
@@ -104,8 +105,8 @@ struct LaneExactRoots {
     }
 };
 
-// The approximate instruction and two Newton steps. Lanes whose square does not fit into a float, or is zero, take
-// square root and division.
+// The approximate instruction and two Newton steps. Lanes whose square
+// does not fit into a float, or is zero, take square root and division.
 struct LaneRsqrtRoots {
     template <int W, class A, class S, class V>
     static void take(S& s, V c2, V u2, V& c, V& u) {
@@ -125,9 +126,9 @@ struct LaneRsqrtRoots {
     }
 };
 
-// No root at all: the reciprocal length is carried from step to step, extrapolated quadratically and corrected by the
-// series of (1 - e)^(-1/2). A lane whose e is above 1e-4 (at the start, near stick, after a change of side) takes
-// square root and division. The error that remains, 35/128 e^4, is below an ulp.
+// No root at all: the reciprocal length is carried from step to step, extrapolated quadratically and
+// corrected by the series of (1 - e)^(-1/2). A lane whose e is above 1e-4 (at the start, near stick, after a
+// change of side) takes square root and division. The error that remains, 35/128 e^4, is below an ulp.
 struct LaneCarriedRoots {
     template <int W, class A, class S, class V>
     static void take(S& s, V c2, V u2, V& c, V& u) {
@@ -158,7 +159,8 @@ struct LaneCarriedRoots {
 struct LaneRecord : BatchImpact {
     Reduced start;
     ReducedConstants k;
-    // In units of W/h: the sum of (v(m) + v(m+1)) / 2 at the end of compression, the work, and the work to reach.
+    // In units of W/h: the sum of (v(m) + v(m+1)) / 2 at the
+    // end of compression, the work, and the work to reach.
     double V_cross, W, W_f;
     bool active, compressing;
 };

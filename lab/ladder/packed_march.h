@@ -1,16 +1,18 @@
-// Past the paper: one impact, every step done, its reduced state in one register: S = [x, a, |z|, b], where (a, b) is
-// the cloth slip of the pressed ball. The reciprocal lengths R = [1/c, 1/u, 1/c, 1/u] limit the speed. They are
-// computed
+// Past the paper: one impact, every step done, its reduced state in one register: S = [x, a, |z|, b], where
+// (a, b) is the cloth slip of the pressed ball. The reciprocal lengths R = [1/c, 1/u, 1/c, 1/u] limit the
+// speed. They are computed
 //
 //   kExact      by square root and division
 //   kSeed       by linear extrapolation, and corrected by a series before they are used
-//   kOneAhead   by extrapolation from the last five; they are used at once, and the step is corrected late, by terms that
+//   kOneAhead   by extrapolation from the last five; they are used at once, and the step is corrected late,
+//   by terms that
 //               are linear in the error e
-//   kTwoAhead   in the same way from values that are one step older, so that the extrapolation, too, is off the critical
+//   kTwoAhead   in the same way from values that are one step older, so that the extrapolation, too, is off
+//   the critical
 //               path
 //
-// A step whose e is too large for its form takes the series, or square root and division (at the start, near u = 0 or
-// c = 0).
+// A step whose e is too large for its form takes the series, or
+// square root and division (at the start, near u = 0 or c = 0).
 #pragma once
 
 #include "ladder/stretches.h"
@@ -61,8 +63,8 @@ struct PackedMarch {
         const __m256d push = _mm256_set_pd(k.h, 0.0, 0.0, 0.0), mu = _mm256_set1_pd(k.mu_hs);
         const __m256d half = _mm256_set1_pd(0.5);
         __m256d S = _mm256_set_pd(stretch.b, stretch.z, stretch.a, stretch.x), sum_S = _mm256_setzero_pd();
-        // R of the last steps, the newest first. At the start they are zero, which gives e = 1: the first steps take
-        // the exact roots.
+        // R of the last steps, the newest first. At the start they are
+        // zero, which gives e = 1: the first steps take the exact roots.
         __m256d R1 = _mm256_setzero_pd(), R2 = R1, R3 = R1, R4 = R1, R5 = R1, R6 = R1;
         for (long m = 0; m < count; ++m) {
             CAROM_LOOP_BEGIN("packed march");
@@ -87,9 +89,9 @@ struct PackedMarch {
                     T = _mm256_fmadd_pd(_mm256_set1_pd(-40.0), R3, T);
                     T = _mm256_fmadd_pd(_mm256_set1_pd(15.0), R2, T);
                 }
-                // e = 1 - |.|^2 T^2. Both copies of a root must have the same bits: a difference between them would
-                // not be corrected, and extrapolation would let it grow. Therefore the sum is symmetric in the
-                // halves.
+                // e = 1 - |.|^2 T^2. Both copies of a root must have the same bits: a
+                // difference between them would not be corrected, and extrapolation
+                // would let it grow. Therefore the sum is symmetric in the halves.
                 const __m256d ST = _mm256_mul_pd(S, T), rest = _mm256_fnmadd_pd(ST, ST, half);
                 const __m256d e = _mm256_add_pd(rest, swapped_halves(rest));
                 if constexpr (kForm != RootForm::kSeed) {

@@ -1,5 +1,5 @@
-// Section 4: the compiler flags of the paper. The loop is built in a file of its own (paper_flags.cpp) with -Ofast
-// -march=znver3; validation and projection stay outside, because -Ofast assumes that there is no NaN.
+// Section 4: the compiler flags of the paper. The loop is built in a file of its own (paper_flags.cpp) with
+// -Ofast -march=znver3; validation and projection stay outside, because -Ofast assumes that there is no NaN.
 #pragma once
 
 #include "ladder/step_loops.h"

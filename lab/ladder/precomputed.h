@@ -1,5 +1,5 @@
-// Section 3.4: precomputation. Spins are carried as R w and impulses per unit mass, and every product of constants is
-// computed once.
+// Section 3.4: precomputation. Spins are carried as R w and impulses
+// per unit mass, and every product of constants is computed once.
 #pragma once
 
 #include "ladder/step_loops.h"

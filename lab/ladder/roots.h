@@ -1,5 +1,5 @@
-// Reciprocal square roots. rsqrtss takes floats: squares of velocities outside [1e-30, 1e30] take square root and
-// division.
+// Reciprocal square roots. rsqrtss takes floats: squares of
+// velocities outside [1e-30, 1e30] take square root and division.
 #pragma once
 
 #include <immintrin.h>

@@ -1,4 +1,5 @@
-// Section 3.2: the step of the baseline with reciprocal lengths from rsqrtss instead of square root and division.
+// Section 3.2: the step of the baseline with reciprocal
+// lengths from rsqrtss instead of square root and division.
 #pragma once
 
 #include "ladder/roots.h"
@@ -43,8 +44,8 @@ struct InverseStep {
     }
 };
 
-using RsqrtRaw =
-    WithStep<InverseStep<RawRoot>>;  // the 12 bits as they come: their error is the reason for Newton steps
+// the 12 bits as they come: their error is the reason for Newton steps
+using RsqrtRaw = WithStep<InverseStep<RawRoot>>;
 // The published variant gives NaN at zero slip; here a zero slip takes no root.
 using RsqrtNewton = WithStep<InverseStep<NewtonRoot>>;
 

@@ -1,4 +1,5 @@
-// The list of kernel variants for one instruction set, in the order of the paper. Built once per instruction set.
+// The list of kernel variants for one instruction set, in
+// the order of the paper. Built once per instruction set.
 #include "ladder/rungs.h"
 
 #include "kernel_set.h"
@@ -29,7 +30,8 @@
 namespace carom::kernel::CAROM_ISA_NAMESPACE {
 namespace {
 
-// Inside a function of its own gcc 12 keeps the state of a loop in registers; listed itself, it is 8 to 17 % slower.
+// Inside a function of its own gcc 12 keeps the state of a
+// loop in registers; listed itself, it is 8 to 17 % slower.
 template <auto kImpact>
 void one(const Ball& ball1, const Ball& ball2, const ImpactParams& p, int n, ImpactResult& result) noexcept {
     kImpact(ball1, ball2, p, n, result);

@@ -1,8 +1,8 @@
-// Past the paper: what the variants share that do every step of one impact in vectors. The march is divided into
-// stretches in which neither the pressed side nor the phase (compression, restitution) can change. There only the
-// slip between the balls (x, |z|) and the cloth slip (a, b) of the pressed ball are marched. The slip of the other
-// ball, v_n and the work follow at the end of the stretch from linear invariants. A variant holds only how it marches
-// a stretch.
+// Past the paper: what the variants share that do every step of one impact in vectors. The march is divided
+// into stretches in which neither the pressed side nor the phase (compression, restitution) can change. There
+// only the slip between the balls (x, |z|) and the cloth slip (a, b) of the pressed ball are marched. The
+// slip of the other ball, v_n and the work follow at the end of the stretch from linear invariants. A variant
+// holds only how it marches a stretch.
 #pragma once
 
 #include <immintrin.h>
@@ -49,8 +49,8 @@ class StretchMarch {
     StopTest stop;
     long steps = 0;
 
-    // Number of steps within which neither the phase can end nor |z| reach zero. In a step v_n grows by at most
-    // (2 + mu_s mu_b) h and |z| falls by at most (5 + 5/2 mu_s) mu_b h.
+    // Number of steps within which neither the phase can end nor |z| reach zero. In a step v_n grows by at
+    // most (2 + mu_s mu_b) h and |z| falls by at most (5 + 5/2 mu_s) mu_b h.
     long safe_steps() const {
         const int pressed = r.z < 0.0;
         const double mu_s = k.mu_s[pressed], growth = 2.0 * k.h + mu_s * k.mu_h, v = r.v_n;

@@ -1,5 +1,6 @@
-// A batch, impact by impact by the summed march of the kernel. Where that one gives up, the arithmetic of the published
-// march takes over, eight lanes at once and with the same bits: every impact has the bits of the kernel's summed march.
+// A batch, impact by impact by the summed march of the kernel. Where that one
+// gives up, the arithmetic of the published march takes over, eight lanes at once
+// and with the same bits: every impact has the bits of the kernel's summed march.
 #pragma once
 
 #include "ladder/batch_arrays.h"

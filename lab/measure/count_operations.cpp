@@ -1,5 +1,6 @@
-// Counts the operations per step of the kernel variants: compiles their source with a number type that counts. It is a
-// separate program that does not link the library, because here every `double` of the kernel is such a number.
+// Counts the operations per step of the kernel variants: compiles their source
+// with a number type that counts. It is a separate program that does not link
+// the library, because here every `double` of the kernel is such a number.
 #include <immintrin.h>
 
 #include <cstdio>

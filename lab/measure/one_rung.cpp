@@ -1,5 +1,5 @@
-// Runs one kernel variant on the five states of the paper, for tools that observe a whole process: one_rung NAME ISA
-// CALLS [N]. Prints the number of steps and the shortest time of one impact [ns].
+// Runs one kernel variant on the five states of the paper, for tools that observe a whole process: one_rung
+// NAME ISA CALLS [N]. Prints the number of steps and the shortest time of one impact [ns].
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // Runs one shot, for lab/measure/callgrind_shot.py: shot_probe NAME SEED [RUNS], or shot_probe gas N EVENTS
-// (collisions pair by pair; "gas compliant" uses the default model of clusters), or shot_probe 'many two_ball' SHOTS. Prints the kind of event of every
-// iteration of the loop in the last run, one per line.
+// (collisions pair by pair; "gas compliant" uses the default model of clusters), or shot_probe 'many
+// two_ball' SHOTS. Prints the kind of event of every iteration of the loop in the last run, one per line.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

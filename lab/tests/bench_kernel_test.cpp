@@ -1,4 +1,5 @@
-// Which forms of the kernel carom-lab bench kernel times: all, or those that are asked for. Nothing is timed here.
+// Which forms of the kernel carom-lab bench kernel times:
+// all, or those that are asked for. Nothing is timed here.
 #include "bench/kernel.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// carom-lab bench shot: what it prints. Times are measured, and no test asserts one; events and bytes are counts.
+// carom-lab bench shot: what it prints. Times are measured,
+// and no test asserts one; events and bytes are counts.
 #include <gtest/gtest.h>
 
 #include <map>

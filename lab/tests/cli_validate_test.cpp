@@ -1,4 +1,5 @@
-// carom-lab validate: what it prints and writes. Whether the numbers are as claimed is tested in validate_test.cpp.
+// carom-lab validate: what it prints and writes. Whether the
+// numbers are as claimed is tested in validate_test.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>

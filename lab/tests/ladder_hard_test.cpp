@@ -126,7 +126,8 @@ TEST_P(HardRung, PowersOfTwoScale) {
         same += same_bits(one[i], back);
         EXPECT_LE(difference(one[i], back, impacts[i].params.R), 1e-9) << "impact " << i;
     }
-    // Impact 31 sticks; there a slip may pass through 1e-16 m/s, the published cutoff, which is absolute (H26).
+    // Impact 31 sticks; there a slip may pass through 1e-16 m/s, the published cutoff, which is absolute
+    // (H26).
     EXPECT_GE(same, 39);
 }
 

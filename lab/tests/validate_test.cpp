@@ -1,4 +1,5 @@
-// Validation cases: their files, what is read in a record, and that every number is as its case claims, a miss included.
+// Validation cases: their files, what is read in a record, and
+// that every number is as its case claims, a miss included.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -42,7 +43,8 @@ std::string told(const ValidationRow& row) {
 
 class Validation : public testing::TestWithParam<std::string> {};
 
-// A model that gets better or worse has to say so in the case: what is claimed is neither a wish nor out of date.
+// A model that gets better or worse has to say so in the
+// case: what is claimed is neither a wish nor out of date.
 TEST_P(Validation, IsAsClaimed) {
     const ValidationCase of = read_case(file_of(GetParam()));
     long runs = 0;
@@ -70,7 +72,8 @@ TEST(ValidationCases, AreThoseOfTheFolderInTheirOrder) {
     EXPECT_EQ(ids, expected);
 }
 
-// The game's preset, and the coefficients of before there were measured ones, are beside each other in every case.
+// The game's preset, and the coefficients of before there
+// were measured ones, are beside each other in every case.
 TEST(ValidationCases, HaveThePresetOfTheGameAndTheClassicOne) {
     for (const ValidationCase& of : chosen_cases("")) {
         std::set<std::string> plain;
@@ -158,7 +161,8 @@ TEST(ValidationCases, ATemplateNeedsAValueForEveryName) {
     EXPECT_EQ(filled_in(of, shot, of.variants.front(), of.scene), "pool 2.5");
 }
 
-// Every quantity at every instant, on a shot whose numbers are known: a ball slides, rolls, meets a smooth cushion, slides and rolls.
+// Every quantity at every instant, on a shot whose numbers are known:
+// a ball slides, rolls, meets a smooth cushion, slides and rolls.
 TEST(ValidationMeasure, ReadsWhatItSays) {
     const Record record = simulate(make_plan(
         parse_scene(
@@ -175,8 +179,8 @@ TEST(ValidationMeasure, ReadsWhatItSays) {
         m.place = {2.028575, 1.0};
         return measure(record, m);
     };
-    // Slides for 2 v/(7 mu_s g) = 0.2 s over 12 v^2/(49 mu_s g) = 0.24 m, rolls at 1 m/s and loses 2 mu_r g x on the way to
-    // the cushion; behind it half of the speed, and the spin of before.
+    // Slides for 2 v/(7 mu_s g) = 0.2 s over 12 v^2/(49 mu_s g) = 0.24 m, rolls at 1 m/s and loses 2 mu_r g x
+    // on the way to the cushion; behind it half of the speed, and the spin of before.
     const double in = std::sqrt(1.0 - 0.2 * 1.76), out = 0.5 * in, rolls = out - 2.0 / 7.0 * (out + in);
     EXPECT_NEAR(at(Quantity::kSpeed, Instant::kStart), 1.4, 1e-12);
     EXPECT_NEAR(at(Quantity::kVelocityX, Instant::kStart, 0.1), -1.2, 1e-12);

@@ -1,4 +1,5 @@
-// Arithmetic on arrays that numpy has no function for, or none with the same bits on every machine, or many that take longer than a shot.
+// Arithmetic on arrays that numpy has no function for, or none with the
+// same bits on every machine, or many that take longer than a shot.
 #include <nanobind/stl/pair.h>
 
 #include <cmath>
@@ -26,7 +27,8 @@ double between(const std::pair<double, double>& ends, double part) {
 }
 
 /// Actions as strikes, as Strikes in carom.gym says. numpy's arctan2 has other bits on other processors.
-/// @param actions  n x 5, or n x 6 with the elevation  @param along  n x 2 directions, or empty: the first two numbers of the actions
+/// @param actions  n x 5, or n x 6 with the elevation  @param along  n x 2 directions, or empty: the first
+/// two numbers of the actions
 /// @param offset   the greatest [ball radii]  @param out  n x 5
 void strikes(std::size_t shots, const Flat<const double>& actions, const Flat<const double>& along,
              const std::pair<double, double>& speed, const std::pair<double, double>& elevation,
@@ -72,8 +74,8 @@ struct Room {
     }
 };
 
-/// Draws places of balls for every row until they fit, each time all of them: `out` is n x balls x 2. A row has a
-/// generator of its own, SplitMix64, which moves on: a table draws the same alone as beside others.
+/// Draws places of balls for every row until they fit, each time all of them: `out` is n x balls x 2. A row
+/// has a generator of its own, SplitMix64, which moves on: a table draws the same alone as beside others.
 /// @return whether all rows have found some in so many tries
 bool random_places(const Flat<std::uint64_t>& states, const Flat<const double>& low,
                    const Flat<const double>& room, const Flat<const double>& discs, double apart2, int tries,
@@ -101,8 +103,10 @@ bool random_places(const Flat<std::uint64_t>& states, const Flat<const double>& 
     return all;
 }
 
-/// What is observed of n tables: x and y from -1 to 1 across the table, and 1; three times 0 for a ball that is not there (NaN).
-/// @param balls  n x a x 2 [m]  @param marks  n x b x 2 [m]  @param middle, half  of the table, 2 each [m]  @param out  n x (a + b) x 3
+/// What is observed of n tables: x and y from -1 to 1 across the table, and 1; three times 0 for a ball that
+/// is not there (NaN).
+/// @param balls  n x a x 2 [m]  @param marks  n x b x 2 [m]  @param middle, half  of the table, 2 each [m]
+/// @param out  n x (a + b) x 3
 void observe(std::size_t tables, const Flat<const double>& balls, const Flat<const double>& marks,
              const Flat<const double>& middle, const Flat<const double>& half, const Flat<float>& out) {
     if (tables == 0) return;

@@ -1,4 +1,5 @@
-// Games: rules. Structs go over as tuples in the order of the package's named tuples, enumerations by their names.
+// Games: rules. Structs go over as tuples in the order of
+// the package's named tuples, enumerations by their names.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>

@@ -87,8 +87,8 @@ void ball_ball(const std::string& name, double tolerance, const Flat<const doubl
     if (!wrong.empty()) throw nb::value_error(wrong.c_str());
 }
 
-/// params: radius, mass, mu_s, e_c, f_c, height of the nose; normals: unit, from the cushion into the table. Both have a row for all
-/// impacts or one for each.
+/// params: radius, mass, mu_s, e_c, f_c, height of the nose; normals: unit, from
+/// the cushion into the table. Both have a row for all impacts or one for each.
 void ball_cushion(const std::string& name, const Flat<const double>& in, const Flat<const double>& normals,
                   const Flat<const double>& params, const Flat<double>& out) {
     const CushionModelInfo& model = model_named<CushionModelInfo>("cushion", name);

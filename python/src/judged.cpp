@@ -1,4 +1,5 @@
-// Shots of one player's game, played and judged by its rules: what environments of more than one shot are made of.
+// Shots of one player's game, played and judged by its rules:
+// what environments of more than one shot are made of.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -21,8 +22,8 @@
 namespace carom::python {
 namespace {
 
-/// Plays and judges n shots without the GIL: simulate_many, and beside it arrays of n and of n x balls (x and y in turns), as
-/// games::JudgedArrays has them.
+/// Plays and judges n shots without the GIL: simulate_many, and beside it arrays
+/// of n and of n x balls (x and y in turns), as games::JudgedArrays has them.
 std::vector<Failure> judge_many(const NativeScene& native, const std::string& name, std::size_t shots,
                                 const std::vector<Column>& columns, const Flat<const std::uint8_t>& absent,
                                 std::optional<std::int64_t> max_events, int threads, const ShotArrays& out,

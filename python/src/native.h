@@ -1,5 +1,5 @@
-// What the parts of the extension module share. The Python sources in python/carom are the interface that people see; the module
-// takes flat arrays, which they have checked and shaped.
+// What the parts of the extension module share. The Python sources in python/carom are the interface that
+// people see; the module takes flat arrays, which they have checked and shaped.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -55,19 +55,21 @@ E value_of(const char* what, const std::string& text) {
         ("there is no " + std::string(what) + " \"" + text + "\"; there are: " + known).c_str());
 }
 
-/// The scene that was played, or `other`. @throws nb::value_error where there is none, or one with other balls
+/// The scene that was played, or `other`. @throws
+/// nb::value_error where there is none, or one with other balls
 const Scene& scene_of(const NativeRecord& record, const NativeScene* other);
 /// A scene built in code with one more section of a file, or "". @throws SceneError
 NativeScene parsed_with(const std::string& section, const Scene& scene);
 
-/// The instruction set that CAROM_ISA names, or else for every kernel the fastest one. @throws nb::value_error
+/// The instruction set that CAROM_ISA names, or else for
+/// every kernel the fastest one. @throws nb::value_error
 kernel::Isa chosen_isa();
 
 /// Of two limits the smaller one; nothing where there is none.
 std::optional<std::int64_t> fewer(std::optional<std::int64_t> a, std::optional<std::int64_t> b);
 
-/// Lets Ctrl-C end a long computation without the GIL. Signals are looked for by the thread that made the watch, some 20 times a
-/// second.
+/// Lets Ctrl-C end a long computation without the GIL. Signals are looked
+/// for by the thread that made the watch, some 20 times a second.
 class SignalWatch {
   public:
     SignalWatch();

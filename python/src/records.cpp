@@ -78,7 +78,8 @@ void orientations(const NativeRecord& r, const Flat<const double>& times, const 
             at = std::copy_n(r.record->orientation_at(ball, times.data()[k]).coeffs().data(), 4, at);
 }
 
-/// The scene for the next shot, with the physics of `scene`, and with `cue`, a section of a scene file or nothing.
+/// The scene for the next shot, with the physics of `scene`, and with `cue`, a section of a scene file or
+/// nothing.
 /// @throws nb::value_error for another scene's balls, SceneError
 NativeScene scene_after_record(const NativeRecord& r, const NativeScene* other, const std::string& cue) {
     return parsed_with(cue, scene_after(scene_of(r, other), *r.record));
@@ -92,7 +93,8 @@ std::vector<std::tuple<double, std::string, std::string, std::string>> event_lis
     return list;
 }
 
-/// Cushions as (from, to), jaws and pockets as (centre, radius), with their ids: what a plan of the table draws.
+/// Cushions as (from, to), jaws and pockets as (centre,
+/// radius), with their ids: what a plan of the table draws.
 nb::typed<nb::dict, nb::str, nb::any> table_of(const NativeRecord& r) {
     const Table& table = r.record->table;
     nb::list cushions, jaws, pockets;

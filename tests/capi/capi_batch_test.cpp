@@ -1,4 +1,5 @@
-// The C interface in bulk: batches, segments, states, the next scene; each against the call that gives one at a time.
+// The C interface in bulk: batches, segments, states, the
+// next scene; each against the call that gives one at a time.
 #include <gtest/gtest.h>
 
 #include <algorithm>

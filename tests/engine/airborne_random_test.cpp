@@ -39,7 +39,8 @@ void add_if_valid(Scene& scene, const BallStart& ball) {
     if (!is_valid(scene)) scene.ball.pop_back();
 }
 
-/// Three to six balls that touch or nearly do, and one or two that come down on them; those that have no room are left out.
+/// Three to six balls that touch or nearly do, and one or two
+/// that come down on them; those that have no room are left out.
 void add_pile(Scene& scene, Generator& random) {
     const double R = scene.balls.R, apart = 2.0 * R + (random.next() % 3) * random.uniform(0.0, 2e-4);
     const double x = random.uniform(0.2, scene.table.width - 0.2),

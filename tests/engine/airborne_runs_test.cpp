@@ -79,8 +79,8 @@ TEST(Airborne, SlowContactsOfLargeBalls) {
     }
 }
 
-// One falls into the pocket while the other comes down on it: they overlapped by 9 mm, as the pair was looked at again when the upper
-// one lay.
+// One falls into the pocket while the other comes down on it: they overlapped
+// by 9 mm, as the pair was looked at again when the upper one lay.
 TEST(Airborne, DownOnABallThatFalls) {
     Scene scene = empty_scene();
     scene.table.pockets = {{"hole", {0.5, 0.0}, 0.2, 0.08}};
@@ -97,7 +97,8 @@ TEST(Airborne, DownOnABallThatFalls) {
     EXPECT_GT(met, 10);
 }
 
-// mathavan_2010 keeps more of the speed than the law in space that throws the ball up: 15 % came from nowhere.
+// mathavan_2010 keeps more of the speed than the law in
+// space that throws the ball up: 15 % came from nowhere.
 TEST(Airborne, AHopTakesNoMoreThanTheCushionLost) {
     int hops = 0;
     for (const char* model : {"mathavan_2010", "han_2005", "impulse", "stronge", "smooth"}) {
@@ -123,7 +124,8 @@ TEST(Airborne, AHopTakesNoMoreThanTheCushionLost) {
     EXPECT_GT(hops, 10);
 }
 
-// A ball that bounces loses as much speed to the cloth as one that slides all the time, but for what throwing it up would have taken.
+// A ball that bounces loses as much speed to the cloth as one that
+// slides all the time, but for what throwing it up would have taken.
 TEST(Airborne, BouncesBrakeAsSlidingDoes) {
     Scene scene = empty_scene();
     add_ball(scene, "a", Vec3(0.0, 0.0, scene.balls.R), Vec3(4.0, 0.0, 1.5));

@@ -99,7 +99,8 @@ TEST(Unequal, EqualBallsGiveTheInelasticImpact) {
     }
 }
 
-// Momentum and angular momentum about the contact are kept, energy falls, Coulomb's limit holds or the slip ends.
+// Momentum and angular momentum about the contact are kept,
+// energy falls, Coulomb's limit holds or the slip ends.
 TEST(Unequal, WhatCannotBeComputedGivesTheInputBack) {
     const kernel::Ball one{{0.0, 0.0, 0.03}, {0.0, 1.0, 0.0}, {1.0, 2.0, 3.0}},
         two{{0.0, 0.06, 0.03}, {0.0, 0.0, 0.0}, {}};

@@ -1,4 +1,5 @@
-// Batches: the same bits as shot by shot, whatever the number of threads; what fails is a status; keys of numbers.
+// Batches: the same bits as shot by shot, whatever the number
+// of threads; what fails is a status; keys of numbers.
 #include "carom/engine/batch.h"
 
 #include <gtest/gtest.h>
@@ -379,7 +380,8 @@ TEST(Batch, BallsThatAreLeftOutAreNotThere) {
     EXPECT_THROW(simulate_many(scene, 1, {}, kIsa, options), std::invalid_argument);
 }
 
-// A judge sees the record of every shot that has a result, with and without all balls, and what it throws ends the batch.
+// A judge sees the record of every shot that has a result, with
+// and without all balls, and what it throws ends the batch.
 TEST(Batch, AJudgeReadsTheRecordsOfSingleShots) {
     SplitMix64 random(17);
     const Scene scene = scene_of("side_bank");

@@ -1,6 +1,7 @@
 // The reference break (tests/data/engine/breaks.json): an eight-ball break with pair-by-pair impacts and
-// mathavan_2010 cushions. Its own simulator moves balls apart by 1e-6 m at every contact; with 1e-9 m its list
-// changes from event 9 on. Up to there the order is comparable, and times to about 1e-6 s; after that nothing is.
+// mathavan_2010 cushions. Its own simulator moves balls apart by 1e-6 m at every contact; with 1e-9 m its
+// list changes from event 9 on. Up to there the order is comparable, and times to about 1e-6 s; after that
+// nothing is.
 #include <gtest/gtest.h>
 
 #include <algorithm>

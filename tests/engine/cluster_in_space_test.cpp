@@ -1,5 +1,5 @@
-// Clusters with a ball in the air, or of a model in which balls leave the cloth: the map in space against an integration of its
-// own (support/moving_contacts.h), and whole scenes.
+// Clusters with a ball in the air, or of a model in which balls leave the cloth: the map in space against an
+// integration of its own (support/moving_contacts.h), and whole scenes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -64,8 +64,8 @@ Vec3 momentum(const std::vector<ClusterBall>& balls) {
     return sum;
 }
 
-/// Largest difference [V] of a velocity between the map and the integration, at the instant without contacts at which they agree best:
-/// a slow contact that comes some 2 L/V after the others may be decided either way.
+/// Largest difference [V] of a velocity between the map and the integration, at the instant without contacts
+/// at which they agree best: a slow contact that comes some 2 L/V after the others may be decided either way.
 double error_of(std::vector<ClusterBall> balls, const MovingLaw& law, double V) {
     std::vector<MovingBall> start;
     for (const ClusterBall& b : balls)
@@ -161,8 +161,8 @@ TEST(ClusterInSpace, BreaksThroughTheAir) {
     }
 }
 
-// Where all is level and nothing presses on the cloth, the map in space is the one in the plane: both turn the normals, one by
-// the places and one by a law of their own.
+// Where all is level and nothing presses on the cloth, the map in space is the one in the plane: both turn
+// the normals, one by the places and one by a law of their own.
 TEST(ClusterInSpace, LevelWithoutClothIsTheMapOnTheCloth) {
     Generator rng(83);
     double worst = 0.0;
@@ -188,7 +188,8 @@ TEST(ClusterInSpace, LevelWithoutClothIsTheMapOnTheCloth) {
     EXPECT_LT(worst, 1e-5);
 }
 
-// Two balls that move on together close at the rounding of their speeds, which has no end: nothing waits for it.
+// Two balls that move on together close at the rounding of
+// their speeds, which has no end: nothing waits for it.
 TEST(ClusterInSpace, EndsWhenNothingIsLeftToDo) {
     const double V = 2.0, D = 2.0 * kPoolR;
     std::vector<ClusterBall> balls{ball(0, {0.0, -D, kPoolR}, {0.0, V, 0.0}), ball(1, {0.0, 0.0, kPoolR}),
@@ -276,8 +277,8 @@ TEST(ClusterInSpace, TheThirdBallMayFly) {
     EXPECT_EQ(record.clusters.front().size(), 3u);
 }
 
-// 8 m/s along a ball at rest, 0.2 m/s towards it, and a third ball that flies within reach: the contact opens in the
-// map as the two pass each other. The same cluster came again 10 000 times.
+// 8 m/s along a ball at rest, 0.2 m/s towards it, and a third ball that flies within reach: the contact opens
+// in the map as the two pass each other. The same cluster came again 10 000 times.
 TEST(ClusterInSpace, AGlancingContactOpensWhereTheBallsStay) {
     const Scene scene = parse_scene(
         "[[ball]]\nposition = [0.240011, 1.994503]\nheight = 0.0001\n"

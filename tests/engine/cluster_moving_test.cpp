@@ -1,5 +1,6 @@
-// Clusters whose balls move during the contact: against an integration of their own (support/moving_contacts.h), and
-// continuous in the place of a third ball, where an impact stops to be a cluster, too.
+// Clusters whose balls move during the contact: against an integration of their own
+// (support/moving_contacts.h), and continuous in the place of a third ball, where an impact stops to be a
+// cluster, too.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,9 +49,9 @@ double difference(const MovingBall& a, const MovingBall& b) {
     return std::hypot(a.v[0] - b.v[0], a.v[1] - b.v[1]);
 }
 
-/// Largest difference of a velocity after the first cluster of a break, in units of the speed of the cue ball. Whether a slow contact that
-/// comes some 2 L/V after the others still belongs to a cluster may be decided either way; so the integration counts at that
-/// instant without contacts at which it agrees best.
+/// Largest difference of a velocity after the first cluster of a break, in units of the speed of the cue
+/// ball. Whether a slow contact that comes some 2 L/V after the others still belongs to a cluster may be
+/// decided either way; so the integration counts at that instant without contacts at which it agrees best.
 double first_cluster_error(double gap, double speed, double aim_deg) {
     const Scene scene =
         parse_scene("[rack]\ngame = \"eight_ball\"\ngap = " + std::to_string(gap) +
@@ -157,7 +158,8 @@ TEST(MovingCluster, AThirdBallFollowsAnIntegrationOfItsOwn) {
     struct Case {
         double angle, gap, error;
     };
-    // Far balls are met as the pair kernel meets them, which takes no time: that costs the errors of the last rows.
+    // Far balls are met as the pair kernel meets them, which
+    // takes no time: that costs the errors of the last rows.
     for (const Case& c :
          {Case{0.4, 0.0, 1e-3}, Case{0.4, 5e-4, 5e-4}, Case{0.9, 1e-4, 1e-3}, Case{0.9, 5e-4, 1e-4},
           Case{1.4, 1e-4, 5e-4}, Case{1.4, 0.16235795638398e-3, 0.0170}, Case{0.9, 1.0264e-3, 0.0120},
@@ -204,7 +206,8 @@ double jump(const Three& from, const Three& to) {
     }
 }
 
-/// The largest jump on a line of shots: bisects where the kinds of the impacts change, and the three steepest parts.
+/// The largest jump on a line of shots: bisects where the
+/// kinds of the impacts change, and the three steepest parts.
 double largest_jump(Three from, const Three& to, int parts) {
     struct Part {
         double steep;
@@ -230,8 +233,8 @@ double largest_jump(Three from, const Three& to, int parts) {
     return most;
 }
 
-// Where a third ball gets out of reach, and where its contact becomes an impact of its own, one formula takes over from
-// another. What is left is the step of the one and the regularisation of its friction.
+// Where a third ball gets out of reach, and where its contact becomes an impact of its own, one formula takes
+// over from another. What is left is the step of the one and the regularisation of its friction.
 TEST(MovingCluster, NothingJumpsInTheGapAndTheAngle) {
     for (const double mu_b : {0.0, 0.05}) {
         double worst = 0.0;

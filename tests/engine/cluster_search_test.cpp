@@ -16,7 +16,8 @@ namespace {
 
 using namespace test;
 
-/// A crowd: n balls (n a square) with gaps of about a third of a radius, fast ones, slow ones and resting ones.
+/// A crowd: n balls (n a square) with gaps of about a third
+/// of a radius, fast ones, slow ones and resting ones.
 Scene crowd(int n, long events, std::uint64_t seed, bool friction) {
     Scene scene = friction ? empty_scene() : frictionless();
     scene.stop.events = events;

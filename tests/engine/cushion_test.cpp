@@ -50,7 +50,8 @@ Worst compare(const CushionModelInfo* model, const char* key, Skip skip) {
     for (const auto& c : data.at("cases")) {
         Case x = case_from(c);
         if (skip(x.contact)) continue;
-        // The reference takes the inclined normal of these two models from a jaw's centre instead of its nose.
+        // The reference takes the inclined normal of these
+        // two models from a jaw's centre instead of its nose.
         const bool from_nose = model == cushion_model("impulse") || model == cushion_model("stronge");
         if (from_nose && c.at("cushion").at("type") == "circular") {
             const double R = x.contact.R;
@@ -85,7 +86,8 @@ TEST(Cushion, ReferenceVectorsOfStronge) {
     EXPECT_EQ(worst.checked, 40);
 }
 
-// Where f_c > tan(theta) the reference lets the cloth pull (its load is not clamped): those cases say nothing.
+// Where f_c > tan(theta) the reference lets the cloth pull
+// (its load is not clamped): those cases say nothing.
 TEST(Cushion, ReferenceVectorsOfMathavan2010) {
     const Worst worst =
         compare(cushion_model("mathavan_2010"), "mathavan_2010_fine", [](const CushionContact& p) {
@@ -230,7 +232,8 @@ TEST(Cushion, ModelsReadWhatTheySay) {
     }
 }
 
-// With the nose at ball height and no friction every model is the smooth one (T17), with its own meaning of e_c.
+// With the nose at ball height and no friction every model
+// is the smooth one (T17), with its own meaning of e_c.
 TEST(Cushion, WithoutFrictionAtBallHeightEveryModelReflects) {
     reference::Generator rng(10);
     for (int i = 0; i < 400; ++i) {
@@ -285,7 +288,8 @@ TEST(Cushion, RunningAndCheckSide) {
             model->resolve(contact, Vec2(1.0, 0.0), v, w);
             return v.y() / v.x();  // tangent of the angle from the normal
         };
-        // At the nose the surface of a ball with w_z > 0 moves towards -y there: its reaction drives the ball to +y.
+        // At the nose the surface of a ball with w_z > 0 moves
+        // towards -y there: its reaction drives the ball to +y.
         EXPECT_GT(rebound(30.0), rebound(0.0) * 1.02) << name(model) << " running side";
         EXPECT_LT(rebound(-30.0), rebound(0.0) * 0.98) << name(model) << " check side";
         Vec3 v(-1.0, 0.0, 0.0), w(0.0, -1.0 / R, 0.0);
@@ -332,7 +336,8 @@ TEST(Cushion, Mathavan2010IsTheLimitOfTheMarch) {
     reference::Generator rng(11);
     for (int i = 0; i < 60; ++i) {
         Case x = random_case(rng, i % 3);
-        // Beyond f = tan(theta) a stuck nose and a clamped load of the cloth have no common limit (data/README).
+        // Beyond f = tan(theta) a stuck nose and a clamped load of the cloth have no common limit
+        // (data/README).
         const double s = x.contact.height / x.contact.R - 1.0;
         x.contact.f_c = std::min(x.contact.f_c, 0.95 * s);
         Vec3 v = x.v, w = x.w, v_c, w_c, v_f, w_f;

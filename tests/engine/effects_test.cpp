@@ -1,4 +1,5 @@
-// Only what a scene calls for: decisions, refusals, late need, and proofs that a skipped effect changes no bit.
+// Only what a scene calls for: decisions, refusals, late
+// need, and proofs that a skipped effect changes no bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -306,8 +307,8 @@ TEST(Effects, LateNeedIsCaught) {
               std::string::npos);
 }
 
-// Two balls that move and cannot meet within the time: each goes on along its own segments. The first one of b would lead through a, if it
-// lasted.
+// Two balls that move and cannot meet within the time: each goes on along
+// its own segments. The first one of b would lead through a, if it lasted.
 TEST(Effects, VerifyKnowsThatSegmentsEnd) {
     Scene scene = empty_scene();
     scene.table = {};

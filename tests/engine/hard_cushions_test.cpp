@@ -34,7 +34,8 @@ double deepest(const Record& record, const Plan& plan) {
     return depth;
 }
 
-// A ball an ulp from a cushion, which its spin drives into it: the touch is slower than the rounding of its surface's speed.
+// A ball an ulp from a cushion, which its spin drives into it:
+// the touch is slower than the rounding of its surface's speed.
 TEST(ExtremeSpin, DrivesNoBallThroughACushion) {
     Scene scene = empty_scene();
     scene.table.cushions = {{"c", {-1.0, 0.0}, {1.0, 0.0}, 0.036576}};
@@ -104,7 +105,8 @@ Scene high_nose(double height, double e_c, double f_c) {
     return scene;
 }
 
-// han_2005 leaves a ball that still closes where e_c < 1 / c^2 - 1. It was met again at the same instant, 2 to 15 times.
+// han_2005 leaves a ball that still closes where e_c < 1 / c^2
+// - 1. It was met again at the same instant, 2 to 15 times.
 TEST(HighNose, IsOneEvent) {
     for (const double height : {1.28, 1.45, 1.55, 1.6, 1.8, 1.99}) {
         for (const double e_c : {0.0, 0.05, 0.25, 0.5}) {
@@ -164,7 +166,8 @@ TEST(TwoAtOnce, IntoACornerAndBackOnTheDiagonal) {
     }
 }
 
-// Without friction each of two walls at right angles turns its own share of the velocity round, as if it were alone.
+// Without friction each of two walls at right angles turns
+// its own share of the velocity round, as if it were alone.
 TEST(TwoAtOnce, RightAnglesDoNotDisturbEachOther) {
     Scene scene = frictionless();
     scene.balls.e_c = 0.8;
@@ -189,7 +192,8 @@ Scene mirrored(Scene scene) {
     return scene;
 }
 
-/// A ball that touches two jaws, struck by another from anywhere above; friction, heights and restitutions at random.
+/// A ball that touches two jaws, struck by another from anywhere
+/// above; friction, heights and restitutions at random.
 Scene frozen_between_jaws(reference::Generator& random) {
     Scene scene = empty_scene();
     const double R = scene.balls.R, radius = random.uniform(0.0, 0.05);
@@ -215,9 +219,9 @@ Scene frozen_between_jaws(reference::Generator& random) {
     return scene;
 }
 
-// The mirror image of a scene has the mirror image of its run, for 1e-4 s after the first jaw: velocities differed by metres per
-// second. In a few of the 500 two resting contacts begin one after the other at that instant: they leave up to 3.1e-4 m/s
-// (lab/notes/2026-11-resting_steps.md).
+// The mirror image of a scene has the mirror image of its run, for 1e-4 s after the first jaw: velocities
+// differed by metres per second. In a few of the 500 two resting contacts begin one after the other at that
+// instant: they leave up to 3.1e-4 m/s (lab/notes/2026-11-resting_steps.md).
 TEST(TwoAtOnce, MirrorImagesAgree) {
     reference::Generator random(18);
     int with_two = 0, more_than_rounding = 0;

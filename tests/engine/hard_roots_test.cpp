@@ -177,8 +177,8 @@ TEST(HardRoots, EventsAtTheStart) {
     EXPECT_EQ(record.state_at(3, 0.0).state, MotionState::kStationary);
 }
 
-// Two balls at rest touch, and accelerations of 2.6e-7 m/s^2, almost along each other, close their contact by 2.7e-10 m/s^2, while the
-// spin of one rounds speeds to 3e-14 m/s.
+// Two balls at rest touch, and accelerations of 2.6e-7 m/s^2, almost along each other, close their contact by
+// 2.7e-10 m/s^2, while the spin of one rounds speeds to 3e-14 m/s.
 TEST(HardRoots, SlowTouch) {
     const double R = 0.007997277000662361;
     const Path a{{0.0, 0.006429872458811686},

@@ -219,7 +219,8 @@ TEST(HardRuns, Restart) {
     }
 }
 
-// Three of the million breaks of lab/notes/2026-11-million_breaks.md in which a held ball was left with 1e-13 m/s, and took days to stop.
+// Three of the million breaks of lab/notes/2026-11-million_breaks.md in
+// which a held ball was left with 1e-13 m/s, and took days to stop.
 TEST(HardRuns, WhatFrictionStopsAtOnceDoesNotCreep) {
     const struct {
         const char *aim, *speed, *seed;
@@ -240,7 +241,8 @@ TEST(HardRuns, WhatFrictionStopsAtOnceDoesNotCreep) {
     }
 }
 
-// Without friction, runs come to times at which a place has no digits left: balls were then in cushions, or past them.
+// Without friction, runs come to times at which a place has
+// no digits left: balls were then in cushions, or past them.
 TEST(HardRuns, EndWhereTheDigitsEnd) {
     const auto cushion = [](const char* from, const char* to, const char* height) {
         return std::string("[[table.cushion]]\nfrom = ") + from + "\nto = " + to + "\nheight = " + height +

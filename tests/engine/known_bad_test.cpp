@@ -91,7 +91,8 @@ TEST(KnownBad, TouchingSameVelocity) {
     for (double t = 0.0; t < record.events[0].time; t += 0.05)
         EXPECT_NEAR((record.state_at(0, t).position - record.state_at(1, t).position).norm(),
                     2.0 * record.balls.R, 1e-15);
-    // On an endless cloth: nothing but the two stops, after v / (mu_r g), in the same place relative to each other.
+    // On an endless cloth: nothing but the two stops, after v
+    // / (mu_r g), in the same place relative to each other.
     Scene endless = scene_named("touching_same_velocity_crash");
     endless.table = Table();
     const Record alone = run_verified(endless);

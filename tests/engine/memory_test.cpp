@@ -36,7 +36,8 @@ void* operator new(std::size_t size) {
 void* operator new[](std::size_t size) {
     return counted(size);
 }
-// The buffers of std::stable_partition come from here. A sanitizer has a form of its own, which would not go together with free().
+// The buffers of std::stable_partition come from here. A sanitizer
+// has a form of its own, which would not go together with free().
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     try {
         return counted(size);
@@ -160,7 +161,8 @@ TEST(Memory, NoAllocationInABatchAfterTheFirstShots) {
             if (shot < 20) continue;
             without_memory += allocations == before;
             if (allocations == before) continue;
-            // A longer shot, or a larger cluster, than all before needs longer lists: not when it is played again.
+            // A longer shot, or a larger cluster, than all before
+            // needs longer lists: not when it is played again.
             const long once_more = allocations;
             simulator.play(change, options);
             const long more = allocations - once_more;

@@ -35,7 +35,8 @@ TEST(DidYouMean, NamesWhatIsNear) {
 }
 
 TEST(DidYouMean, IsSilentWhereNothingIsNear) {
-    // "bats" is two letters of four from ball, "a" a stem of nothing, and "mass" is there: the word is wrong for another reason.
+    // "bats" is two letters of four from ball, "a" a stem of nothing,
+    // and "mass" is there: the word is wrong for another reason.
     for (const char* word : {"", "a", "wind", "bats", "colour", "mass", "sxxxd"})
         EXPECT_EQ(did_you_mean(word, kCueKeys), "") << word;
     EXPECT_EQ(did_you_mean(std::string(1 << 20, 's'), kCueKeys), "");

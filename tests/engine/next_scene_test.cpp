@@ -26,7 +26,8 @@ Cue strike(const std::string& ball, double speed, double aim_deg) {
     return cue;
 }
 
-/// Plays `shots` shots one after the other; every scene has the balls of the one before it that are not gone, to the bit.
+/// Plays `shots` shots one after the other; every scene has the
+/// balls of the one before it that are not gone, to the bit.
 TEST(NextScene, KeepsWhatRestsToTheBitOverManyShots) {
     Scene scene = read_scene(CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml");
     std::size_t gone = 0;

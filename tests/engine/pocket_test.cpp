@@ -1,5 +1,5 @@
-// Pockets: a ball whose centre passes the edge falls, and comes back over it where it has not sunk too far (docs/reference/physics.md,
-// "Pockets").
+// Pockets: a ball whose centre passes the edge falls, and comes back over it where it has not sunk too far
+// (docs/reference/physics.md, "Pockets").
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -95,8 +95,8 @@ TEST(Pocket, TheSpeedThatCrosses) {
     EXPECT_NEAR(crosses, 1.9636, 1e-4);
 }
 
-// A ball that cuts across the rim has fallen little and is slow outwards: what decides is its speed, sqrt(2 g radius), not how far in it
-// is. Source of the limit: v_n > g t with t = 2 v_n radius / v^2.
+// A ball that cuts across the rim has fallen little and is slow outwards: what decides is its speed, sqrt(2 g
+// radius), not how far in it is. Source of the limit: v_n > g t with t = 2 v_n radius / v^2.
 TEST(Pocket, OverTheRim) {
     for (const double depth : {1e-4, 1e-3, 3e-3}) {
         for (const auto& [speed, pocket] : {std::pair{0.9, 0}, {1.4, -1}}) {
@@ -184,8 +184,8 @@ TEST(Pocket, ARunThatStopsInTheFallGoesOnTheSame) {
     EXPECT_GT(stopped, 0);
 }
 
-// Hard shots into all pockets, on the cloth and above it: they rattled through between a jaw's end and the pocket, or flew over its side, and went on
-// behind the rails as on cloth (one of some 500 random matches).
+// Hard shots into all pockets, on the cloth and above it: they rattled through between a jaw's end and the
+// pocket, or flew over its side, and went on behind the rails as on cloth (one of some 500 random matches).
 TEST(Pocket, NoBallComesOutBehindTheRails) {
     int pocketed = 0, out = 0;
     for (std::uint64_t seed = 0; seed < 4000; ++seed) {

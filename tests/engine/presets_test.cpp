@@ -1,5 +1,6 @@
-// Presets of balls, cloths and cues: what they set, what a file overrides, and how they do beside what was measured on real
-// tables (docs/reference/physics.md, "Where the numbers come from"), the known misses of the models included.
+// Presets of balls, cloths and cues: what they set, what a file overrides, and
+// how they do beside what was measured on real tables (docs/reference/physics.md,
+// "Where the numbers come from"), the known misses of the models included.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +35,8 @@ const carom::Event& first(const Record& r, EventType type) {
     throw std::runtime_error("there is no such event");
 }
 
-/// Speeds after a ball that rolls straight into a cushion at `v` [m/s]: at once, and when it rolls again. `keys` of [balls].
+/// Speeds after a ball that rolls straight into a cushion at `v`
+/// [m/s]: at once, and when it rolls again. `keys` of [balls].
 std::pair<double, double> rebound(const std::string& preset, double v, const std::string& keys = "") {
     const bool snooker = preset.rfind("snooker", 0) == 0;
     const double R = carom::make_ball_params(preset).R, height = snooker ? 0.03675 : 0.037;

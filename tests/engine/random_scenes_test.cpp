@@ -1,6 +1,6 @@
 // 30 000 seeded scenes of two families to rest without a violation, and the regressions they brought
-// (support/random_scenes.h), and some scenes of crowded families and natural shots. With CAROM_RANDOM_SCENES in the environment, a
-// scan of other seeds instead (support/scene_scan.h).
+// (support/random_scenes.h), and some scenes of crowded families and natural shots. With CAROM_RANDOM_SCENES
+// in the environment, a scan of other seeds instead (support/scene_scan.h).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -231,8 +231,9 @@ TEST(RandomSceneRegressions, MarginsOfTheOthersStay) {
     EXPECT_EQ(what_breaks(scene), "");
 }
 
-// Whole scenes, by seed: friction between two balls that turned their slip over each 1e-5 s (24832), and a slip
-// that a capture had ended but that went on to drive its ball (33636 of the other family, where the energy rose).
+// Whole scenes, by seed: friction between two balls that turned their slip
+// over each 1e-5 s (24832), and a slip that a capture had ended but that went
+// on to drive its ball (33636 of the other family, where the energy rose).
 TEST(RandomSceneRegressions, SlipsThatEnd) {
     settles_within(RandomScene(24832).make(), 40000);
     EXPECT_EQ(what_breaks(RandomScene(33636, DrawOrder::kFirstFirst).make()), "");
@@ -260,7 +261,8 @@ TEST(CrowdedScenes, GoOnWithTheSameBits) {
     EXPECT_GT(held, 50);
 }
 
-/// Scenes in which contacts do not end well yet (lab/notes/2026-11-jams.md): whoever mends one strikes it out.
+/// Scenes in which contacts do not end well yet
+/// (lab/notes/2026-11-jams.md): whoever mends one strikes it out.
 struct Open {
     const char* family;
     std::uint64_t seed;
@@ -278,8 +280,8 @@ bool is_open(const std::string& family, std::uint64_t seed) {
 /// A small share of the families for long campaigns (lab/measure/campaign).
 class Families : public testing::TestWithParam<std::string> {};
 
-// A glancing contact of a cluster opened in the map and closed on in the loop: of raised breaks, one of thirty stood
-// still at an instant. tools/slow runs 20 000.
+// A glancing contact of a cluster opened in the map and closed on in the loop: of raised breaks, one of
+// thirty stood still at an instant. tools/slow runs 20 000.
 std::uint64_t seeds_of(const std::string& family) {
     if (family == "raised_break") return kScenes / 20;
     return natural_shot(family, 0) ? 50 : 10;

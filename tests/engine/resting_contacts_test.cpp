@@ -69,7 +69,8 @@ TEST(RestingContacts, SpinIntoACushion) {
     EXPECT_LE(record.events.size(), 6u);
 }
 
-// H5, oblique: 1 m/s along the cushion and 50 rad/s into it. Reference values of the notes: 0.328069 s, v_y = 5/7.
+// H5, oblique: 1 m/s along the cushion and 50 rad/s into
+// it. Reference values of the notes: 0.328069 s, v_y = 5/7.
 TEST(RestingContacts, ObliqueSpinIntoACushion) {
     Scene scene = empty_scene();
     scene.table = box(1.0, 20.0, 0.036576);
@@ -84,7 +85,8 @@ TEST(RestingContacts, ObliqueSpinIntoACushion) {
     EXPECT_LE(record.events.size(), 12u);
 }
 
-// A ball that its spin holds at a cushion is struck along the cushion: the contact goes on. Struck into the cushion, it ends in a bounce.
+// A ball that its spin holds at a cushion is struck along the cushion:
+// the contact goes on. Struck into the cushion, it ends in a bounce.
 TEST(RestingContacts, GoesOnThroughAnImpactThatHardlyMovesIt) {
     for (const bool oblique : {false, true}) {
         Scene scene = empty_scene();

@@ -1,5 +1,5 @@
-// Groups of balls in resting contacts: one small scene for each class of failure that the random scenes brought, and the
-// solver of their forces.
+// Groups of balls in resting contacts: one small scene for each class of
+// failure that the random scenes brought, and the solver of their forces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -234,7 +234,8 @@ TEST(Complementarity, NarrowWedgeIsSolvedToRounding) {
     }
 }
 
-// Two balls between two walls, one of which comes back: the three rates add up to nothing, so that only rounding says which contacts press.
+// Two balls between two walls, one of which comes back: the three rates
+// add up to nothing, so that only rounding says which contacts press.
 TEST(Complementarity, RoundingDoesNotDecide) {
     Complementarity problem;
     problem.resize(3);

@@ -264,7 +264,8 @@ TEST(Rack, NineOnTheSpot) {
     EXPECT_EQ(at(one, 0), Vec2(0.635, 1.905));
 }
 
-// Turned about its place the rack keeps all distances; a quarter turn counter-clockwise takes the rows from +y to -x.
+// Turned about its place the rack keeps all distances; a
+// quarter turn counter-clockwise takes the rows from +y to -x.
 TEST(Rack, PlaceAndAngle) {
     const Scene s = rack("game = \"eight_ball\"\ngap = 0\nposition = [0.5, 0.7]\n"),
                 turned = rack("game = \"eight_ball\"\ngap = 0\nposition = [0.5, 0.7]\nangle_deg = 90\n");

@@ -1,5 +1,5 @@
-// Every member of a struct that a scene describes has a row, or is named here as one that no file has: this does not compile
-// until a member that is added does.
+// Every member of a struct that a scene describes has a row, or is named here as
+// one that no file has: this does not compile until a member that is added does.
 #include <gtest/gtest.h>
 
 #include <cstddef>

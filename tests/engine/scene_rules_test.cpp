@@ -104,7 +104,8 @@ TEST(Scenes, FilesThatCannotBeRead) {
     EXPECT_EQ(message("no/such.toml"), "no/such.toml: cannot be read: there is no such file; check the path");
     const std::string folder = CAROM_TEST_DATA;
     EXPECT_EQ(message(folder), folder + ": cannot be read: it is a directory; name a scene file in it");
-    // What is there but out of reach is not said to be missing. (A folder without permissions keeps nobody out who is root.)
+    // What is there but out of reach is not said to be missing. (A
+    // folder without permissions keeps nobody out who is root.)
     const auto loop =
         std::filesystem::temp_directory_path() / ("carom_loop_" + std::to_string(::getpid()) + ".toml");
     std::filesystem::create_symlink(loop, loop);
@@ -398,7 +399,8 @@ TEST(Rest, OnlyWhatCanHappenCounts) {
     EXPECT_EQ(error_of("[balls]\nmu_r = 0\n[[ball]]\nspin = [0, 0, 5]\n"), "");
 }
 
-// Whatever is in a file, it is read or refused with a place in it; it never crashes and nothing else is thrown.
+// Whatever is in a file, it is read or refused with a place
+// in it; it never crashes and nothing else is thrown.
 TEST(Scenes, BrokenTextIsRefusedInTheSameForm) {
     const std::string good =
         read_file(std::filesystem::path(CAROM_SOURCE_DIR) / "scenes" / "eight_ball_break.toml");

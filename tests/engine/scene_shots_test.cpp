@@ -93,8 +93,8 @@ TEST(SceneShots, NineBallBreakHitsTheOneFirst) {
     EXPECT_EQ(r.stopped, carom::StopReason::kAtRest);
 }
 
-// The wing ball stands at the end of the third row on the side of the cue ball, and only the model that takes the contacts
-// of a rack as one impact of elastic bodies sends it into the corner beside it.
+// The wing ball stands at the end of the third row on the side of the cue ball, and only the model that takes
+// the contacts of a rack as one impact of elastic bodies sends it into the corner beside it.
 TEST(SceneShots, TheWingBallFallsAndTellsTheModelsApart) {
     const auto falls = [](ClusterModel model) {
         Scene scene = carom::read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/wing_ball.toml");

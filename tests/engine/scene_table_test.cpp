@@ -239,7 +239,8 @@ TEST(Tables, PublishedSizes) {
     EXPECT_NEAR(make_table("snooker").cushions[0].height, 1.4 * 0.02625, 1e-15);
 }
 
-// Every pocket takes a ball that rolls at its middle, and none takes one that rolls along a rail past a corner's jaw.
+// Every pocket takes a ball that rolls at its middle, and
+// none takes one that rolls along a rail past a corner's jaw.
 TEST(Tables, NewTablesHaveSixPocketsThatABallFits) {
     for (const char* preset : {"eight_foot", "snooker"}) {
         const Table t = make_table(preset);

@@ -139,7 +139,8 @@ TEST(Stop, ANumberOfEventsThatIsReachedIsTheEnd) {
     EXPECT_EQ(record.events.size(), 3u);
 }
 
-// A ball that all but never stops bouncing. What a run may hold has a limit, also where the scene names none or a larger one.
+// A ball that all but never stops bouncing. What a run may hold
+// has a limit, also where the scene names none or a larger one.
 TEST(Stop, ARunWithoutEndHasALimitOfEvents) {
     Scene scene = empty_scene();
     scene.balls.e_t = 0.9999999;

@@ -1,4 +1,5 @@
-// Throw, spin transfer and curved paths in whole shots (tests/README.md: T10, T11, the throw table 7b, masse).
+// Throw, spin transfer and curved paths in whole shots
+// (tests/README.md: T10, T11, the throw table 7b, masse).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -127,8 +128,9 @@ TEST(Throw, MathavanTakesTheFrictionOfItsSlip) {
     EXPECT_LE((a.tracks[1].segments.back().w - b.tracks[1].segments.back().w).norm(), 1e-12);
 }
 
-// Masse (T2, Coriolis): a raised cue with side curves the path; the final direction is that of v - (2/7) u, from the
-// point where the cue's line meets the cloth. Without elevation the path of a ball struck with side is straight.
+// Masse (T2, Coriolis): a raised cue with side curves the path; the final
+// direction is that of v - (2/7) u, from the point where the cue's line meets
+// the cloth. Without elevation the path of a ball struck with side is straight.
 TEST(Masse, ElevationAndSideCurveThePath) {
     const auto shot = [](double elevation, double side) {
         Scene scene = empty_scene();

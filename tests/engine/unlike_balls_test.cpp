@@ -25,7 +25,8 @@ Scene two_that_rest(const BallSize& size) {
     return scene;
 }
 
-// A ball with topspin pushes the one before it, a metre from a heavier one: the error was that "there are balls of different size".
+// A ball with topspin pushes the one before it, a metre from a heavier
+// one: the error was that "there are balls of different size".
 TEST(UnlikeBalls, AlikeOnesRestOnEachOther) {
     const Scene alone = two_that_rest(empty_scene().balls.size());
     Scene scene = alone;
@@ -86,8 +87,8 @@ Scene odd_break(std::uint64_t seed, bool large) {
     return scene;
 }
 
-// Of 500 breaks each, 97 with the heavy cue ball and 483 with the large one ended with that error. 2 and 42 are left: the cue
-// ball itself stays in contact with another ball.
+// Of 500 breaks each, 97 with the heavy cue ball and 483 with the large one ended with that error. 2 and 42
+// are left: the cue ball itself stays in contact with another ball.
 TEST(UnlikeBalls, BreaksWithAnOddCueBallEndAtRest) {
     for (const bool large : {false, true}) {
         int failed = 0;

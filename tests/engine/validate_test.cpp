@@ -1,5 +1,5 @@
-// Scenes built in code are refused in the words in which files are: by every bad scene that a struct can hold, and by random
-// mistakes, against the way over the text.
+// Scenes built in code are refused in the words in which files are: by every bad scene that a struct can
+// hold, and by random mistakes, against the way over the text.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -188,7 +188,8 @@ const std::map<std::string, Mistake>& mistakes() {
     return all;
 }
 
-/// Mistakes in the way a file says something, which a struct does not have: syntax, types, keys, names of models, racks.
+/// Mistakes in the way a file says something, which a struct
+/// does not have: syntax, types, keys, names of models, racks.
 const std::set<std::string> kOfFiles = {"ball_not_a_table",
                                         "ball_single_brackets",
                                         "camera_and_eye",
@@ -228,7 +229,8 @@ const std::set<std::string> kOfFiles = {"ball_not_a_table",
                                         "wrong_type_integer",
                                         "wrong_type_number",
                                         "wrong_type_string"};
-/// The same rule as another file's, in a place that only the way over the text has to show: see OfRandomMistakes.
+/// The same rule as another file's, in a place that only
+/// the way over the text has to show: see OfRandomMistakes.
 const std::set<std::string> kSameRule = {"in_jaw", "above_jaw", "in_own_cushion", "rack_does_not_fit"};
 
 TEST(Validate, SaysOfEveryBadSceneWhatTheReaderSays) {

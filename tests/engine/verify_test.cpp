@@ -88,7 +88,8 @@ TEST(Verify, NamesTheLawThatARecordBreaks) {
     }
 }
 
-/// A straight shot: the slip of the two balls is vertical only, and the impulse of the cloth meets its limit exactly.
+/// A straight shot: the slip of the two balls is vertical only,
+/// and the impulse of the cloth meets its limit exactly.
 Scene straight_shot(reference::Generator& random, double tolerance) {
     Scene scene = empty_scene();
     scene.physics.tolerance = tolerance;
@@ -113,8 +114,8 @@ void spoil_impact(Record& record, double share) {
     record.tracks[static_cast<std::size_t>(impact.b)].segments.back().v *= 1.0 - share;
 }
 
-// The limit of U5 has the slack of the tolerance, and no more: 4000 right shots are called right, and a speed that is wrong by
-// some tolerances is called wrong.
+// The limit of U5 has the slack of the tolerance, and no more: 4000 right shots
+// are called right, and a speed that is wrong by some tolerances is called wrong.
 TEST(Verify, StraightShotsMeetTheLimitOfU5) {
     for (const double tolerance : {1e-3, 1e-6}) {
         reference::Generator random(5);
@@ -127,7 +128,8 @@ TEST(Verify, StraightShotsMeetTheLimitOfU5) {
                                     << violation->message;
             hits += count(record, EventType::kBallBall) > 0 ? 1 : 0;
             if (k % 40 != 0 || count(record, EventType::kBallBall) != 1) continue;
-            // The momentum of the pair then misses by ten tolerances, and the cloth's share is up to 0.04 of the impulse.
+            // The momentum of the pair then misses by ten tolerances,
+            // and the cloth's share is up to 0.04 of the impulse.
             spoil_impact(record, 10.0 * tolerance + 2.0 * plan.balls.mu_s * plan.balls.mu_b);
             const auto wrong = verify(record, plan);
             ASSERT_TRUE(wrong) << "shot " << k << " at " << tolerance;
@@ -137,7 +139,8 @@ TEST(Verify, StraightShotsMeetTheLimitOfU5) {
     }
 }
 
-/// Two balls side by side on an endless cloth, or one and a cushion; "a" rolls past, and nothing happens until it stops.
+/// Two balls side by side on an endless cloth, or one and a
+/// cushion; "a" rolls past, and nothing happens until it stops.
 Plan roll_past(bool cushion) {
     Scene scene = empty_scene();
     if (cushion) scene.table.cushions = {{"c", {-0.1, 0.3}, {-0.1, 0.5}, 0.036576}};

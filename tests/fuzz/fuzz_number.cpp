@@ -1,4 +1,5 @@
-// Any text as a number, wherever a scene or a rule takes one: it is refused, or it is the number that the text says.
+// Any text as a number, wherever a scene or a rule takes one:
+// it is refused, or it is the number that the text says.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -128,7 +128,8 @@ TEST(Aim, ThrowIsCompensated) {
     Scene missed = scene;
     const Aim aim = games::aim_pot(scene, center_ball(1.5), "1", "p4");
     ASSERT_TRUE(aim.cue) << aim.why;
-    // Throw pushes the ball along with the cue ball: the aim is a little thinner, by some tenths of a degree at most.
+    // Throw pushes the ball along with the cue ball: the aim is
+    // a little thinner, by some tenths of a degree at most.
     EXPECT_GT(std::abs(aim.cue->aim_deg - aim.geometric_deg), 1e-3);
     EXPECT_LT(std::abs(aim.cue->aim_deg - aim.geometric_deg), 2.0);
     EXPECT_TRUE(played(scene, *aim.cue, "1", "p4").fell);

@@ -1,4 +1,5 @@
-// Eight-ball: the sentences of the WPA's Rules of Play (15 March 2016) as shots. A test has the number of its rule.
+// Eight-ball: the sentences of the WPA's Rules of Play (15
+// March 2016) as shots. A test has the number of its rule.
 #include <gtest/gtest.h>
 
 #include <stdexcept>

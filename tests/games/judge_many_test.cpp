@@ -44,7 +44,8 @@ const std::vector<GameScene>& game_scenes() {
     return list;
 }
 
-/// Tables with balls anywhere, some of them gone, and strikes at random; now and then a jump, or none that a scene takes.
+/// Tables with balls anywhere, some of them gone, and strikes
+/// at random; now and then a jump, or none that a scene takes.
 struct RandomTables {
     Scene base;
     std::vector<std::string> keys = {"cue.aim_deg", "cue.speed", "cue.elevation_deg"};

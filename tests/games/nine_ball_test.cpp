@@ -1,4 +1,5 @@
-// Nine-ball: the sentences of the WPA's Rules of Play (15 March 2016) as shots. A test has the number of its rule.
+// Nine-ball: the sentences of the WPA's Rules of Play (15
+// March 2016) as shots. A test has the number of its rule.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,4 +1,5 @@
-// Rules on shots that the engine plays: what is read from a record, and whole games by players who hit at random.
+// Rules on shots that the engine plays: what is read from
+// a record, and whole games by players who hit at random.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -135,7 +135,8 @@ TEST(ContactPhase, StepsFollowTheFriction) {
     }
 }
 
-// Without friction the longest step is that of contacts at the speed V: slower ones, and the long way on which little restitution opens them, take
+// Without friction the longest step is that of contacts at the speed V:
+// slower ones, and the long way on which little restitution opens them, take
 // longer steps. With steps of one length these laws take 262, 295 and 556.
 TEST(ContactPhase, StepsFollowTheSpeedWithoutFriction) {
     for (const auto& [a, b, p, most] :
@@ -148,8 +149,9 @@ TEST(ContactPhase, StepsFollowTheSpeedWithoutFriction) {
     }
 }
 
-// The cloth acts between two steps and yet has an error of the second order: an eighth of the step gives a 64th of it, or less.
-// With all of a step's impulse at its end the first error is 8e-4 with the rough cloth, and an eighth of the step gives an eighth.
+// The cloth acts between two steps and yet has an error of the second order: an eighth
+// of the step gives a 64th of it, or less. With all of a step's impulse at its end the
+// first error is 8e-4 with the rough cloth, and an eighth of the step gives an eighth.
 TEST(ContactPhase, TheClothBetweenStepsIsOfSecondOrder) {
     for (const double mu_s : {0.2, 2.0}) {
         HertzLaw law = pool_law(1e-2);
@@ -223,8 +225,9 @@ TEST(ContactPhase, StopsWhenNothingCloses) {
     EXPECT_NEAR(near.motion[11], 0.950625, 1e-4) << "comes in 1.7 L/V";
 }
 
-// Two balls that move on together close or open at the rounding of their speeds, without end; and what has hardly any restitution opens
-// long after its force has gone. Such phases took all their time, and then counted as jammed.
+// Two balls that move on together close or open at the rounding of their
+// speeds, without end; and what has hardly any restitution opens long after its
+// force has gone. Such phases took all their time, and then counted as jammed.
 TEST(ContactPhase, EndsWhenNothingIsLeftToDo) {
     HertzLaw law = pool_law();
     law.mu_b = 0.0;

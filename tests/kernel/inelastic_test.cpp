@@ -63,7 +63,8 @@ Throw throw_of(double speed, double phi, double roll, double w_z, double mu, dou
     Ball cue{}, object{};
     cue.v[0] = speed * std::sin(phi);
     cue.v[1] = speed * std::cos(phi);
-    // Natural roll is w = z x v / R; of it only the part along x, R w_x = -v cos(phi), slips on the object ball.
+    // Natural roll is w = z x v / R; of it only the part
+    // along x, R w_x = -v cos(phi), slips on the object ball.
     cue.w[0] = -roll * cue.v[1] / R;
     cue.w[1] = roll * cue.v[0] / R;
     cue.w[2] = w_z;

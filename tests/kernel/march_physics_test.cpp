@@ -144,7 +144,8 @@ TEST(MarchPhysics, T13SlipCompliance) {
 }
 
 TEST(MarchPhysics, T13ClothSlipChangesBySevenHalves) {
-    // The cloth's impulse Q acts on the ball that is pressed down. Of ball 2: d(u_x) = -P1 + kappa Q, P1 = dv1x.
+    // The cloth's impulse Q acts on the ball that is pressed
+    // down. Of ball 2: d(u_x) = -P1 + kappa Q, P1 = dv1x.
     int seen = 0;
     for (Impact impact : random_impacts(4, 400)) {
         impact.params.mu_s1 = 0.0;  // only ball 2 feels the cloth
@@ -168,7 +169,8 @@ TEST(MarchPhysics, T15SpinTransfer) {
         impact.params.mu_s1 = impact.params.mu_s2 = 0.0;
         const Change d = change(impact, march(impact.ball1, impact.ball2, impact.params));
         const double scale = 1e-11 * (1.0 + approach_speed(impact.ball1, impact.ball2));
-        // (5/2R) n x dv1 = -(5/2R) dv1x z; the part along x belongs to the vertical velocity, which the model drops.
+        // (5/2R) n x dv1 = -(5/2R) dv1x z; the part along x belongs to the vertical velocity, which the model
+        // drops.
         EXPECT_NEAR(kR * d.w1z, -2.5 * d.x1, scale);
         EXPECT_NEAR(kR * d.w2z, kR * d.w1z, scale);
         EXPECT_NEAR(kR * d.w1x, kR * d.w2x, scale);

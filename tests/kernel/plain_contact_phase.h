@@ -1,5 +1,5 @@
-// The plain program for the equations of the contact phase (docs/reference/physics.md, several contacts at once), which every
-// instruction set is compared with, bit for bit.
+// The plain program for the equations of the contact phase (docs/reference/physics.md, several contacts at
+// once), which every instruction set is compared with, bit for bit.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -286,8 +286,8 @@ class Plain {
         return {n.x - angle * n.y, n.y + angle * n.x};
     }
 
-    // The friction of the cloth after a step, with half of its vertical impulse `past` and what half a step of the last vertical force
-    // would add, less what was counted ahead.
+    // The friction of the cloth after a step, with half of its vertical impulse `past` and what half a step
+    // of the last vertical force would add, less what was counted ahead.
     void drag(std::size_t b, double past, double next) {
         past = std::min(past, 0.0);
         next = std::min(next, 0.0);
@@ -340,7 +340,8 @@ class Plain {
                                             k[0].limit[static_cast<std::size_t>(start_[c].j)]);
         }
         if (has_friction()) longest = std::min(longest, next_);
-        // The classical method where nothing is stiff, else Simpson's weights at 0, a node below 1/2 that counts nothing, 1/2, 1.
+        // The classical method where nothing is stiff, else Simpson's
+        // weights at 0, a node below 1/2 that counts nothing, 1/2, 1.
         const bool stiff = has_friction();
         const std::array<double, 4> weight = {1.0 / 6.0, stiff ? 0.0 : 1.0 / 3.0,
                                               stiff ? 2.0 / 3.0 : 1.0 / 3.0, 1.0 / 6.0};

@@ -37,7 +37,8 @@ std::vector<HardImpact> impacts_for(ClothSlip slip) {
     return list;
 }
 
-// The vertical slip of H31 with mu_b = 1 as published is beyond where the model is stable (docs/design/impact_kernel.md).
+// The vertical slip of H31 with mu_b = 1 as published is beyond where the model is stable
+// (docs/design/impact_kernel.md).
 bool has_a_stable_solution(const HardImpact& i) {
     return i.params.cloth_slip == ClothSlip::kConsistent || i.params.mu_b <= 0.3;
 }
@@ -46,7 +47,8 @@ TEST(ToleranceHard, StatusBoundAndEnergy) {
     for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
         for (const HardImpact& hard : impacts_for(slip)) {
             const Impact impact{hard.ball1, hard.ball2, hard.params};
-            // Powers of two bring tiny speeds into the range of the truth; H29 shows that they change nothing.
+            // Powers of two bring tiny speeds into the range of
+            // the truth; H29 shows that they change nothing.
             const double up =
                 speed_scale(impact) > 0.0 ? std::exp2(-std::floor(std::log2(speed_scale(impact)))) : 1.0;
             Impact near_one = impact;

@@ -70,8 +70,9 @@ inline double approach_speed(const Impact& i) {
     return ((i.ball1.v[0] - i.ball2.v[0]) * dx + (i.ball1.v[1] - i.ball2.v[1]) * dy) / d;
 }
 
-/// Impacts around everything that is singular: slip that ends, cloth slip that passes or starts next to zero, both,
-/// over many decades; e_b and the frictions up to `mu_b` and `mu_s`, their limits included. Approach speed 1.
+/// Impacts around everything that is singular: slip that ends, cloth slip that
+/// passes or starts next to zero, both, over many decades; e_b and the
+/// frictions up to `mu_b` and `mu_s`, their limits included. Approach speed 1.
 inline Impact hard_random_impact(Generator& rng, double mu_b, double mu_s, kernel::ClothSlip slip,
                                  double mass_ratio = 1.0) {
     const auto decades = [&rng](double lo, double hi) { return lo * std::pow(hi / lo, rng.uniform()); };
@@ -110,7 +111,8 @@ inline Impact hard_random_impact(Generator& rng, double mu_b, double mu_s, kerne
     return i;
 }
 
-/// Random impacts and as many built to be hard, of balls whose masses have a ratio of 1/10 to 10, the ends included.
+/// Random impacts and as many built to be hard, of balls whose
+/// masses have a ratio of 1/10 to 10, the ends included.
 inline std::vector<Impact> impacts_of_masses_that_differ(std::uint64_t seed, int count,
                                                          kernel::ClothSlip slip) {
     Generator rng(seed);

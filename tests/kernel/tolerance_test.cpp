@@ -65,7 +65,8 @@ TEST(Tolerance, GearingThrowsNothing) {
     }
 }
 
-// H25 and the throw table's no-slip branch: dv = slip/7 where it sticks, mu_b times the impulse where it slides on.
+// H25 and the throw table's no-slip branch: dv = slip/7 where
+// it sticks, mu_b times the impulse where it slides on.
 TEST(Tolerance, HorizontalSlipIsClosed) {
     for (double x : {1e-4, 0.1, 0.33, -0.2, 0.4, 3.0}) {
         const ImpactResult r = solve(plain(x), 1e-3);
@@ -83,7 +84,8 @@ TEST(Tolerance, HorizontalSlipIsClosed) {
     }
 }
 
-// The straight draw shot, which no march converges on: with the spin against it the cue ball's slip is vertical only.
+// The straight draw shot, which no march converges on: with
+// the spin against it the cue ball's slip is vertical only.
 TEST(Tolerance, StraightDraw) {
     for (double spin : {30.0, 60.0, -40.0}) {
         Impact i = plain(0.0);
@@ -216,8 +218,8 @@ TEST(Tolerance, EasyImpactsTakeOneCollocation) {
     EXPECT_GT(count(1e-6, ToleranceMethod::kAdaptive), 20);
 }
 
-// Sweeps of 4 nodes come before those of 8, and leave them half of the work: without them 8 nodes take 6.2 sweeps here, all of the
-// dear kind.
+// Sweeps of 4 nodes come before those of 8, and leave them half of the
+// work: without them 8 nodes take 6.2 sweeps here, all of the dear kind.
 TEST(Tolerance, SweepsOfEightNodes) {
     const std::vector<Impact> impacts = reference::random_impacts(1, 2000);
     Lanes lanes(impacts);

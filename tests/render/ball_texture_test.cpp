@@ -1,4 +1,5 @@
-// The pictures of balls for other programs show the patterns of the renderer's balls, and the look of all is typed once.
+// The pictures of balls for other programs show the patterns
+// of the renderer's balls, and the look of all is typed once.
 #include "carom/render/ball_texture.h"
 
 #include <gtest/gtest.h>

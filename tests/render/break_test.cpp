@@ -112,7 +112,8 @@ long peak_memory_kb() {
     return -1;
 }
 
-// What Mesa itself takes differs by its release by tens of megabytes, so what a sequence needs is counted from there.
+// What Mesa itself takes differs by its release by tens of
+// megabytes, so what a sequence needs is counted from there.
 TEST(Break, A1080pSequenceTakesUnder240MegabytesBesideTheDriver) {
 #ifdef CAROM_SANITIZED
     GTEST_SKIP() << "the sanitizer's own memory counts";

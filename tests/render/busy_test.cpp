@@ -98,8 +98,9 @@ TEST(MeanPicture, ScreenValuesComeBack) {
     for (int i = 0; i < 255; ++i) EXPECT_EQ(screen_of_radiance(linear[static_cast<std::size_t>(i)]), i);
 }
 
-// A picture with many samples is one that was drawn four times as large, with one sample, and made small, but for grain and where samples
-// lie. With every pixel drawn many times 192 and 22 channels are far off, as with those that are busy; with none 2342 and 979.
+// A picture with many samples is one that was drawn four times as large, with one sample,
+// and made small, but for grain and where samples lie. With every pixel drawn many times
+// 192 and 22 channels are far off, as with those that are busy; with none 2342 and 979.
 TEST(BusyTiles, ManySamplesLookLikeALargePictureMadeSmall) {
     const Record record = render_test::rectangle_record();
     for (const char* camera : {"top", "player"}) {

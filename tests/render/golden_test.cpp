@@ -1,7 +1,9 @@
-// Six pictures kept in the repository. Another version of Mesa may round a pixel differently, so small
-// differences pass; on failure the picture and the difference (times eight) are kept in the working directory.
+// Six pictures kept in the repository. Another version of Mesa may round
+// a pixel differently, so small differences pass; on failure the picture
+// and the difference (times eight) are kept in the working directory.
 //
-// CAROM_UPDATE_GOLDEN=1 writes the pictures anew and skips the comparison: look at them before committing them.
+// CAROM_UPDATE_GOLDEN=1 writes the pictures anew and skips
+// the comparison: look at them before committing them.
 #include <gtest/gtest.h>
 
 #include <algorithm>

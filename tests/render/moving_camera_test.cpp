@@ -140,7 +140,8 @@ TEST(TableEdges, AreNotInsideAPlaneAndBoundEveryFace) {
     }
 }
 
-// Where two edges lie on one line, a pixel would be smoothed twice. Every pair is looked at here; find_edges looks at those in one place.
+// Where two edges lie on one line, a pixel would be smoothed twice.
+// Every pair is looked at here; find_edges looks at those in one place.
 TEST(TableEdges, NoneLiesWithinALongOne) {
     for (const char* table : {"nine_foot", "snooker"}) {
         const TableEdges found =

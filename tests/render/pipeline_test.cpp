@@ -277,7 +277,8 @@ TEST(Sheet, ShowsTheShotRowByRow) {
     render_sheet(record, options, 3, 4, folder.file("sheet.png"));
     const Image sheet = render_test::read_png(folder.file("sheet.png"));
     EXPECT_EQ(sheet.size, (FrameSize{482, 362})) << "as wide as was asked for, with pictures of that shape";
-    // 3 x 4 pictures of 159 x 89 with 2 pixels between them; the middle of each is cloth, and first and last differ.
+    // 3 x 4 pictures of 159 x 89 with 2 pixels between them;
+    // the middle of each is cloth, and first and last differ.
     for (int row = 0; row < 4; ++row) {
         for (int column = 0; column < 3; ++column) {
             const std::uint8_t* p = sheet.pixel(column * 161 + 85, row * 91 + 60);

@@ -1,4 +1,5 @@
-// PNG files of which only what changed is encoded: any decoder reads them, and their bytes depend on the pixels alone.
+// PNG files of which only what changed is encoded: any decoder
+// reads them, and their bytes depend on the pixels alone.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -34,8 +35,8 @@ PixelBox whole(FrameSize size) {
     return {0, 0, size.width, size.height};
 }
 
-// Fills a box in one of the ways that pictures have: one colour, a gradient, noise, few colours, long and short runs. The fourth channel is
-// anything.
+// Fills a box in one of the ways that pictures have: one colour, a gradient,
+// noise, few colours, long and short runs. The fourth channel is anything.
 void paint(Image& image, const PixelBox& box, Random& random) {
     const int way = below(random, 5);
     const auto byte = [&] { return static_cast<std::uint8_t>(random()); };
@@ -83,7 +84,8 @@ std::uint32_t big(const Bytes& bytes, std::size_t at) {
            std::uint32_t{bytes.at(at + 2)} << 8U | bytes.at(at + 3);
 }
 
-// What libpng may pass over in silence: the check sum of every chunk, and that of the zlib stream, which has to end where the rows do.
+// What libpng may pass over in silence: the check sum of every chunk,
+// and that of the zlib stream, which has to end where the rows do.
 void expect_sound(const Bytes& bytes, FrameSize size) {
     std::string types;
     for (std::size_t at = 8; at < bytes.size();) {
@@ -106,7 +108,8 @@ void expect_sound(const Bytes& bytes, FrameSize size) {
     ASSERT_EQ(types, "IHDRIDATIEND");
 }
 
-// In series, so that they run at once. Every picture is changed some times in boxes, and its file must be the one that is made at once.
+// In series, so that they run at once. Every picture is changed some
+// times in boxes, and its file must be the one that is made at once.
 class RandomPictures : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(RandomPictures, AreReadBackAndEqualThoseMadeAtOnce) {
@@ -149,7 +152,8 @@ TEST(PngPieces, EncodesNoMoreThanTheBoxesAndTheirNeighbours) {
     pieces.encode(image, {}, bytes);
     EXPECT_EQ(pieces.share(), 0.0);
     EXPECT_EQ(bytes, file_of(image));
-    // Ten rows of one segment of ten, and the row below; two pixels before the end of the segment is far enough from the next one.
+    // Ten rows of one segment of ten, and the row below; two pixels
+    // before the end of the segment is far enough from the next one.
     pieces.encode(image, {{64, 20, 126, 30}}, bytes);
     EXPECT_DOUBLE_EQ(pieces.share(), 11.0 / 1000.0);
     pieces.encode(image, {{64, 20, 127, 30}}, bytes);

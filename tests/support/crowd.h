@@ -23,8 +23,8 @@ namespace carom::test {
 
 inline constexpr double kPi = std::numbers::pi;
 
-/// A scene under construction. Every number is drawn in a statement of its own: in which order a call's arguments are drawn is the
-/// compiler's choice.
+/// A scene under construction. Every number is drawn in a statement of its
+/// own: in which order a call's arguments are drawn is the compiler's choice.
 class Crowd {
   public:
     Crowd(std::uint64_t seed, Level level) : rng_(seed), level_(level) {

@@ -24,7 +24,8 @@ inline Path random_path(Generator& rng, int kind, double speed) {
     return {{0, 0}, v, 1.962 * Vec2(d.cos, d.sin), rng.uniform(0.05, 1.0) * speed / 1.962, false, true};
 }
 
-/// Puts ball 2 so that at the time t the two pass at right angles to their relative velocity, `depth` within reach.
+/// Puts ball 2 so that at the time t the two pass at right
+/// angles to their relative velocity, `depth` within reach.
 inline void set_to_graze(const Path& one, Path& two, double t, double depth, double reach, Generator& rng) {
     const Vec2 v = (two.v - one.v) + t * (two.a - one.a);
     const double speed = length(v);

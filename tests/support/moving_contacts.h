@@ -1,6 +1,6 @@
-// Balls in contact, integrated plainly: Hertz springs with the unloading law of docs/reference/physics.md, friction with
-// almost sharp stick, and everything moves, positions too. It shares nothing with the kernel and is slow: the step is a
-// two-thousandth of L/V. SI units.
+// Balls in contact, integrated plainly: Hertz springs with the unloading law of docs/reference/physics.md,
+// friction with almost sharp stick, and everything moves, positions too. It shares nothing with the kernel
+// and is slow: the step is a two-thousandth of L/V. SI units.
 #pragma once
 
 #include <algorithm>

@@ -10,8 +10,8 @@
 
 namespace carom::test {
 
-/// Pool after a break, with frozen balls; snooker with the pack half open, with frozen balls; the cue ball at, in and into a
-/// touching pack; the eight-ball break; breaks of four games with a raised cue.
+/// Pool after a break, with frozen balls; snooker with the pack half open, with frozen balls; the cue ball
+/// at, in and into a touching pack; the eight-ball break; breaks of four games with a raised cue.
 std::span<const char* const> natural_families();
 
 /// The shot of a seed, or nothing where the family is not known.

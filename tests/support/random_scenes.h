@@ -113,7 +113,8 @@ class RandomScene {
         return {a.cos, a.sin};
     }
 
-    // A draw a statement, here and below: in which order a call's arguments are drawn is the compiler's choice.
+    // A draw a statement, here and below: in which order a
+    // call's arguments are drawn is the compiler's choice.
     Vec3 spin() {
         const auto size = [this] { return one_of<double>({1e-3, 10.0, 100.0, 400.0}); };
         const double first = last_first() ? size() : uniform(-1, 1);

@@ -3,10 +3,12 @@
 
 namespace carom::test {
 
-/// Runs what the text asks for, and prints a line for each scene that fails, is given up or takes more than 50 ms of CPU, and a summary.
+/// Runs what the text asks for, and prints a line for each scene that fails, is given up or takes more than
+/// 50 ms of CPU, and a summary.
 /// * "FROM:COUNT", "FROM:COUNT:other": the two families of support/random_scenes.h.
 /// * "FROM:COUNT:FAMILY", "FROM:COUNT:FAMILY/LEVEL": a family of support/crowded_scenes.h or natural_shots.h.
-/// * "SEED:1:FAMILY:toml": the scene file of one scene; ":least": of what is left of it without the balls that its fault does not need.
+/// * "SEED:1:FAMILY:toml": the scene file of one scene; ":least": of what is left of it without the balls
+/// that its fault does not need.
 /// * "families": their names.
 /// It judges no time. @return the exit status: 0, or 2 where the text is not of this form
 int scan_scenes(const char* wanted);

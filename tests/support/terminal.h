@@ -1,4 +1,5 @@
-// Runs a program on a terminal of its own, as a person does who watches it: what stands on the screen, and Ctrl-C.
+// Runs a program on a terminal of its own, as a person does
+// who watches it: what stands on the screen, and Ctrl-C.
 #pragma once
 
 #include <poll.h>

@@ -57,7 +57,8 @@ fps = 60
 size = [320, 180]
 )";
 
-/// A valid scene whose one impact does not end: friction and spin hold the balls together, and the march stops it.
+/// A valid scene whose one impact does not end: friction and
+/// spin hold the balls together, and the march stops it.
 inline constexpr char kStuckScene[] = R"([balls]
 mu_s = 0.6
 mu_b = 4.0

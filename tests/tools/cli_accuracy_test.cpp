@@ -1,4 +1,5 @@
-// carom accuracy: what it prints and writes. Times are measured, and no test asserts one; errors are repeatable.
+// carom accuracy: what it prints and writes. Times are
+// measured, and no test asserts one; errors are repeatable.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,4 +1,5 @@
-// carom export: the file of every scene is valid glTF, and what it says about places and orientations is what the engine says.
+// carom export: the file of every scene is valid glTF, and what
+// it says about places and orientations is what the engine says.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -145,7 +146,8 @@ TEST(Export, PlacesAreExactAndOrientationsNear) {
         const ProcessResult made = carom({"export", scene, "-o", file});
         ASSERT_EQ(made.status, 0) << made.err;
         const Differences found = differences(Glb(file), record_of(folder, scene));
-        // A float resolves 0.2 micrometres at 2 m, and a time of 10 s to 1 microsecond, in which a ball goes 10 micrometres.
+        // A float resolves 0.2 micrometres at 2 m, and a time of 10
+        // s to 1 microsecond, in which a ball goes 10 micrometres.
         EXPECT_LT(found.place, 1e-5) << scene;
         // Between two keys, half a radian apart, the rate may be off by 0.005 rad, and the axis changes.
         EXPECT_LT(found.turn, 0.02) << scene;
@@ -227,7 +229,8 @@ TEST(Export, TheFacesOfABallLookOutwards) {
         area += 0.5 * normal.norm();
         picture += 0.5 * std::abs(cross(texture(b) - texture(a), texture(c) - texture(a)));
     }
-    // Nearly those of a sphere and of the whole picture, of which the triangles at the poles leave out halves.
+    // Nearly those of a sphere and of the whole picture, of
+    // which the triangles at the poles leave out halves.
     EXPECT_NEAR(area, 4.0 * 3.14159265, 0.1);
     EXPECT_NEAR(picture, 1.0 - 1.0 / 24.0, 1e-3);
 }

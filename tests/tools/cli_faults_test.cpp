@@ -156,7 +156,8 @@ TEST_F(Faults, AKilledRenderIsFinishedByResumeWithTheSameFrames) {
         process.send(SIGKILL);
         process.finish("");
     }
-    // Whatever stands under a frame's name is whole: killed between two system calls, only a temporary name is not.
+    // Whatever stands under a frame's name is whole: killed
+    // between two system calls, only a temporary name is not.
     for (int k = 0; k <= 100; ++k)
         if (fs::exists(frame(k))) {
             EXPECT_EQ(read_file(frame(k)), whole[k]) << k;
@@ -167,7 +168,8 @@ TEST_F(Faults, AKilledRenderIsFinishedByResumeWithTheSameFrames) {
     for (int k = 0; k <= 100; ++k) EXPECT_EQ(read_file(frame(k)), whole[k]) << k;
 }
 
-// Over the frames of a longer film of another camera, killed after each frame. What there is never mixes two pictures.
+// Over the frames of a longer film of another camera, killed
+// after each frame. What there is never mixes two pictures.
 TEST_F(Faults, ARenderThatIsKilledOverOtherFramesIsFinishedByResumeWithItsOwn) {
     const auto command = [this](const char* camera, const char* to) {
         return std::vector<std::string>{"render", scene_,  "-o",   pattern(), "--fps",    "100",

@@ -1,4 +1,5 @@
-// carom render -o shot.mp4: films that ffmpeg makes; and what others read of frames and streams. Programs that are not there are skipped.
+// carom render -o shot.mp4: films that ffmpeg makes; and what others
+// read of frames and streams. Programs that are not there are skipped.
 #include <gtest/gtest.h>
 
 #include <algorithm>

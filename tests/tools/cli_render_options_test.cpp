@@ -1,4 +1,5 @@
-// carom render: the view, overlays, contact sheets, raw frames, resuming, OpenGL libraries, and what a disk refuses.
+// carom render: the view, overlays, contact sheets, raw frames,
+// resuming, OpenGL libraries, and what a disk refuses.
 #include <gtest/gtest.h>
 
 #include <sys/stat.h>
@@ -176,7 +177,8 @@ TEST_F(CliRenderOptions, BothBackEndsGiveTheSameFile) {
     if (egl.status == 1 && egl.err.find("libegl1") != std::string::npos) GTEST_SKIP() << egl.err;
     ASSERT_EQ(egl.status, 0) << egl.err;
     EXPECT_TRUE(read_file(folder_.file("e0.png")) == picture({"--gl", "osmesa"}));
-    // Without OSMesa the default is EGL: files of its names that are no libraries stand in front of the real ones.
+    // Without OSMesa the default is EGL: files of its names
+    // that are no libraries stand in front of the real ones.
     TemporaryFolder fake;
     for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"})
         fake.write(name, "no library");

@@ -160,7 +160,8 @@ TEST(CliSweep, AStatusFileSaysHowFarItIs) {
 TEST(CliSweep, TheLastShardOfTheLargestSweepHasItsNumbers) {
     const TemporaryFolder folder;
     const std::string status = folder.file("status.json");
-    // 2^53 shots in 999 999 parts: no shard has a whole share, and the product of the two numbers has 73 bits.
+    // 2^53 shots in 999 999 parts: no shard has a whole
+    // share, and the product of the two numbers has 73 bits.
     std::vector<std::string> arguments =
         breaks(1, folder.file("a.csv"), {"--shard", "999999/999999", "--status", status, "--jobs", "1"});
     arguments.insert(arguments.begin(), CAROM_PROGRAM);

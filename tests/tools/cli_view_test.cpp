@@ -1,5 +1,5 @@
-// carom view: pages. The states that their script computes are the engine's, to the bit; a browser shows them, moves in them by keys and
-// pointer, says nothing on its console, and loads nothing.
+// carom view: pages. The states that their script computes are the engine's, to the bit; a browser shows
+// them, moves in them by keys and pointer, says nothing on its console, and loads nothing.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@ std::string stem(const std::string& path) {
     return std::filesystem::path(path).stem().string();
 }
 
-/// A record whose balls have names that would end the script, begin a tag, or end a line of it. Scenes refuse such names; a record comes
-/// from anywhere.
+/// A record whose balls have names that would end the script, begin a tag, or
+/// end a line of it. Scenes refuse such names; a record comes from anywhere.
 std::string hostile_record(const TemporaryFolder& folder) {
     const std::string file = folder.file("hostile.json");
     EXPECT_EQ(carom({"simulate", folder.write("small.toml", kSmallScene), "-o", file, "--hash"}).status, 0);
@@ -39,7 +39,8 @@ std::string hostile_record(const TemporaryFolder& folder) {
     return folder.write("hostile.json", record.dump());
 }
 
-/// Times at which a page is compared with the engine: outside the shot, even ones, events and their neighbours, random ones.
+/// Times at which a page is compared with the engine: outside the
+/// shot, even ones, events and their neighbours, random ones.
 std::vector<double> times_of(const Record& record) {
     std::vector<double> times = {-1.0, 0.0, record.duration, record.duration + 1.0};
     for (int k = 1; k < 300; ++k) times.push_back(record.duration * k / 300.0);

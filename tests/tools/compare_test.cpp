@@ -52,7 +52,8 @@ TEST(Difference, OfAShiftIsTheShift) {
     EXPECT_FALSE(d.events.first_apart);
 }
 
-// A ball that is thrown up is v^2 / 2g above one that rests, after v / g: between two events, and back at the end.
+// A ball that is thrown up is v^2 / 2g above one that rests,
+// after v / g: between two events, and back at the end.
 TEST(Difference, FindsTheLargestBetweenEvents) {
     for (const double v : {1.0, 2.0}) {
         const std::string up = "[0, 0, " + std::to_string(v) + "]";
@@ -84,7 +85,8 @@ TEST(Difference, IsTheLargestOfManySamples) {
                 largest = std::max(largest, (x.position - y.position).norm());
         }
         EXPECT_LE(largest, ball.largest + 1e-12) << ball.id;
-        // At 12 m/s, the fastest of both, half a sample is 2.4 mm of the way for each; one that is gone in one shot may go on.
+        // At 12 m/s, the fastest of both, half a sample is 2.4 mm of
+        // the way for each; one that is gone in one shot may go on.
         if (!ball.a.gone() && !ball.b.gone()) {
             EXPECT_GE(largest, ball.largest - 0.005) << ball.id;
         }
@@ -92,7 +94,8 @@ TEST(Difference, IsTheLargestOfManySamples) {
     }
 }
 
-// What lies in one pocket is equal, however it fell; nor does it count that it is put on the bottom at once, a little later here than there.
+// What lies in one pocket is equal, however it fell; nor does it count
+// that it is put on the bottom at once, a little later here than there.
 TEST(Difference, OfBallsInOnePocketIsNone) {
     const auto shot = [](const char* speed) {
         return std::string("[[ball]]\nid = \"a\"\nposition = [0.2, 0.2]\nvelocity = [") + speed + ", " +

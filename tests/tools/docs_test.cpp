@@ -143,8 +143,8 @@ std::string reason_not_to_run(const Clone& clone, const std::string& condition) 
     return package + " is not installed";
 }
 
-/// What is wrong with the figures of a page: a comment <!-- figure: TEXT ; COMMAND --> says that TEXT stands in the paragraph
-/// behind it, and that COMMAND prints it. @param run  returns what a command prints
+/// What is wrong with the figures of a page: a comment <!-- figure: TEXT ; COMMAND --> says that TEXT stands
+/// in the paragraph behind it, and that COMMAND prints it. @param run  returns what a command prints
 std::vector<std::string> figure_faults(const std::string& page,
                                        const std::function<std::string(const std::string&)>& run) {
     std::vector<std::string> faults;
@@ -216,7 +216,8 @@ TEST_P(Docs, CommandsWorkAsPrinted) {
     if (!not_run.empty()) GTEST_SKIP() << not_run;
 }
 
-// A command with a file belongs into a block, where it is run; a mention may only name options that there are.
+// A command with a file belongs into a block, where it is
+// run; a mention may only name options that there are.
 TEST_P(Docs, MentionsOfTheProgramAreRight) {
     static std::map<std::string, std::string> helps;
     const std::regex span("`(?:build/release/)?carom ([a-z]+)([^`]*)`"), option("--[a-z][a-z-]*");

@@ -168,7 +168,8 @@ void expect_list(const Json& got, std::initializer_list<double> want) {
     for (const double x : want) EXPECT_NEAR(got.at(k++).get<double>(), x, 1e-13 * std::max(1.0, std::abs(x)));
 }
 
-// The reference values of landings, of balls in the air and of a nose above the cloth (tests/engine/airborne_laws_test.cpp).
+// The reference values of landings, of balls in the air and of a nose above the cloth
+// (tests/engine/airborne_laws_test.cpp).
 TEST(ImpactLine, Cloth) {
     const Json line = {
         {"kind", "cloth"},

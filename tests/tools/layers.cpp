@@ -25,8 +25,9 @@ constexpr int kPythonLayer = 4;
 constexpr std::string_view kLab = "lab";
 constexpr std::array<std::string_view, 2> kBesideTheProduct = {"tests", "examples"};
 
-/// The rooms of one layer. A toolbox includes toolboxes to its left; a station, one step of the data's way, includes toolboxes.
-/// Stations never include each other: they meet in public types only. What lies in the folder itself is left of all.
+/// The rooms of one layer. A toolbox includes toolboxes to its left; a station, one
+/// step of the data's way, includes toolboxes. Stations never include each other:
+/// they meet in public types only. What lies in the folder itself is left of all.
 struct Rooms {
     std::string_view folder;
     std::vector<std::string_view> toolboxes, stations;
@@ -44,7 +45,8 @@ const std::array<Rooms, 5> kRooms = {{
       "margin"}},
     {"tools/carom", {"base", "page", "report"}, {"commands"}, true},
 }};
-/// Public headers that say what a station of the engine made or does. A toolbox of the engine knows none of them.
+/// Public headers that say what a station of the engine made
+/// or does. A toolbox of the engine knows none of them.
 constexpr std::array<std::string_view, 4> kHeadersOfStations = {
     "carom/engine/plan.h", "carom/engine/simulate.h", "carom/engine/variation.h", "carom/engine/verify.h"};
 /// Folders that others may use although they are no public headers: who, and what.
@@ -151,7 +153,8 @@ std::string house_of(const std::string& path) {
     return path.substr(0, second == path.npos ? first : second);
 }
 
-/// Place of a room from the left: -1 for the folder itself, toolboxes, then stations; -2 if there is no such room.
+/// Place of a room from the left: -1 for the folder itself,
+/// toolboxes, then stations; -2 if there is no such room.
 int place_of(const Rooms& rooms, std::string_view path) {
     const std::string_view rest = path.substr(rooms.folder.size() + 1);
     const std::size_t slash = rest.find('/');

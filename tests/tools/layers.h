@@ -1,4 +1,5 @@
-// The layers of the design, lab -> tools -> render -> games -> engine -> kernel, as a check of what every file includes.
+// The layers of the design, lab -> tools -> render -> games ->
+// engine -> kernel, as a check of what every file includes.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +8,9 @@
 
 namespace carom::test {
 
-/// One sentence for every include and every target in a CMakeLists.txt under `root` that points upwards, into another room
-/// or into the laboratory, that cannot be resolved, or that brings in a library which the layer may not use; and for every
-/// product target that reads tests/.
+/// One sentence for every include and every target in a CMakeLists.txt under `root` that points upwards, into
+/// another room or into the laboratory, that cannot be resolved, or that brings in a library which the layer
+/// may not use; and for every product target that reads tests/.
 std::vector<std::string> layer_violations(const std::filesystem::path& root);
 
 }  // namespace carom::test

@@ -23,9 +23,9 @@ using test::TemporaryFolder;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // What a record file has to keep. Whoever adds a field to one of these structs is led here by the compiler:
-// the names below no longer match. Then write the field in engine/src/record/write.cpp, read it in
-// read.cpp beside it, describe it in docs/reference/ (a record that lacks it needs a default and a note), and
-// give it a value of its own in sample_record(). Balls, table and render settings have rows: scene_rows_test.cpp.
+// the names below no longer match. Then write the field in engine/src/record/write.cpp, read it in read.cpp
+// beside it, describe it in docs/reference/ (a record that lacks it needs a default and a note), and give it
+// a value of its own in sample_record(). Balls, table and render settings have rows: scene_rows_test.cpp.
 struct FieldsOfARecord {
     Table table;
     BallParams balls;

@@ -78,7 +78,8 @@ TEST(RecordFile, SaysWhatIsWrong) {
     for (const auto& c : kCases) EXPECT_EQ(error_of(changed(c.pointer, c.value)), c.message) << c.pointer;
 }
 
-// 1e25 rad/s for 1e25 s on a fixed axis, and on one that swerves: every number that a record may have gives a state.
+// 1e25 rad/s for 1e25 s on a fixed axis, and on one that
+// swerves: every number that a record may have gives a state.
 TEST(RecordFile, TheLargestNumbersGiveStates) {
     Json largest = Json::parse(changed("", nullptr));
     largest["duration"] = 1e25;

@@ -4,10 +4,10 @@
  * the long side, the origin where two nose lines meet. The state of a ball is nine doubles, row by row:
  * position [m], velocity [m/s], angular velocity [rad/s] ("rvw", a 3 x 3 array in other programs).
  *
- * Functions that can fail return a carom_status; after a failure carom_last_error() tells what is wrong and what to
- * do. The library prints nothing, does not abort, and throws no exceptions. Any function may be called from any
- * thread. A scene may be changed by one thread at a time; a record may be read by several threads. Every pointer must
- * be valid and not NULL, unless the comment of the function allows NULL.
+ * Functions that can fail return a carom_status; after a failure carom_last_error() tells what is wrong and
+ * what to do. The library prints nothing, does not abort, and throws no exceptions. Any function may be
+ * called from any thread. A scene may be changed by one thread at a time; a record may be read by several
+ * threads. Every pointer must be valid and not NULL, unless the comment of the function allows NULL.
  */
 #ifndef CAROM_CAROM_H
 #define CAROM_CAROM_H
@@ -39,8 +39,8 @@ typedef enum carom_status {
     CAROM_INTERNAL = 5 /* a defect of the library */
 } carom_status;
 
-/* The message of the last failed call in this thread; "" if no call has failed. Valid until the next failed call in
- * this thread. */
+/* The message of the last failed call in this thread; "" if no call has failed. Valid until the next failed
+ * call in this thread. */
 CAROM_API const char* carom_last_error(void);
 
 /* ---- Impacts ---- */
@@ -63,18 +63,19 @@ typedef enum carom_impact_status {
     CAROM_IMPACT_STEP_LIMIT = 4     /* not solved within the step limit: unchanged */
 } carom_impact_status;
 
-/* Solves one impact of the model of Mathavan, Jackson and Parkin (2014) with an error of at most `tolerance` (1e-13
- * to 1e-1) times the approach speed. Outputs may be inputs. Returns CAROM_BAD_ARGUMENT if a state, a parameter or the
- * tolerance is invalid. For balls that do not approach it returns CAROM_OK and the unchanged states. */
+/* Solves one impact of the model of Mathavan, Jackson and Parkin (2014) with an error of at most `tolerance`
+ * (1e-13 to 1e-1) times the approach speed. Outputs may be inputs. Returns CAROM_BAD_ARGUMENT if a state, a
+ * parameter or the tolerance is invalid. For balls that do not approach it returns CAROM_OK and the unchanged
+ * states. */
 CAROM_API carom_status carom_collide_balls(const double in1[9], const double in2[9],
                                            const carom_impact_params* params, double tolerance,
                                            double out1[9], double out2[9]);
 
-/* Solves `count` impacts, several times faster per impact. States are consecutive (count x 3 x 3). Parameters: one set
- * for all impacts (params_count = 1) or one for each (params_count = count). `status` receives count values of
- * carom_impact_status, or is NULL. If an impact cannot be computed, its states are left unchanged, the others are
- * solved, and the call returns CAROM_BAD_ARGUMENT. `out` may be `in`. The error bound is that of carom_collide_balls;
- * the results may differ from it within that bound. */
+/* Solves `count` impacts, several times faster per impact. States are consecutive (count x 3 x 3).
+ * Parameters: one set for all impacts (params_count = 1) or one for each (params_count = count). `status`
+ * receives count values of carom_impact_status, or is NULL. If an impact cannot be computed, its states are
+ * left unchanged, the others are solved, and the call returns CAROM_BAD_ARGUMENT. `out` may be `in`. The
+ * error bound is that of carom_collide_balls; the results may differ from it within that bound. */
 CAROM_API carom_status carom_collide_balls_batch(size_t count, const double* in1, const double* in2,
                                                  const carom_impact_params* params, size_t params_count,
                                                  double tolerance, double* out1, double* out2,
@@ -84,8 +85,8 @@ CAROM_API carom_status carom_collide_balls_batch(size_t count, const double* in1
 
 typedef struct carom_scene carom_scene;
 
-/* Reads a scene from a file or from its text (docs/reference/scene_format.md); messages use `name` as the name of the file. On
- * failure *scene is NULL. */
+/* Reads a scene from a file or from its text (docs/reference/scene_format.md); messages use `name` as the
+ * name of the file. On failure *scene is NULL. */
 CAROM_API carom_status carom_scene_read(const char* path, carom_scene** scene);
 CAROM_API carom_status carom_scene_parse(const char* text, const char* name, carom_scene** scene);
 
@@ -95,15 +96,17 @@ CAROM_API carom_status carom_scene_parse(const char* text, const char* name, car
 CAROM_API carom_status carom_scene_create(const char* table, const char* balls, carom_scene** scene);
 CAROM_API void carom_scene_free(carom_scene* scene); /* NULL is allowed */
 
-/* One parameter of the balls: "radius", "mass", "mu_s", "mu_r", "mu_sp", "mu_b", "mu_b_more", "mu_b_fall", "e_b",
- * "e_c", "e_c_fall", "e_c_above", "f_c", "f_c_more" or "f_c_fall". The friction between two balls that slip at u m/s is
- * mu_b + mu_b_more exp(-mu_b_fall u), that of a cushion f_c + f_c_more exp(-f_c_fall u), and its restitution at v m/s is
- * e_c - e_c_fall max(0, v - e_c_above); setting mu_b, f_c or e_c sets the other two to 0. A new radius also changes the heights of the existing balls; balls with their own radius keep it. */
+/* One parameter of the balls: "radius", "mass", "mu_s", "mu_r", "mu_sp", "mu_b", "mu_b_more", "mu_b_fall",
+ * "e_b", "e_c", "e_c_fall", "e_c_above", "f_c", "f_c_more" or "f_c_fall". The friction between two balls that
+ * slip at u m/s is mu_b + mu_b_more exp(-mu_b_fall u), that of a cushion f_c + f_c_more exp(-f_c_fall u), and
+ * its restitution at v m/s is e_c - e_c_fall max(0, v - e_c_above); setting mu_b, f_c or e_c sets the other
+ * two to 0. A new radius also changes the heights of the existing balls; balls with their own radius keep it.
+ */
 CAROM_API carom_status carom_scene_set_ball_param(carom_scene* scene, const char* name, double value);
 CAROM_API carom_status carom_scene_get_ball_param(const carom_scene* scene, const char* name, double* value);
 
-/* Adds a ball, or sets the state of the ball with this id, which keeps its own radius and mass. The height of its
- * centre must be its radius, its vertical velocity 0. carom_simulate reports balls that overlap. */
+/* Adds a ball, or sets the state of the ball with this id, which keeps its own radius and mass. The height of
+ * its centre must be its radius, its vertical velocity 0. carom_simulate reports balls that overlap. */
 CAROM_API carom_status carom_scene_set_ball(carom_scene* scene, const char* id, const double rvw[9]);
 
 typedef struct carom_cue {
@@ -116,23 +119,24 @@ typedef struct carom_cue {
     double restitution;   /* of the tip, 0 to 1; 1 loses nothing */
 } carom_cue;
 
-/* Sets the defaults of a scene file: 9 m/s along +y, slightly above the centre, 0.567 kg, end mass 0.00567 kg,
- * restitution 0.73. */
+/* Sets the defaults of a scene file: 9 m/s along +y, slightly above the centre, 0.567 kg, end mass 0.00567
+ * kg, restitution 0.73. */
 CAROM_API void carom_cue_init(carom_cue* cue);
 
-/* The cue strikes the ball with this id at the start; the ball must be at rest. NULL for `cue` removes the cue. */
+/* The cue strikes the ball with this id at the start; the ball must be at rest. NULL for `cue` removes the
+ * cue. */
 CAROM_API carom_status carom_scene_set_cue(carom_scene* scene, const char* id, const carom_cue* cue);
 
-/* The scene as the text of a scene file. Returns its length without the final 0, or (size_t)-1 on failure. Writes up to
- * `size` bytes including the final 0. `text` may be NULL if `size` is 0. */
+/* The scene as the text of a scene file. Returns its length without the final 0, or (size_t)-1 on failure.
+ * Writes up to `size` bytes including the final 0. `text` may be NULL if `size` is 0. */
 CAROM_API size_t carom_scene_text(const carom_scene* scene, char* text, size_t size);
 
 /* ---- Shots ---- */
 
 typedef struct carom_record carom_record;
 
-/* Validates the scene and simulates it until everything is at rest or the time is `until` [s] (negative: the end that
- * the scene defines). On failure *record is NULL. */
+/* Validates the scene and simulates it until everything is at rest or the time is `until` [s] (negative: the
+ * end that the scene defines). On failure *record is NULL. */
 CAROM_API carom_status carom_simulate(const carom_scene* scene, double until, carom_record** record);
 CAROM_API void carom_record_free(carom_record* record); /* NULL is allowed */
 
@@ -143,7 +147,8 @@ CAROM_API size_t carom_record_event_count(const carom_record* record);
 /* Id of a ball by its index from 0; NULL if the index is out of range. Valid as long as the record exists. */
 CAROM_API const char* carom_record_ball_id(const carom_record* record, size_t ball);
 
-/* The types of events are those of docs/reference/record_format.md; docs/reference/scene_format.md has the ids of balls and parts. */
+/* The types of events are those of docs/reference/record_format.md; docs/reference/scene_format.md has the
+ * ids of balls and parts. */
 typedef struct carom_event {
     double time;      /* [s] */
     const char* type; /* "ball_ball", "ball_cushion", "slide_roll", ... */
@@ -154,28 +159,29 @@ typedef struct carom_event {
 /* Event 0, 1, ... in chronological order. */
 CAROM_API carom_status carom_record_event(const carom_record* record, size_t index, carom_event* event);
 
-/* State of a ball at time t [s]; before the start that of the start, after the end that of the end. `state` receives
- * "stationary", "spinning", "sliding", "rolling", "pocketed", "falling" (over a pocket), "airborne" or "out", or is NULL. */
+/* State of a ball at time t [s]; before the start that of the start, after the end that of the end. `state`
+ * receives "stationary", "spinning", "sliding", "rolling", "pocketed", "falling" (over a pocket), "airborne"
+ * or "out", or is NULL. */
 CAROM_API carom_status carom_record_state(const carom_record* record, size_t ball, double t, double rvw[9],
                                           const char** state);
 
 /* Hash of all bits of the record: 16 hexadecimal digits and a final 0. */
 CAROM_API carom_status carom_record_hash(const carom_record* record, char hash[17]);
 
-/* One ball between two events that touch it, in closed form. At u = t - start, 0 <= u <= duration, its centre is at
- * r + u (v + u a / 2); its velocity is v + u a, of a rolling ball that is not held v (1 - u / duration); its angular
- * velocity is w + u dw in x and y, of a rolling ball that of rolling; w_z goes to 0 by spin_decay a second and stays
- * there. */
+/* One ball between two events that touch it, in closed form. At u = t - start, 0 <= u <= duration, its centre
+ * is at r + u (v + u a / 2); its velocity is v + u a, of a rolling ball that is not held v (1 - u /
+ * duration); its angular velocity is w + u dw in x and y, of a rolling ball that of rolling; w_z goes to 0 by
+ * spin_decay a second and stays there. */
 typedef struct carom_segment {
-    double start;      /* [s] since the start of the shot */
-    double duration;   /* until the ball's own next transition [s]; infinite if there is none */
-    double r[3], v[3]; /* centre [m] and velocity [m/s] at the start */
-    double w[3];       /* angular velocity at the start [rad/s] */
-    double a[3],
-        dw[3]; /* what they change by in a second, constant [m/s^2], [rad/s^2]; dw[2] is 0, and so is a[2] unless the ball falls or flies */
-    double spin_decay; /* of |w_z| [rad/s^2], at least 0 */
-    int32_t state;     /* a carom_motion_state */
-    int32_t held;      /* 1 in a resting contact, otherwise 0 */
+    double start;       /* [s] since the start of the shot */
+    double duration;    /* until the ball's own next transition [s]; infinite if there is none */
+    double r[3], v[3];  /* centre [m] and velocity [m/s] at the start */
+    double w[3];        /* angular velocity at the start [rad/s] */
+    double a[3], dw[3]; /* what they change by in a second, constant [m/s^2], [rad/s^2]; dw[2] is 0, and so is
+                           a[2] unless the ball falls or flies */
+    double spin_decay;  /* of |w_z| [rad/s^2], at least 0 */
+    int32_t state;      /* a carom_motion_state */
+    int32_t held;       /* 1 in a resting contact, otherwise 0 */
 } carom_segment;
 
 typedef enum carom_motion_state {
@@ -189,25 +195,25 @@ typedef enum carom_motion_state {
     CAROM_OUT = 7 /* it has left the table and plays no more */
 } carom_motion_state;
 
-/* The segments of a ball in the order of their starts; of two with the same start the later one counts. `segments`
- * receives carom_record_segment_count of them, which is 0 if there is no such ball. A game draws every frame from these
- * without another call. */
+/* The segments of a ball in the order of their starts; of two with the same start the later one counts.
+ * `segments` receives carom_record_segment_count of them, which is 0 if there is no such ball. A game draws
+ * every frame from these without another call. */
 CAROM_API size_t carom_record_segment_count(const carom_record* record, size_t ball);
 CAROM_API carom_status carom_record_segments(const carom_record* record, size_t ball,
                                              carom_segment* segments);
 
-/* States of all balls at `count` times: `rvw` receives count x balls x 9 numbers, ball after ball at the first time, then
- * at the second. `states` receives count x balls values of carom_motion_state, or is NULL. Times before the start
- * and after the end as in carom_record_state. */
+/* States of all balls at `count` times: `rvw` receives count x balls x 9 numbers, ball after ball at the
+ * first time, then at the second. `states` receives count x balls values of carom_motion_state, or is NULL.
+ * Times before the start and after the end as in carom_record_state. */
 CAROM_API carom_status carom_record_states(const carom_record* record, size_t count, const double* times,
                                            double* rvw, uint8_t* states);
 
-/* A new scene for the next shot: that of the record with its balls where and as they are at the end, without the balls
- * in pockets and without the cue. On failure *scene is NULL. */
+/* A new scene for the next shot: that of the record with its balls where and as they are at the end, without
+ * the balls in pockets and without the cue. On failure *scene is NULL. */
 CAROM_API carom_status carom_scene_from_record(const carom_record* record, carom_scene** scene);
 
-/* The same with the next strike, and validated: the cue strikes the ball with this id. Returns CAROM_BAD_SCENE if that ball
- * has fallen or has left the table, or is not at rest. */
+/* The same with the next strike, and validated: the cue strikes the ball with this id. Returns
+ * CAROM_BAD_SCENE if that ball has fallen or has left the table, or is not at rest. */
 CAROM_API carom_status carom_next_scene(const carom_record* record, const char* id, const carom_cue* cue,
                                         carom_scene** scene);
 
@@ -249,8 +255,9 @@ typedef struct carom_game_state {
 /* The state before the first shot; `first` is the player who begins. */
 CAROM_API carom_status carom_game_new(carom_game game, int first, int target, carom_game_state* state);
 
-/* What the next shot may do with `count` balls, named by their ids: `strike`, `first` and `callable` receive 1 or 0 for each: the
- * ball may be struck, may be the first that the cue ball meets, may be called. Each may be NULL. */
+/* What the next shot may do with `count` balls, named by their ids: `strike`, `first` and `callable` receive
+ * 1 or 0 for each: the ball may be struck, may be the first that the cue ball meets, may be called. Each may
+ * be NULL. */
 CAROM_API carom_status carom_legal(const carom_game_state* state, size_t count, const char* const* ids,
                                    uint8_t* strike, uint8_t* first, uint8_t* callable);
 
@@ -264,13 +271,14 @@ typedef struct carom_call {
 
 typedef struct carom_verdict carom_verdict;
 
-/* Judges a shot by the state before it. `call` may be NULL. On failure *verdict is NULL: the record does not end at rest, no cue
- * strikes in it, it lacks the game's balls, or the game is over. */
+/* Judges a shot by the state before it. `call` may be NULL. On failure *verdict is NULL: the record does not
+ * end at rest, no cue strikes in it, it lacks the game's balls, or the game is over. */
 CAROM_API carom_status carom_judge(const carom_game_state* state, const carom_record* record,
                                    const carom_call* call, carom_verdict** verdict);
 CAROM_API void carom_verdict_free(carom_verdict* verdict); /* NULL is allowed */
 
-/* A foul and the rule that it breaks ("WPA 6.1"); NULL if the index is out of range. Valid until the program ends. */
+/* A foul and the rule that it breaks ("WPA 6.1"); NULL if the index is out of range. Valid until the program
+ * ends. */
 CAROM_API size_t carom_verdict_foul_count(const carom_verdict* verdict);
 CAROM_API const char* carom_verdict_foul(const carom_verdict* verdict, size_t index);
 CAROM_API const char* carom_verdict_rule(const carom_verdict* verdict, size_t index);
@@ -281,7 +289,8 @@ CAROM_API int carom_verdict_penalty(
 /* The player who chooses among the options; -1 where there is one, and where lots decide. */
 CAROM_API int carom_verdict_chooser(const carom_verdict* verdict);
 
-/* How the game may go on: at least one option. The first one is what happens unless the chooser takes another. */
+/* How the game may go on: at least one option. The first one is what happens unless the chooser takes
+ * another. */
 typedef struct carom_option {
     const char*
         decision; /* "play on", "take in hand", "pass back", "rerack", ...; valid until the program ends */
@@ -295,15 +304,16 @@ CAROM_API carom_status carom_verdict_option(const carom_verdict* verdict, size_t
 CAROM_API carom_status carom_verdict_respot(const carom_verdict* verdict, size_t option, size_t index,
                                             const char** ball, double place[2]);
 
-/* The next shot: what is gone is gone, what is respotted is back, the cue ball of the state is placed and struck. `place` is
- * needed where the cue ball is gone and allowed where it is in hand; otherwise NULL. On failure *scene is NULL. */
+/* The next shot: what is gone is gone, what is respotted is back, the cue ball of the state is placed and
+ * struck. `place` is needed where the cue ball is gone and allowed where it is in hand; otherwise NULL. On
+ * failure *scene is NULL. */
 CAROM_API carom_status carom_next_shot(const carom_record* record, const carom_verdict* verdict,
                                        size_t option, const carom_cue* cue, const double* place,
                                        carom_scene** scene);
 
-/* The strike that a player makes who means `cue`: with normal errors of these standard deviations, of speed [m/s], aim, elevation
- * [degrees], side and height [ball radii]. The same seed and index give the same errors. The result is always a strike that a
- * scene takes. `out` may be `cue`. */
+/* The strike that a player makes who means `cue`: with normal errors of these standard deviations, of speed
+ * [m/s], aim, elevation [degrees], side and height [ball radii]. The same seed and index give the same
+ * errors. The result is always a strike that a scene takes. `out` may be `cue`. */
 CAROM_API carom_status carom_noisy_cue(const carom_cue* cue, const double deviations[5], uint64_t seed,
                                        uint64_t index, carom_cue* out);
 /* The deviations of "none", "fastfiz" or "ai3603" for a ball of this radius [m]. */
@@ -322,13 +332,14 @@ typedef enum carom_shot_status {
     CAROM_SHOT_FAILED = 5   /* no result: the simulation could not go on */
 } carom_shot_status;
 
-/* Plays `shots` shots of one scene that differ in the numbers of some keys, such as "cue.speed", "cue.aim_deg",
- * "cue.offset.side", "ball.1.position.x", "ball.1.velocity.y", "balls.mu_b" (docs/guide/sweep.md; the numbers of [cue],
- * [balls], [[ball]], [physics], [stop] and of the parts of the table). `values` holds key_count x shots numbers: all of the
- * first key, then all of the second. Every shot has the results of carom_simulate, bit for bit, whatever the number of
- * threads (0: one for each core). A shot that is invalid or fails has its status, and the others are played:
- * the call returns CAROM_OK. `hashes`: 1 if carom_batch_hash is wanted, otherwise 0. `until` as in carom_simulate. On failure
- * (an unknown key) *batch is NULL. `scene` need not be valid before its numbers are set. */
+/* Plays `shots` shots of one scene that differ in the numbers of some keys, such as "cue.speed",
+ * "cue.aim_deg", "cue.offset.side", "ball.1.position.x", "ball.1.velocity.y", "balls.mu_b"
+ * (docs/guide/sweep.md; the numbers of [cue], [balls], [[ball]], [physics], [stop] and of the parts of the
+ * table). `values` holds key_count x shots numbers: all of the first key, then all of the second. Every shot
+ * has the results of carom_simulate, bit for bit, whatever the number of threads (0: one for each core). A
+ * shot that is invalid or fails has its status, and the others are played: the call returns CAROM_OK.
+ * `hashes`: 1 if carom_batch_hash is wanted, otherwise 0. `until` as in carom_simulate. On failure (an
+ * unknown key) *batch is NULL. `scene` need not be valid before its numbers are set. */
 CAROM_API carom_status carom_simulate_many(const carom_scene* scene, size_t shots, size_t key_count,
                                            const char* const* keys, const double* values, double until,
                                            int threads, int hashes, carom_batch** batch);
@@ -337,7 +348,8 @@ CAROM_API void carom_batch_free(carom_batch* batch); /* NULL is allowed */
 CAROM_API size_t carom_batch_shot_count(const carom_batch* batch);
 CAROM_API size_t carom_batch_ball_count(const carom_batch* batch);
 
-/* Arrays of shot_count numbers, valid as long as the batch exists. A shot without a result has 0, and -1 as ball. */
+/* Arrays of shot_count numbers, valid as long as the batch exists. A shot without a result has 0, and -1 as
+ * ball. */
 CAROM_API const uint8_t* carom_batch_status(const carom_batch* batch);  /* a carom_shot_status */
 CAROM_API const double* carom_batch_duration(const carom_batch* batch); /* [s] */
 CAROM_API const int64_t* carom_batch_events(const carom_batch* batch);  /* number of events */
@@ -350,8 +362,8 @@ CAROM_API const int32_t* carom_batch_approach_cushions(
 /* The hash of carom_record_hash as a number; NULL unless it was asked for. */
 CAROM_API const uint64_t* carom_batch_hash(const carom_batch* batch);
 
-/* Arrays of shot_count x ball_count numbers: the balls of the first shot in the order of the scene, then those of the
- * second. */
+/* Arrays of shot_count x ball_count numbers: the balls of the first shot in the order of the scene, then
+ * those of the second. */
 CAROM_API const double* carom_batch_x(const carom_batch* batch); /* at the end [m] */
 CAROM_API const double* carom_batch_y(const carom_batch* batch); /* at the end [m] */
 CAROM_API const int32_t* carom_batch_pocket(

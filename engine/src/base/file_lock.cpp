@@ -18,7 +18,8 @@ namespace {
     throw std::runtime_error(name + ": " + what + ": " + std::strerror(reason));
 }
 
-/// Whether the file still has this name: between opening and locking, another program may have renamed or removed it.
+/// Whether the file still has this name: between opening and
+/// locking, another program may have renamed or removed it.
 bool is_named(int fd, const std::string& name) {
     struct stat opened {};
     struct stat named {};

@@ -89,8 +89,8 @@ SinCos in_quadrant(Sum r, int quadrant) {
 constexpr SinCos kUndefined{std::numeric_limits<double>::quiet_NaN(),
                             std::numeric_limits<double>::quiet_NaN()};
 
-/// Remainder of x >= 0 by 360. It is exact because each subtraction is exact (Sterbenz). Angles in files are small;
-/// the loops serve all others.
+/// Remainder of x >= 0 by 360. It is exact because each subtraction is
+/// exact (Sterbenz). Angles in files are small; the loops serve all others.
 double remainder_360(double x) {
     while (x >= 360.0) {
         double part = 360.0;
@@ -142,8 +142,8 @@ double arc_cos(double x) {
     constexpr double kPi = 3.141592653589793;
     if (!(x >= -1.0 && x <= 1.0)) return std::numeric_limits<double>::quiet_NaN();
     if (x < 0.0) return kPi - arc_cos(-x);
-    // Half the angle, y in [0, pi/4], from sin y = sqrt((1 - x) / 2) by Newton's method. The series of the arc sine
-    // gives a first value with an error below 6e-3, and every step squares the error.
+    // Half the angle, y in [0, pi/4], from sin y = sqrt((1 - x) / 2) by Newton's method. The series of the
+    // arc sine gives a first value with an error below 6e-3, and every step squares the error.
     const double s = __builtin_sqrt(0.5 * (1.0 - x));
     const double z = s * s;
     double y = s * (1.0 + z * (1.0 / 6.0 + z * (3.0 / 40.0)));
@@ -158,7 +158,8 @@ double exponential(double x) {
     if (x != x) return x;
     if (x > 709.8) return std::numeric_limits<double>::infinity();
     if (x < -745.2) return 0.0;
-    // e^x = 2^k e^r with |r| <= ln 2 / 2. ln 2 has two parts, so that k ln 2 is exact except for the last bits.
+    // e^x = 2^k e^r with |r| <= ln 2 / 2. ln 2 has two parts,
+    // so that k ln 2 is exact except for the last bits.
     constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
     const double k = nearest(x * 1.4426950408889634);
     const double high = x - k * kLn2High, low = k * kLn2Low;

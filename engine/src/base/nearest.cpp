@@ -16,7 +16,8 @@ char small(char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-/// Letters to add, drop, change or swap with their neighbour, none of them twice, on the way from one word to the other.
+/// Letters to add, drop, change or swap with their neighbour,
+/// none of them twice, on the way from one word to the other.
 std::size_t edits_between(std::string_view from, std::string_view to) {
     using Row = std::array<std::size_t, kLongestWord + 1>;
     Row before_last{}, last{}, row{};

@@ -38,8 +38,8 @@ int descriptor(std::string_view path) {
     return error == std::errc() && end == path.data() + path.size() ? number : -1;
 }
 
-/// Removes what killed programs left in a folder: temporary files that nobody has locked. Once for each folder, for one may hold many
-/// files.
+/// Removes what killed programs left in a folder: temporary files that
+/// nobody has locked. Once for each folder, for one may hold many files.
 void remove_left(const std::filesystem::path& folder) {
     static std::mutex mutex;
     static std::set<std::filesystem::path> seen;
@@ -99,19 +99,21 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(path_
     open_temporary();
 }
 
-// Others may be able to make files in the folder: the temporary one has to be new, and no link. It has the rights of the file that
-// it will replace.
+// Others may be able to make files in the folder: the temporary one has to
+// be new, and no link. It has the rights of the file that it will replace.
 void OutputFile::open_temporary() {
     struct stat there {};
     const bool replaces = ::stat(target_.c_str(), &there) == 0;
     const std::filesystem::path folder = std::filesystem::path(target_).parent_path();
     remove_left(folder.empty() ? "." : folder);
     for (int k = 0; k < kMostNames; ++k) {
-        // Short, because the name of the file may be as long as a name can be; of this process, for other programs write here, too.
+        // Short, because the name of the file may be as long as a name
+        // can be; of this process, for other programs write here, too.
         temporary_ = (folder / fmt::format("{}{}.{}{}", kTemporary, ::getpid(), k, kTemporaryEnd)).string();
         const int fd = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (fd < 0 && errno == EEXIST) continue;
-        // Locked as long as it is written, so that others see that it is not left over; one who saw it before that removed it.
+        // Locked as long as it is written, so that others see that it
+        // is not left over; one who saw it before that removed it.
         struct stat opened {};
         if (fd >= 0 && ::flock(fd, LOCK_EX | LOCK_NB) == 0 && ::fstat(fd, &opened) == 0 &&
             opened.st_nlink == 0) {

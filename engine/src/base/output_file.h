@@ -7,19 +7,21 @@
 
 namespace carom {
 
-/// The process's own stream that /dev/stdout, /dev/stderr or /dev/fd/N names, as a stream of its own that goes on where that one stands; null for every
-/// other path, and with errno set where the process has no such stream. Opened by its name, a file that the shell has redirected to would be a second time
-/// open: emptied, replaced, or written over by what is printed.
+/// The process's own stream that /dev/stdout, /dev/stderr or /dev/fd/N names, as a stream of its own that
+/// goes on where that one stands; null for every other path, and with errno set where the process has no such
+/// stream. Opened by its name, a file that the shell has redirected to would be a second time open: emptied,
+/// replaced, or written over by what is printed.
 std::FILE* own_stream(const std::string& path);
 
-/// The file that a path stands for, whether it is there or not: all links are followed, and the folder is that without links. The path
-/// itself where there is no such folder.
+/// The file that a path stands for, whether it is there or not: all links are followed, and the folder is
+/// that without links. The path itself where there is no such folder.
 std::string file_of(const std::string& path);
 
 /// Every failure is a std::runtime_error that names the file and the reason.
 ///
-/// If the path is not a regular file (/dev/null, a named pipe), it is written to directly: renaming would replace the
-/// device itself. So is the process's own stream (own_stream), whatever the shell has redirected it to.
+/// If the path is not a regular file (/dev/null, a named pipe), it is written
+/// to directly: renaming would replace the device itself. So is the process's
+/// own stream (own_stream), whatever the shell has redirected it to.
 class OutputFile {
   public:
     explicit OutputFile(std::string path);
@@ -43,8 +45,8 @@ class OutputFile {
     std::string target_;     ///< after following symbolic links
     std::string temporary_;  ///< empty if the target is written to directly
     std::FILE* file_ = nullptr;
-    int lock_ =
-        -1;  ///< of the temporary file, until it has its name: what nobody has locked is left over, and goes
+    /// of the temporary file, until it has its name: what nobody has locked is left over, and goes
+    int lock_ = -1;
 };
 
 }  // namespace carom

@@ -1,7 +1,8 @@
-// The random generator for racks. It is implemented here so that a seed always gives the same rack on every system.
+// The random generator for racks. It is implemented here so
+// that a seed always gives the same rack on every system.
 //
-// SplitMix64: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, with the constants
-// of the variant mix13.
+// SplitMix64: Steele, Lea, Flood, "Fast splittable pseudorandom number
+// generators", OOPSLA 2014, with the constants of the variant mix13.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The one door by which a number of a TOML file or flag becomes a number of the program: `value<double>()` of toml++ is empty for
-// an integer that no double holds, and what is empty must not be read.
+// The one door by which a number of a TOML file or flag becomes a number of the program: `value<double>()` of
+// toml++ is empty for an integer that no double holds, and what is empty must not be read.
 #pragma once
 
 #include <toml++/toml.h>

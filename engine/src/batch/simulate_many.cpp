@@ -21,8 +21,8 @@ namespace carom {
 
 namespace {
 
-// [-] Most shots that a thread takes at once: a few microseconds each at least, so that taking them costs nothing. Small batches are
-// taken in smaller pieces, so that all threads end at about the same time.
+// [-] Most shots that a thread takes at once: a few microseconds each at least, so that taking them costs
+// nothing. Small batches are taken in smaller pieces, so that all threads end at about the same time.
 constexpr std::size_t kBlock = 16;
 
 std::vector<SceneNumber> numbers_of(const Scene& scene, std::size_t shots,

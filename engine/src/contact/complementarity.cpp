@@ -32,7 +32,8 @@ void Complementarity::multiply_add(double factor, const std::vector<double>& x,
     }
 }
 
-// LU factorisation with partial pivoting of the basic rows and columns. Contacts that are ordered by place fill a band, beyond which all stays zero.
+// LU factorisation with partial pivoting of the basic rows and columns.
+// Contacts that are ordered by place fill a band, beyond which all stays zero.
 bool Complementarity::factor() {
     index_.clear();
     place_.assign(size, size);
@@ -120,9 +121,9 @@ double Complementarity::worst_residual(const std::vector<double>& w) {
     return worst;
 }
 
-// The refinements remove the effect of the compliance down to rounding, as long as each at least halves the residual; where contacts
-// contradict each other it does not. In a wedge whose smallest eigenvalue is 1e-11, two refinements left 1e-9 m/s^2: 1e-12 m after some
-// tenths of a second.
+// The refinements remove the effect of the compliance down to rounding, as long as each at least halves the
+// residual; where contacts contradict each other it does not. In a wedge whose smallest eigenvalue is 1e-11,
+// two refinements left 1e-9 m/s^2: 1e-12 m after some tenths of a second.
 void Complementarity::polish(std::vector<double>& w) {
     refine(w);
     refine(w);
@@ -143,8 +144,8 @@ void Complementarity::polish(std::vector<double>& w) {
     }
 }
 
-// If the smallest eigenvalue is below the compliance, every refinement removes the same small share of the error: the
-// corrections form a geometric series, whose sum follows from the last two.
+// If the smallest eigenvalue is below the compliance, every refinement removes the same small share of the
+// error: the corrections form a geometric series, whose sum follows from the last two.
 void Complementarity::extrapolate(std::vector<double>& w) {
     double both = 0.0, square = 0.0;
     for (std::size_t k = 0; k < part_.size(); ++k) {
@@ -184,9 +185,10 @@ bool Complementarity::solve(bool thorough) {
     return false;
 }
 
-// Contacts between which the softness decides may be exchanged without end. With more of it they are not, and each solution is where
-// the next one is soft towards: what the softness changes dies away (the proximal point method of Martinet and Rockafellar). It dies
-// away the faster the less of it there is, so that each round has a tenth of it, for as long as the exchanges end.
+// Contacts between which the softness decides may be exchanged without end. With more of it they are not, and
+// each solution is where the next one is soft towards: what the softness changes dies away (the proximal
+// point method of Martinet and Rockafellar). It dies away the faster the less of it there is, so that each
+// round has a tenth of it, for as long as the exchanges end.
 bool Complementarity::approach() {
     const std::vector<double> wanted = q;
     std::vector<double> own(size, 0.0), before;

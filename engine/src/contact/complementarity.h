@@ -1,5 +1,5 @@
-// Linear complementarity problems of a few dozen unknowns: the steps of Newton's method for the impulses in a group of
-// resting contacts.
+// Linear complementarity problems of a few dozen unknowns: the steps
+// of Newton's method for the impulses in a group of resting contacts.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace carom {
 
-/// [-] Compliance of each contact of a group, relative to its mobility (the diagonal of A). It makes the solution
-/// unique: redundant contacts share the load.
+/// [-] Compliance of each contact of a group, relative to its mobility (the
+/// diagonal of A). It makes the solution unique: redundant contacts share the load.
 inline constexpr double kContactSoftness = 1e-12;
 
 /// z >= 0, w = A z + q >= 0, z . w = 0.
@@ -25,20 +25,21 @@ struct Complementarity {
         entries.clear();
         first.clear();
     }
-    /// The next column of A: begin_column(), then its entries, each row once, that of the diagonal among them. What is left out is zero, as between contacts without a
-    /// common ball.
+    /// The next column of A: begin_column(), then its entries, each row once, that of the diagonal among
+    /// them. What is left out is zero, as between contacts without a common ball.
     void begin_column() { first.push_back(entries.size()); }
     void add(std::size_t row, double value) { entries.push_back({row, value}); }
     /// result += A x, column by column.
     void multiply_add(double factor, const std::vector<double>& x, std::vector<double>& result) const;
 
-    /// Block principal pivoting: exchanges all infeasible rows while their number decreases, otherwise one row
-    /// (Murty's rule), which terminates for every P-matrix (Judice and Pires, "A block principal pivoting
+    /// Block principal pivoting: exchanges all infeasible rows while their number decreases, otherwise one
+    /// row (Murty's rule), which terminates for every P-matrix (Judice and Pires, "A block principal pivoting
     /// algorithm for large-scale strictly monotone linear complementarity problems", 1994). The diagonal is
-    /// increased by kContactSoftness of itself, so that redundant contacts (a ball in three of them) share their
-    /// load evenly and the solution is unique; iterative refinement removes this effect again, down to rounding.
-    /// It begins with the rows in which z is positive or A z + q negative.
-    /// @param thorough  whether to go on where the pivots do not end: for matrices without negative eigenvalues, in which rounding decides; others
+    /// increased by kContactSoftness of itself, so that redundant contacts (a ball in three of them) share
+    /// their load evenly and the solution is unique; iterative refinement removes this effect again, down to
+    /// rounding. It begins with the rows in which z is positive or A z + q negative.
+    /// @param thorough  whether to go on where the pivots do not end: for matrices without negative
+    /// eigenvalues, in which rounding decides; others
     ///                  may have no solution, and are given up soon
     /// @return false if no solution was found (A may have none); z is then 0
     bool solve(bool thorough = true);

@@ -50,7 +50,8 @@ double first_contact(const At& at, double reach, double curving, double rounding
         if (gap <= rounding) {
             if (now.rate < -noise) return t;
             if (now.rate <= noise) {
-                // It only touches. Where it is pressed on, the contact begins once its speed can be told from 0.
+                // It only touches. Where it is pressed on, the
+                // contact begins once its speed can be told from 0.
                 if (now.bend < 0.0) {
                     const double pressed = t + 2.0 * noise / -now.bend;
                     return pressed <= horizon ? pressed : kNever;

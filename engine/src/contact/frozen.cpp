@@ -8,8 +8,8 @@
 namespace carom {
 namespace {
 
-// [ball radii] A ball that moved by less than this off a cushion has not left it: the rounding of places, and far below what
-// anyone could see.
+// [ball radii] A ball that moved by less than this off a cushion has not
+// left it: the rounding of places, and far below what anyone could see.
 constexpr double kStillFrozen = 1e-9;
 
 /// The point of the table's part that is nearest to a place.

@@ -17,8 +17,8 @@ namespace {
 constexpr double kLeastRestitution = 0.1;
 // [s] A speed that rolling friction would stop within this time counts as zero.
 constexpr double kStopNoise = 1e-12;
-// [s] The same without rolling friction, with sliding friction instead: such a speed moves a ball by no more than
-// 1e-12 m in an hour.
+// [s] The same without rolling friction, with sliding friction instead:
+// such a speed moves a ball by no more than 1e-12 m in an hour.
 constexpr double kSlideNoise = 1e-16;
 // [of a closing speed] Impulses that leave less of it come nearer to a solution.
 constexpr double kNearer = 0.5;
@@ -84,8 +84,8 @@ Link link_of(const Group& g, const RestingContact& c) {
     return link;
 }
 
-// What slips that count as zero, and the rounding of impulses a million times the speeds, in a flat wedge, would add to the energy is taken from
-// all motions alike, so that rates and slips of zero stay zero.
+// What slips that count as zero, and the rounding of impulses a million times the speeds, in a flat wedge,
+// would add to the energy is taken from all motions alike, so that rates and slips of zero stay zero.
 // @return whether that is something
 bool keep_energy(Group& g) {
     double before = 0.0, after = 0.0;
@@ -119,8 +119,8 @@ void accept(Group& g) {
     }
 }
 
-// A contact that opens so slowly that friction alone could close it again within the duration of a contact goes on until its gap
-// can be noticed.
+// A contact that opens so slowly that friction alone could close it again
+// within the duration of a contact goes on until its gap can be noticed.
 void mark_open(Group& g) {
     for (Link& link : g.links) {
         const double rate = gap_rate(g, link), e = link.j >= 0 ? g.around.balls.e_b : g.around.balls.e_c;
@@ -151,8 +151,9 @@ void remove_closing_speeds(Group& g) {
     mark_open(g);
 }
 
-// A contact ends once its gap opens by more than rounding, and never at the instant at which it began, so that no
-// contact can begin and end forever. A contact without force that does not open (balls at rest, equal rolling) stays.
+// A contact ends once its gap opens by more than rounding, and never at the
+// instant at which it began, so that no contact can begin and end forever. A
+// contact without force that does not open (balls at rest, equal rolling) stays.
 void mark_released(Group& g) {
     for (std::size_t c = 0; c < g.links.size(); ++c) g.group.contacts[c].released = g.links[c].open;
 }

@@ -1,15 +1,17 @@
-// One solution of one group of resting contacts (resting.h): what impulses do (resting_response.cpp), which impulses end an interval
-// without closing contacts (resting_newton.cpp), the step over it, and what counts as a solution (resting_step.cpp), and how long an
-// interval may be (resting_interval.cpp). resting.cpp defines the order.
+// One solution of one group of resting contacts (resting.h): what impulses do (resting_response.cpp), which
+// impulses end an interval without closing contacts (resting_newton.cpp), the step over it, and what counts
+// as a solution (resting_step.cpp), and how long an interval may be (resting_interval.cpp). resting.cpp
+// defines the order.
 //
-// Everything is evaluated at the end of the interval h (an implicit step, after J. J. Moreau's time-stepping for unilateral
-// contacts with friction). For each ball, per mass, with v its velocity, s = R (w_y, -w_x) the velocity with which it would roll,
-// and u = v - s its slip:
+// Everything is evaluated at the end of the interval h (an implicit step, after J. J. Moreau's time-stepping
+// for unilateral contacts with friction). For each ball, per mass, with v its velocity, s = R (w_y, -w_x) the
+// velocity with which it would roll, and u = v - s its slip:
 //   v' = v + P + f - d,  s' = s + 5/2 (C - f) - d,  u' = u + P - 5/2 C + 7/2 f
-// with the pushes P = sum of +-J n, the couples C = -sum of f_z J n of the vertical friction f_z J between two balls, the friction of the
-// cloth f, and the resistance d of a rolling ball. The friction opposes the slip at the end: f = -mu_s g h u'/|u'|, or whatever ends the slip
-// where less is enough; d likewise opposes the velocity at the end. So a ball stops, rolls, or slides by what the whole interval does
-// to it, and no interval is too short for a direction that reverses. The impulses J >= 0 of the contacts fulfil J >= 0, gap
+// with the pushes P = sum of +-J n, the couples C = -sum of f_z J n of the vertical friction f_z J between
+// two balls, the friction of the cloth f, and the resistance d of a rolling ball. The friction opposes the
+// slip at the end: f = -mu_s g h u'/|u'|, or whatever ends the slip where less is enough; d likewise opposes
+// the velocity at the end. So a ball stops, rolls, or slides by what the whole interval does to it, and no
+// interval is too short for a direction that reverses. The impulses J >= 0 of the contacts fulfil J >= 0, gap
 // rate at the end >= 0, J x rate = 0.
 #pragma once
 
@@ -22,8 +24,8 @@ namespace carom::resting {
 
 /// [s] Shortest interval: whatever reverses within it is taken as what it is at its end.
 inline constexpr double kShortestInterval = 1e-5;
-/// [m] and [s] A deeper overlap is removed within the interval, but not in less than this time: otherwise the rounding
-/// errors of a long push would add up to nearly 1e-12 m.
+/// [m] and [s] A deeper overlap is removed within the interval, but not in less than this time: otherwise the
+/// rounding errors of a long push would add up to nearly 1e-12 m.
 inline constexpr double kOverlapDepth = 2e-14;
 inline constexpr double kRecoveryTime = 1e-3;
 /// [m] Largest gap of a contact that goes on.
@@ -111,7 +113,8 @@ struct Across {
 };
 Across across(const Group& g, const Link& link, double h);
 
-/// [m/s] Rate at which the gap opens at the start, and at the end of the interval (without the turning of the normal).
+/// [m/s] Rate at which the gap opens at the start, and at the
+/// end of the interval (without the turning of the normal).
 double gap_rate(const Group& g, const Link& link);
 double end_rate(const Group& g, const Link& link);
 /// [m/s] Upward slip of two balls at their contact, and the one parallel to the cloth.
@@ -124,13 +127,15 @@ Vec2 contact_slip(const Group& g, const Link& link, bool at_end);
 void respond(Group& g, double h, bool friction, bool stops = false);
 
 // resting_newton.cpp
-/// Solves for the impulses of the contacts that are not open, by Newton's method, from those that are there. @return whether there is a solution
+/// Solves for the impulses of the contacts that are not open, by Newton's method, from those that are there.
+/// @return whether there is a solution
 bool solve_newton(Group& g, double h, const StepOptions& options);
 /// [m/s] Slip of two balls that their friction ends within the interval.
 double slip_ended(const Group& g, const Link& link);
 
 // resting_step.cpp
-/// Solves the step over h [s]; without friction for 0, an instant. @return whether there is a solution; without one the closest state is left
+/// Solves the step over h [s]; without friction for 0, an instant. @return
+/// whether there is a solution; without one the closest state is left
 bool step(Group& g, double h, StepOptions options = {});
 /// Whether an impulse of the solution over h is more than what drives the group makes: balls lock each other.
 bool locks(const Group& g, double h);

@@ -16,9 +16,11 @@ namespace {
 constexpr double kLongestInterval = 1e6;
 // [m] Position error of a ball in one interval: 1e-6 m after the hundred or so intervals of a long push.
 constexpr double kPlaceError = 2e-8;
-// [s] What friction stops at once rests after this time at the latest: with the error of places alone it could creep for days.
+// [s] What friction stops at once rests after this time at the
+// latest: with the error of places alone it could creep for days.
 constexpr double kStopsWithin = 0.01;
-// [s] Longest interval without the friction between balls, where that leaves no solution and anything accelerates.
+// [s] Longest interval without the friction between balls,
+// where that leaves no solution and anything accelerates.
 constexpr double kSmooth = 0.03;
 // [-] Where an interval may go on for this share of itself after a stop, it is not made to end there exactly.
 constexpr double kSoon = 1e-2;
@@ -30,16 +32,19 @@ constexpr double kTurnOfMiddle = 0.5;
 constexpr double kNormalTurn = 0.03;
 // [of the sliding acceleration] Smaller opening accelerations are the rounding of the forces.
 constexpr double kOpening = 1e-10;
-// [-] Directions that differ by less (sine of the angle) count as constant: the closed form of a straight line applies.
+// [-] Directions that differ by less (sine of the angle) count
+// as constant: the closed form of a straight line applies.
 constexpr double kStraight = 1e-9;
 // [-] An interval is met to this share of itself.
 constexpr double kMet = 1e-9;
 // [ulp of the time] Shortest interval, so that the clock advances.
 constexpr double kClockTicks = 8.0;
-// [-] Most attempts at an interval, and at a longer one, which ends when something has gone; it is tried if that is nearly so.
+// [-] Most attempts at an interval, and at a longer one, which
+// ends when something has gone; it is tried if that is nearly so.
 constexpr int kAttempts = 60, kLonger = 6;
 constexpr double kNearly = 1e-2;
-// [-] First attempt, as a multiple of the group's last interval: what limited that one mostly limits this one.
+// [-] First attempt, as a multiple of the group's last
+// interval: what limited that one mostly limits this one.
 constexpr double kGrowth = 4.0;
 // [-] Shortest next attempt, as a share of the last.
 constexpr double kShorter = 0.2;
@@ -52,7 +57,8 @@ double time_gone(const Vec2& x, const Vec2& D, double S) {
     return time > 0.0 ? time : kNever;
 }
 
-// Interval, in steps of a tenth, in which an error that grows with the given power of it is at most `allowed`.
+// Interval, in steps of a tenth, in which an error that
+// grows with the given power of it is at most `allowed`.
 double allowed_interval(double h, double error, double allowed, int power) {
     if (!(error > allowed)) return kNever;
     constexpr double kStep = 0.9;
@@ -91,7 +97,8 @@ double gone_within(const Group& g, const Body& b, double h) {
     return time_gone(b.v, (5.0 / 7.0) * (b.push + b.couple) / h, g.motion.roll);
 }
 
-// [s] How long an interval goes on after a stop: what stops within it is stopped evenly until its end, and so goes too far.
+// [s] How long an interval goes on after a stop: what stops
+// within it is stopped evenly until its end, and so goes too far.
 double after_stop(double speed) {
     return std::min(kStopsWithin, 2.0 * kPlaceError / speed);
 }
@@ -113,8 +120,9 @@ double gone_later(const Group& g, const Body& b, double h) {
     return goes ? h * start / (start - along) : kNever;
 }
 
-// Interval for which the friction of a ball has the right direction: S w h^2 / 12 is the error of a friction of strength S
-// along a direction that turns by w, taken at the middle of the interval, and S h^2 / 2 is more than any error.
+// Interval for which the friction of a ball has the right direction: S w h^2 /
+// 12 is the error of a friction of strength S along a direction that turns by
+// w, taken at the middle of the interval, and S h^2 / 2 is more than any error.
 double friction_interval(const Group& g, const Body& b, double h) {
     const Moving m = moving(g, b);
     if (!moves(m.start)) return kNever;
@@ -142,7 +150,8 @@ double link_interval(const Group& g, const Link& link, double h, double rounding
     }
     const double rate = gap_rate(g, link);
     if (!(link.J > 0.0)) {
-        // A contact that opens is released once its rate can be distinguished from rounding, and before its gap can be seen.
+        // A contact that opens is released once its rate can be
+        // distinguished from rounding, and before its gap can be seen.
         const double opening = (end_rate(g, link) - rate) / h + link.turning;
         if (opening > kOpening * g.motion.slide)
             interval = std::min(interval, std::max(std::sqrt(2.0 * kGapLeft / opening),
@@ -150,7 +159,8 @@ double link_interval(const Group& g, const Link& link, double h, double rounding
         if (rate > g.noise) interval = std::min(interval, kGapLeft / rate);
         return interval;
     }
-    // Neither the rounding of the rates nor a closing speed that could not be removed may add up to an overlap.
+    // Neither the rounding of the rates nor a closing speed
+    // that could not be removed may add up to an overlap.
     const double closing = rounding + std::max(0.0, -rate);
     interval = std::min(interval, allowed_interval(h, closing * h, kOverlapGrowth, 2));
     const double force = link.J / h;
@@ -267,8 +277,9 @@ bool accelerates(const Group& g) {
     });
 }
 
-// The step over h. Where friction leaves no solution (Painleve), balls lock each other, and may stop each other at an instant; where that has no
-// solution either, friction is left out over kSmooth at most, and over the longest of the attempts that were cut for friction's sake.
+// The step over h. Where friction leaves no solution (Painleve), balls lock each other, and may stop each
+// other at an instant; where that has no solution either, friction is left out over kSmooth at most, and over
+// the longest of the attempts that were cut for friction's sake.
 // @return whether there is a solution
 bool attempt_at(Group& g, double& h, double shortest, double longest, bool may_cut) {
     g.cut = 0.0;

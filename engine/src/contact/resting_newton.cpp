@@ -12,32 +12,37 @@ namespace carom::resting {
 
 namespace {
 
-// [-] Most Newton steps of one solution; a few are usual, each is exact as soon as every ball's kind of motion is right.
+// [-] Most Newton steps of one solution; a few are usual, each
+// is exact as soon as every ball's kind of motion is right.
 constexpr int kNewtonSteps = 40;
-// [-] Until this step, what a change of the load does to the friction of the cloth is part of the linear problem: fewer steps, but where balls lock
-// each other no solution.
+// [-] Until this step, what a change of the load does to the friction of the cloth is part of the linear
+// problem: fewer steps, but where balls lock each other no solution.
 constexpr int kLoadSteps = 12;
-// [-] From this step on, each second one takes balls for stopped that hardly move: on the way to rest, Newton's method only halves their speed again
-// and again.
+// [-] From this step on, each second one takes balls for stopped that hardly move: on the way to rest,
+// Newton's method only halves their speed again and again.
 constexpr int kStopsFrom = 5;
-// [of the interval] Where a step of Newton's method says that its solution will hold for less, the interval is solved no further.
+// [of the interval] Where a step of Newton's method says that its
+// solution will hold for less, the interval is solved no further.
 constexpr double kTooLong = 0.95;
 // [of the wrong rates] A step that leaves more of them makes no headway.
 constexpr double kStandsStill = 0.9;
-// [-] A gap whose normal turns further than this is not looked at in detail: the interval is shortened anyway.
+// [-] A gap whose normal turns further than this is not
+// looked at in detail: the interval is shortened anyway.
 constexpr double kLongestTurn = 0.1;
 // [m] Overlap that the turning of a normal may cause within an interval.
 constexpr double kOverlapLeft = 4e-15;
-// [m] and [of the gap] A gap may be wrong by so much after an interval, if it opens or closes, and its normal may turn by the rest of it; an overlap
-// counts against what is harmless. A gap that opens under an impulse gains energy, of which so much is rounding [of the group's].
+// [m] and [of the gap] A gap may be wrong by so much after an interval, if it opens or closes, and its normal
+// may turn by the rest of it; an overlap counts against what is harmless. A gap that opens under an impulse
+// gains energy, of which so much is rounding [of the group's].
 constexpr double kOpensUnnoticed = 1e-10, kGapUsed = 0.1, kEnergyUnnoticed = 1e-13;
 // [m] Smaller changes of a gap are not looked at.
 constexpr double kNoGap = 4e-15;
 // [-] Most trials of a line search, and the share of its first slope that may be left.
 constexpr int kSearches = 8;
 constexpr double kSlopeLeft = 0.25;
-// [of its coefficient] Accuracy of the friction between balls; and [m] what it may be wrong by in a place, if that is no more than so much in a
-// speed [of the fastest]. The first two double in each step, so many times at most, for contacts that hold each other's slip.
+// [of its coefficient] Accuracy of the friction between balls; and [m] what it may be wrong
+// by in a place, if that is no more than so much in a speed [of the fastest]. The first two
+// double in each step, so many times at most, for contacts that hold each other's slip.
 constexpr double kFrictionAccuracy = 1e-9, kFrictionPlace = 1e-11, kFrictionSpeed = 1e-6;
 constexpr int kLooser = 20, kLooserPlace = 10;
 
@@ -54,8 +59,9 @@ double wanted_rate(const Group& g, const Link& link, double h, const StepOptions
     return end_rate(g, link) + (options.stabilise ? h * link.turning : 0.0);
 }
 
-// The friction between two balls opposes their slip at the end; the upward slip without it, X, and the impulse's effect on it give
-// f = -X / (effect + |slip| / mu), in which |slip| follows in a few turns of the secant method.
+// The friction between two balls opposes their slip at the end; the upward
+// slip without it, X, and the impulse's effect on it give f = -X / (effect +
+// |slip| / mu), in which |slip| follows in a few turns of the secant method.
 double vertical_friction(const Group& g, const Link& link) {
     // What holds two balls at rest may have any size.
     if (g.bodies[link.i].mode == Mode::kResting && g.bodies[link.j].mode == Mode::kResting)
@@ -80,10 +86,10 @@ double vertical_friction(const Group& g, const Link& link) {
     return std::clamp(f, -most, most);
 }
 
-// [m/s^2] What must be added to the acceleration of a gap along its first normal: with the tangential velocity v and acceleration a and
-// the distance D, the gap opens by 1/2 (v^2 t^2 + v a t^3 + 1/4 a^2 t^4) / D as the normal turns, and its rate ends
-// with 0 for (v^2 + 3/2 v a h + 1/2 a^2 h^2) / D. Where the gap would become negative meanwhile, it opens instead. Overlaps end within
-// the interval.
+// [m/s^2] What must be added to the acceleration of a gap along its first normal: with the tangential
+// velocity v and acceleration a and the distance D, the gap opens by 1/2 (v^2 t^2 + v a t^3 + 1/4 a^2 t^4) /
+// D as the normal turns, and its rate ends with 0 for (v^2 + 3/2 v a h + 1/2 a^2 h^2) / D. Where the gap
+// would become negative meanwhile, it opens instead. Overlaps end within the interval.
 double turning_of(const Link& link, const Across& t, double h) {
     const double time = std::max(h, kRecoveryTime);
     const double recovery = link.gap < -kOverlapDepth ? 2.0 * link.gap / (time * time) : 0.0;
@@ -107,7 +113,8 @@ double turning_of(const Link& link, const Across& t, double h) {
     return (free ? level : std::min(level, least)) + recovery;
 }
 
-// Takes over from a solution what the next one starts from, but for frictions that are right already: so the impulses that belong to them stay right.
+// Takes over from a solution what the next one starts from, but for frictions that are right already: so the
+// impulses that belong to them stay right.
 // @return whether it differs
 bool update(Group& g, double h, const StepOptions& options, int times) {
     const double accuracy = kFrictionAccuracy * static_cast<double>(1 << std::min(times, kLooser)) *
@@ -140,9 +147,10 @@ bool update(Group& g, double h, const StepOptions& options, int times) {
     return changed;
 }
 
-/// Frictions between balls follow from a solution and change the next one. Two changes in turn tell where that leads to (D. G. Anderson,
-/// "Iterative procedures for nonlinear integral equations", J. ACM 12, 1965, with one step back): balls that hold each other's spin come
-/// to it by a few percent of the way in each step.
+/// Frictions between balls follow from a solution and change the next one. Two changes in turn tell where
+/// that leads to (D. G. Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12, 1965,
+/// with one step back): balls that hold each other's spin come to it by a few percent of the way in each
+/// step.
 class Extrapolation {
   public:
     void note(const Group& g) {
@@ -182,8 +190,8 @@ class Extrapolation {
     std::vector<double> change_;               // of the vertical impulses
 };
 
-/// The impulses of the contacts that do not open, by Newton's method on J >= 0, rate >= 0, J rate = 0. That is piecewise smooth and, but
-/// for the friction between balls, monotone.
+/// The impulses of the contacts that do not open, by Newton's method on J >= 0, rate >= 0, J rate = 0. That
+/// is piecewise smooth and, but for the friction between balls, monotone.
 class Newton {
   public:
     Newton(Group& g, double h, const StepOptions& options)
@@ -226,7 +234,8 @@ class Newton {
     }
 
   private:
-    // Whether a whole step of the same linear problem has left the rates as wrong as they were: rounding decides.
+    // Whether a whole step of the same linear problem has
+    // left the rates as wrong as they were: rounding decides.
     bool stands_still() const {
         bool same = whole_ && worst_ > kStandsStill * worst_before_ && modes_.size() == g_.bodies.size();
         for (std::size_t b = 0; b < modes_.size(); ++b) same = same && modes_[b] == g_.bodies[b].mode;
@@ -263,7 +272,8 @@ class Newton {
         return link.gap > 0.0 ? kGapUsed * link.gap : std::max(-kOverlapGrowth, link.gap);
     }
 
-    // Notes the rates. Where balls go over from rest to rolling and back, a share of kRestCompliance is left: harmless where no gap notices it.
+    // Notes the rates. Where balls go over from rest to rolling and back, a
+    // share of kRestCompliance is left: harmless where no gap notices it.
     bool is_solved(bool& harmless) {
         const double rounding = rate_rounding(g_), time = std::max(h_, kShortestInterval);
         double energy = 0.0;
@@ -329,8 +339,9 @@ class Newton {
         }
     }
 
-    // Without friction between balls the rates are the gradient of a convex function of the impulses: its least value on the way to the
-    // solution of the linear problem is taken, so that two kinds of motion do not alternate.
+    // Without friction between balls the rates are the gradient of a convex
+    // function of the impulses: its least value on the way to the solution of the
+    // linear problem is taken, so that two kinds of motion do not alternate.
     void search() {
         const double first = slope();
         double low = 0.0, at_low = first, high = 1.0;

@@ -10,8 +10,8 @@ namespace {
 
 // [of what friction takes] A ball that moves by less hardly moves.
 constexpr double kHardlyMoves = 1e-2;
-// [-] Mobility of a ball at rest in the derivatives only, so that balls at rest share a load; a sliding ball has 1. With less of it a
-// rate that is nearly right asks for impulses that set the balls moving.
+// [-] Mobility of a ball at rest in the derivatives only, so that balls at rest share a load; a sliding ball
+// has 1. With less of it a rate that is nearly right asks for impulses that set the balls moving.
 constexpr double kRestCompliance = 1e-4;
 
 Matrix identity(double c) {

@@ -37,8 +37,9 @@ bool pushes(const Group& g, double h, double times) {
     return std::any_of(g.links.begin(), g.links.end(), [most](const Link& link) { return link.J > most; });
 }
 
-// Whether balls that hardly can move are driven by a friction that is only nearly right: it does work at the end of the interval, where
-// only normals that turn may. Twice the energy of the start, and what the impulses would add at the speeds of the end, per mass.
+// Whether balls that hardly can move are driven by a friction that is only nearly right: it
+// does work at the end of the interval, where only normals that turn may. Twice the energy
+// of the start, and what the impulses would add at the speeds of the end, per mass.
 bool is_driven(const Group& g, double h) {
     if (!pushes(g, h, 1.0)) return false;
     double energy = 0.0, power = 0.0;
@@ -57,8 +58,9 @@ bool solve_with(Group& g, double h, const StepOptions& options) {
     return solve_newton(g, h, options) && !(options.friction && is_driven(g, h));
 }
 
-// Two opposing fixed normals cannot both be stabilised: the forces are then huge and mean nothing. Nor may those be left that a wedge keeps. But
-// a flat wedge also has large ones of its own, which stay about as large without.
+// Two opposing fixed normals cannot both be stabilised: the forces are then
+// huge and mean nothing. Nor may those be left that a wedge keeps. But a flat
+// wedge also has large ones of its own, which stay about as large without.
 void drop_stabilisation(Group& g, double h, const StepOptions& options) {
     const double most = kLargestStabilised * drive_of(g) * h;
     const auto is_huge = [most](const Link& link) { return link.turning != 0.0 && link.J > most; };
@@ -102,7 +104,8 @@ bool locks(const Group& g, double h) {
 }
 
 bool step(Group& g, double h, StepOptions options) {
-    // An interval of another length is nearly solved already: with impulses that are as much shorter, but where balls lock each other.
+    // An interval of another length is nearly solved already: with
+    // impulses that are as much shorter, but where balls lock each other.
     const double share = !(g.solved > 0.0) ? 0.0 : locks(g, g.solved) ? 1.0 : h / g.solved;
     for (Link& link : g.links) {
         link.J *= share;

@@ -17,8 +17,8 @@ struct Approach {
 /// The approach of two balls that touch.
 Approach approach_of(const Balls& balls, int one, int two);
 
-/// [m/s^2] Acceleration at which the gap of two balls closes in these motions. Those after an impact tell what ends a
-/// bounce; before it, slow rolling balls are decelerated and seem to separate.
+/// [m/s^2] Acceleration at which the gap of two balls closes in these motions. Those after an impact tell
+/// what ends a bounce; before it, slow rolling balls are decelerated and seem to separate.
 double closing_acceleration(const Vec2& n, const Segment& one, const Segment& two);
 
 /// Coefficient of friction of two balls that touch, at their present slip.

@@ -39,8 +39,9 @@ class Balls : private Borrowed<BallsMemory> {
         segments_[ball] = segment;
     }
     bool sinks(int ball) const { return segments_[ball].state == MotionState::kFalling; }
-    /// Whether these two meet in space: one of them flies, or has flown since the other began to fall into a pocket. From then on
-    /// they do until one of them is gone, or the ball that falls is back on the cloth: in the plane they may overlap.
+    /// Whether these two meet in space: one of them flies, or has flown since the other
+    /// began to fall into a pocket. From then on they do until one of them is gone, or
+    /// the ball that falls is back on the cloth: in the plane they may overlap.
     bool in_space(int a, int b) const {
         return flies(segments_[a].state) || flies(segments_[b].state) ||
                (sinks(a) && turns_[b].flew >= turns_[a].fell) ||

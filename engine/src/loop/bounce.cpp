@@ -15,7 +15,8 @@ namespace {
 
 // [-] Most impacts of one contact in one bounce.
 constexpr int kMostImpacts = 200;
-// [-] Cosine of the angle between two normals above which two parts are one: a cushion and the jaw that goes on from it.
+// [-] Cosine of the angle between two normals above which two
+// parts are one: a cushion and the jaw that goes on from it.
 constexpr double kOneNormal = 1.0 - 1e-6;
 // [-] Least determinant for which two impulses are scaled: below, the normals are opposite.
 constexpr double kLeastDeterminant = 1e-6;
@@ -49,8 +50,9 @@ class Bounce {
     }
 
   private:
-    // A high nose with a low restitution leaves a ball that still closes (han_2005: e_c < 1/c^2 - 1), and nothing lies between
-    // this impact and the next one: the bounce is their row, until no closing speed is left that rounding can tell.
+    // A high nose with a low restitution leaves a ball that still closes (han_2005:
+    // e_c < 1/c^2 - 1), and nothing lies between this impact and the next one: the
+    // bounce is their row, until no closing speed is left that rounding can tell.
     bool alone(const TableTouch& touch, Motion& m) const {
         const CushionContact nose = cushion_contact(plan_.balls, size_, touch.height, touch.normal, m.v, m.w);
         const double noise = rounding(size_.R, m);

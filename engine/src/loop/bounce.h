@@ -1,4 +1,5 @@
-// Impacts of a ball with the table: what touches it, and its motion after it has met all of that at one instant.
+// Impacts of a ball with the table: what touches it, and
+// its motion after it has met all of that at one instant.
 #pragma once
 
 #include <array>
@@ -52,15 +53,16 @@ class TableTouches {
 /// The touch of this contact with a cushion or nose, in the present state of its ball.
 TableTouch table_touch(const Plan& plan, const Balls& balls, const Contact& contact);
 
-/// The touch of this contact and all others that its ball meets at the same instant: they touch within kTouchTolerance, close
-/// by more than rounding and do not rest. Parts that join smoothly are one.
+/// The touch of this contact and all others that its ball meets at the same instant: they touch within
+/// kTouchTolerance, close by more than rounding and do not rest. Parts that join smoothly are one.
 TableTouches table_touches(const Plan& plan, const Balls& balls, const Detector& detector,
                            const RestingContacts& resting, const Contact& contact);
 
-/// Replaces velocity and spin of a ball by those after it has met all touches at once. One touch: its model. Two: the sum of
-/// their impulses, each from the incoming state, scaled so that the ball leaves either with the speed with which it would
-/// leave that one alone. Where this would add energy, and for more than two: the mean of the states after each, until none
-/// closes (docs/design/hard_cases.md, "Two contacts at one instant").
+/// Replaces velocity and spin of a ball by those after it has met all touches at once. One touch: its model.
+/// Two: the sum of their impulses, each from the incoming state, scaled so that the ball leaves either with
+/// the speed with which it would leave that one alone. Where this would add energy, and for more than two:
+/// the mean of the states after each, until none closes (docs/design/hard_cases.md, "Two contacts at one
+/// instant").
 /// @return false where a model has no solution
 bool bounce(const Plan& plan, const TableTouches& touches, Vec3& v, Vec3& w);
 

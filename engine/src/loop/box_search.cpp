@@ -10,7 +10,8 @@ namespace {
 
 // [1/m] Box2D enlarges its boxes by 0.1 units; with a unit of one centimetre that is 1 mm.
 constexpr double kUnitsPerMetre = 100.0;
-// [units] Far beyond every table; sums and products of a few such numbers do not overflow in single precision.
+// [units] Far beyond every table; sums and products of a
+// few such numbers do not overflow in single precision.
 constexpr double kFarthest = 1e15;
 // [-] Margin of the conversion to float, whose relative error is at most 2^-24.
 constexpr double kOutward = 0x1p-23;
@@ -104,7 +105,8 @@ void BoxSearch::update_block(std::size_t block) {
     tree_->MoveProxy(proxy_[block], aabb, b2Vec2(0.0f, 0.0f));
 }
 
-// Forms blocks of neighbours: strips with equal numbers of boxes, sorted by x, and sorted by y within a strip.
+// Forms blocks of neighbours: strips with equal numbers
+// of boxes, sorted by x, and sorted by y within a strip.
 void BoxSearch::rebuild() {
     const std::size_t count = slot_.size(), blocks = proxy_.size();
     for (std::size_t i = 0; i < count; ++i) sorted_[i] = at(static_cast<std::size_t>(slot_[i]));
@@ -114,7 +116,8 @@ void BoxSearch::rebuild() {
             return p < q || (p == q && i < j);
         };
     };
-    // The sum of a removed box is infinity - infinity. Any order is correct for it, but NaN must not be compared.
+    // The sum of a removed box is infinity - infinity. Any
+    // order is correct for it, but NaN must not be compared.
     const auto finite = [](float sum) { return sum == sum ? sum : 0.0f; };
     const auto middle_x = [finite](const Rounded& r) { return finite(r.low_x + r.high_x); };
     const auto middle_y = [finite](const Rounded& r) { return finite(r.low_y + r.high_y); };

@@ -1,7 +1,7 @@
-// Finds the boxes that overlap a box. Boxes are in single precision and rounded outward: they only exclude pairs, and
-// the remaining pairs are decided in double precision. The search is either one loop over all boxes, sixteen at a time,
-// or Box2D's dynamic tree, whose leaves are blocks of 64 neighbouring boxes, followed by that loop inside the blocks.
-// Both find the same set.
+// Finds the boxes that overlap a box. Boxes are in single precision and rounded outward: they only exclude
+// pairs, and the remaining pairs are decided in double precision. The search is either one loop over all
+// boxes, sixteen at a time, or Box2D's dynamic tree, whose leaves are blocks of 64 neighbouring boxes,
+// followed by that loop inside the blocks. Both find the same set.
 #pragma once
 
 #include <box2d/b2_dynamic_tree.h>
@@ -41,13 +41,14 @@ class BoxSearch {
     void place(int index, const Box& box) { place(index, outward(box)); }
     void place(int index, const RoundedBox& box);
     void remove(int index);
-    /// Call between placing and searching: from time to time it forms the blocks again from the present neighbours.
+    /// Call between placing and searching: from time to time
+    /// it forms the blocks again from the present neighbours.
     void settle() {
         if (tree_ && --until_rebuild_ <= 0) rebuild();
     }
 
-    /// Calls found(index) for every placed box that overlaps or touches `box`, in the order of the indices unless
-    /// the search uses the tree.
+    /// Calls found(index) for every placed box that overlaps or touches
+    /// `box`, in the order of the indices unless the search uses the tree.
     template <class Found>
     void overlapping(const Box& box, Found found) const {
         search(outward(box), found);
@@ -134,8 +135,8 @@ void BoxSearch::scan(std::size_t begin, std::size_t end, const Rounded& box, Fou
             found(static_cast<int>(row * kRow) + __builtin_ctz(mask));
 }
 
-// A bit for every box of the row that overlaps this one. All are compared before the first bit is looked at: how many overlap
-// cannot be predicted.
+// A bit for every box of the row that overlaps this one. All are compared
+// before the first bit is looked at: how many overlap cannot be predicted.
 inline unsigned BoxSearch::overlaps(const Row& row, const Rounded& box) {
 #if defined(__SSE2__)
     const __m128 lx = _mm_set1_ps(box.low_x), ly = _mm_set1_ps(box.low_y);

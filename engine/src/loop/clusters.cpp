@@ -15,7 +15,8 @@ constexpr double kNearShare = 0.5;
 // [approach] What closes more slowly after a cluster is rounding.
 constexpr double kClosesStill = 1e-12;
 
-/// Gap [m] of two balls, the speed [m/s] at which it closes, and the unit vector from the first to the second.
+/// Gap [m] of two balls, the speed [m/s] at which it closes,
+/// and the unit vector from the first to the second.
 struct Gap {
     double gap, closing;
     Vec3 n;
@@ -66,10 +67,10 @@ ClusterBall Clusters::member(int ball) const {
     return {ball, balls_.position(ball), balls_.velocity(ball), balls_.spin(ball)};
 }
 
-// Breadth-first search from the pair: finds every ball that can be reached during the contact (equation 5), then all
-// contacts between them. The fastest approach among the near ones sets the scale of the map: a pair may touch very slowly
-// while its neighbours are about to collide at full speed. It counts by its nearness, so that nothing jumps where a fast
-// ball comes within reach.
+// Breadth-first search from the pair: finds every ball that can be reached during the contact (equation 5),
+// then all contacts between them. The fastest approach among the near ones sets the scale of the map: a pair
+// may touch very slowly while its neighbours are about to collide at full speed. It counts by its nearness,
+// so that nothing jumps where a fast ball comes within reach.
 double Clusters::collect(int a, int b, double v_n) {
     for (;;) {
         collect_at(a, b, v_n);
@@ -85,8 +86,8 @@ double Clusters::collect(int a, int b, double v_n) {
     return v_n;
 }
 
-// Every ball within `gap` of this ball has a box that overlaps the result: the box of a ball contains its present
-// position, and the margin covers rounding.
+// Every ball within `gap` of this ball has a box that overlaps the result: the
+// box of a ball contains its present position, and the margin covers rounding.
 Box Clusters::near_box(const ClusterBall& ball, double gap) const {
     const double x = ball.r.x(), y = ball.r.y();
     const double half =
@@ -100,7 +101,8 @@ void Clusters::collect_at(int a, int b, double v_n) {
     const auto reach = [&](const Gap& near) { return time * (std::max(0.0, near.closing) + v_n); };
     const auto gap_of = [this, R](const ClusterBall& p, const ClusterBall& q) {
         Gap near = flights_ ? gap_in_space(p, q, R) : gap_on_cloth(p, q, R);
-        // Whether balls touch is decided only here: a gap within the rounding of the positions counts as touching.
+        // Whether balls touch is decided only here: a gap within
+        // the rounding of the positions counts as touching.
         if (near.gap <= kTouchUlp * R) near.gap = 0.0;
         return near;
     };
@@ -153,9 +155,9 @@ void Clusters::collect_at(int a, int b, double v_n) {
     }
 }
 
-// A contact whose balls have no other one is an impact of two balls, and its normal stays as it was at the touch, as
-// in the pair kernel. So that nothing jumps where the last other ball gets out of reach, its normal turns by the
-// nearness of the nearest other contact of its balls, and by its own.
+// A contact whose balls have no other one is an impact of two balls, and its normal stays as it was at the
+// touch, as in the pair kernel. So that nothing jumps where the last other ball gets out of reach, its normal
+// turns by the nearness of the nearest other contact of its balls, and by its own.
 void Clusters::share_turning() {
     nearest_.assign(members_.size(), {});
     for (const ClusterContact& c : contacts_) {
@@ -173,10 +175,10 @@ void Clusters::share_turning() {
     }
 }
 
-// The balls of the map move, and those of the loop stay. A glancing contact with a fast slip opens in the map as its
-// normal turns, with hardly any force, while the balls pass each other; where they stay they close on, and the same
-// cluster would come again, ten thousand times. So what touches has to open where the balls are: the map goes on with
-// normals that stay, which is how two balls without others meet.
+// The balls of the map move, and those of the loop stay. A glancing contact with a fast slip opens in the map
+// as its normal turns, with hardly any force, while the balls pass each other; where they stay they close on,
+// and the same cluster would come again, ten thousand times. So what touches has to open where the balls are:
+// the map goes on with normals that stay, which is how two balls without others meet.
 bool Clusters::closes_still(double v_n) const {
     return std::any_of(contacts_.begin(), contacts_.end(), [&](const ClusterContact& c) {
         return c.gap == 0.0 && dot3(c.n, members_[c.i].v - members_[c.j].v) > kClosesStill * v_n;

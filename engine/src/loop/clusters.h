@@ -1,4 +1,5 @@
-// Ball-ball impacts with a third ball within reach: finds the members of such a cluster and their motion after it.
+// Ball-ball impacts with a third ball within reach: finds
+// the members of such a cluster and their motion after it.
 #pragma once
 
 #include <array>
@@ -29,7 +30,8 @@ class Clusters : private Borrowed<ClustersMemory> {
     const std::vector<ClusterBall>& balls() const { return members_; }
     const std::vector<ClusterContact>& contacts() const { return contacts_; }
 
-    /// Whether the last collect() found a ball that flies, or one that may leave the cloth by the model of the impact.
+    /// Whether the last collect() found a ball that flies, or
+    /// one that may leave the cloth by the model of the impact.
     bool in_space() const { return in_space_; }
 
     /// Replaces the velocities and spins of balls() by those after the impact.

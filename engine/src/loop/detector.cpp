@@ -33,7 +33,8 @@ Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& 
     set_up_table();
 }
 
-// Measure of the closing speed of a contact at its time: of simultaneous contacts, the one with the greatest is first.
+// Measure of the closing speed of a contact at its time: of
+// simultaneous contacts, the one with the greatest is first.
 double Detector::closing(const Candidate& c) const {
     if (c.contact.with != With::kBall) return 0.0;
     const Segment &s = balls_.segment(c.contact.ball), &q = balls_.segment(c.contact.other);
@@ -105,8 +106,8 @@ bool Detector::must_search_again(int ball) const {
     return c.stamp != mover_[partner].stamp;
 }
 
-// Re-detection: contacts are searched again for balls whose box has expired or whose partner has changed its motion. Of the events
-// at one instant the first is chosen here, from the present motions.
+// Re-detection: contacts are searched again for balls whose box has expired or whose partner has changed its
+// motion. Of the events at one instant the first is chosen here, from the present motions.
 Candidate Detector::next() {
     const Stopwatch watch(detect_ns_);
     for (;;) {

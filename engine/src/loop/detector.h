@@ -1,7 +1,8 @@
-// Finds the next contact or state transition. Every ball has three candidates: its state transition, its first contact
-// with the table and its first contact with another ball. Boxes exclude what a ball cannot reach before its own next
-// event (broad phase), closed forms give the times of the other contacts (contact/detect.h), and a queue of
-// the least times orders all balls. Implemented in detector.cpp (the order), pair_search.cpp, table_search.cpp and flight_search.cpp.
+// Finds the next contact or state transition. Every ball has three candidates: its state transition, its
+// first contact with the table and its first contact with another ball. Boxes exclude what a ball cannot
+// reach before its own next event (broad phase), closed forms give the times of the other contacts
+// (contact/detect.h), and a queue of the least times orders all balls. Implemented in detector.cpp (the
+// order), pair_search.cpp, table_search.cpp and flight_search.cpp.
 #pragma once
 
 #include <algorithm>
@@ -36,8 +37,8 @@ struct alignas(64) Mover {
     double surface = 0.0;     ///< R |w| at the start of the segment [m/s]
     std::uint32_t stamp = 0;  ///< incremented with every new segment
     std::uint32_t round = 0;  ///< last search in which the ball was new
-    /// First contact with another ball. It stays until it is the next candidate, even if the motion of the partner
-    /// has changed: it is then not later than the true first contact.
+    /// First contact with another ball. It stays until it is the next candidate, even if the motion of the
+    /// partner has changed: it is then not later than the true first contact.
     Candidate pair;
     Candidate table;  ///< first contact with the table
     /// Time at which the box expires; kNever if an event of the ball itself is earlier
@@ -64,7 +65,8 @@ class Detector : private Borrowed<DetectorMemory> {
     Detector(const Plan& plan, const Balls& balls, const RestingContacts& resting, Costs* costs,
              DetectorMemory& memory);
 
-    /// Searches the contacts of the balls whose motion has changed, and clears the list. At first it needs all balls.
+    /// Searches the contacts of the balls whose motion has
+    /// changed, and clears the list. At first it needs all balls.
     void update(std::vector<int>& touched);
     /// The next candidate; its time is kNever if there is none.
     Candidate next();
@@ -133,8 +135,8 @@ class Detector : private Borrowed<DetectorMemory> {
     double fastest_ = 0.0;
 };
 
-// Motion of a ball from the time `from` on. Contacts are searched from the start of the segments concerned, not from
-// the present time: the result then depends only on the segments, not on when it is computed.
+// Motion of a ball from the time `from` on. Contacts are searched from the start of the segments concerned,
+// not from the present time: the result then depends only on the segments, not on when it is computed.
 inline Path Detector::path(int ball, double from) const {
     const Segment& s = balls_.segment(ball);
     const Mover& mover = mover_[ball];

@@ -1,6 +1,6 @@
-// Finds the players whose next event is first: the least of their times. Groups of sixteen times are compared without a
-// branch, since none could be predicted; the least of a group is one of the times of the next level, as long as a level has
-// more than one group. All memory is allocated by set_up().
+// Finds the players whose next event is first: the least of their times. Groups of sixteen times are compared
+// without a branch, since none could be predicted; the least of a group is one of the times of the next
+// level, as long as a level has more than one group. All memory is allocated by set_up().
 #pragma once
 
 #include <algorithm>
@@ -51,7 +51,8 @@ class EventQueue {
     /// The time of the first event; infinite if there is none.
     double first() const { return least(level_.back()[0]); }
 
-    /// Calls found(player) for all players whose time is the given one, the first(), in the order of the players.
+    /// Calls found(player) for all players whose time is the
+    /// given one, the first(), in the order of the players.
     template <class Found>
     void all_at(double first, Found found) const {
         descend(level_.size() - 1, 0, first, found);

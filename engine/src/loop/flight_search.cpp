@@ -46,8 +46,8 @@ bool Detector::over_pocket(const Vec2& here) const {
                        [&here](const Pocket& p) { return length(here - p.center) < p.radius; });
 }
 
-// It meets noses at their height, flies over them and is then out (where the table has an end), and meets a pocket only at its far
-// side. Where it lands is its own transition.
+// It meets noses at their height, flies over them and is then out (where the table has an end), and meets a
+// pocket only at its far side. Where it lands is its own transition.
 void Detector::search_table_in_air(int ball) {
     Candidate& first = mover_[ball].table;
     const double start = balls_.segment(ball).start, R = balls_.radius(ball);

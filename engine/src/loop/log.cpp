@@ -19,8 +19,8 @@ namespace {
 
 // [-] Initial capacity for segments and events: enough for a break. It doubles when it is exceeded.
 constexpr std::size_t kRoom = 256;
-// [sqrt(2 R/g)] A ball in the air that has not left its place for so long balances: what stands off its support by a
-// rounding slides off within half of it. 5 s of a pool ball.
+// [sqrt(2 R/g)] A ball in the air that has not left its place for so long balances: what stands off its
+// support by a rounding slides off within half of it. 5 s of a pool ball.
 constexpr double kLongestBalance = 65.0;
 
 }  // namespace
@@ -108,7 +108,8 @@ void Log::end_set_up(double set_up_ns) {
     *costs_ = {};
 }
 
-// An iteration can cause several events: the first one gets the cost. If it causes none, the next event gets it.
+// An iteration can cause several events: the first one gets
+// the cost. If it causes none, the next event gets it.
 void Log::book_costs() {
     event_costs_.resize(events_.size());
     EventCost& cost = costs_->event;

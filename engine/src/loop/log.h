@@ -17,7 +17,8 @@
 
 namespace carom {
 
-/// What a run is for: a record, which has every segment, an outcome, or an outcome with the hash of the record.
+/// What a run is for: a record, which has every segment,
+/// an outcome, or an outcome with the hash of the record.
 enum class Keep : std::uint8_t { kRecord, kOutcome, kHash };
 
 struct LogMemory {
@@ -63,8 +64,8 @@ class Log : private Borrowed<LogMemory> {
         events_.push_back({balls_.now(), type, ball, partner, detail});
         quiet_rounds_ = 0;
     }
-    /// The ball has begun a motion after an impact, and may fly. @throws SimulationError if it trembles in the air on what is
-    /// under it, and would for ever
+    /// The ball has begun a motion after an impact, and may fly. @throws SimulationError
+    /// if it trembles in the air on what is under it, and would for ever
     void watch(int ball);
     /// The last event was a slow contact.
     void mark_slow() { events_.back().slow = true; }
@@ -90,8 +91,8 @@ class Log : private Borrowed<LogMemory> {
         events_before_ = events_.size();
         ++quiet_rounds_;
     }
-    /// Books the costs and calls SimulateOptions::progress. @throws SimulationError if there are too many events in
-    /// a short time, or too many iterations without an event
+    /// Books the costs and calls SimulateOptions::progress. @throws SimulationError if there are too many
+    /// events in a short time, or too many iterations without an event
     void end_round() {
         if (is_crowded() || quiet_rounds_ > kQuietCap) fail_crowded();
         if (costs_) book_costs();
@@ -100,7 +101,8 @@ class Log : private Borrowed<LogMemory> {
     /// Marks the present iteration as long, so that progress is reported at its end.
     void note_long_round() { long_round_ = true; }
 
-    /// @throws SimulationError with the state of all balls that move, and the record if one is kept. The log is empty afterwards.
+    /// @throws SimulationError with the state of all balls that move, and the record if one is kept. The log
+    /// is empty afterwards.
     [[noreturn]] void fail(const std::string& why);
 
     /// The record; the log is empty afterwards.

@@ -150,8 +150,8 @@ kernel::ImpactResult Resolver::collide(int one, int two, const kernel::Ball& b1,
     return result;
 }
 
-// A slow cluster may contain another contact that is pressed together, besides the one that met first. As a resting
-// contact it drives that one too; after a common bounce they would meet again and again.
+// A slow cluster may contain another contact that is pressed together, besides the one that met first. As a
+// resting contact it drives that one too; after a common bounce they would meet again and again.
 bool Resolver::hold_in_cluster(Pressed when) {
     const auto segment = [this](const ClusterBall& b) {
         return start_segment(balls_.now(), b.r, b.v, b.w, balls_.motion(b.ball));
@@ -166,16 +166,19 @@ bool Resolver::hold_in_cluster(Pressed when) {
     return false;
 }
 
-// @return true if a cluster was resolved, or one of its contacts became a resting contact; false: use the pair kernel
+// @return true if a cluster was resolved, or one of its contacts became a resting contact; false: use the
+// pair kernel
 bool Resolver::cluster(int a, int b, double v_n) {
     const double e_b = plan_.ball_ball->reads_restitution ? plan_.balls.e_b : 1.0;
     const bool parts_slowly = e_b * v_n < parting_speed(balls_.radius(a), plan_.gravity);
     v_n = clusters_.collect(a, b, v_n);
     if (clusters_.balls().size() < 3) return false;
     const bool in_space = clusters_.in_space();
-    // Slow contacts of balls in the air part pair by pair, however fast others are: the cloth would press them together again and again.
+    // Slow contacts of balls in the air part pair by pair, however fast
+    // others are: the cloth would press them together again and again.
     if (in_space && parts_slowly) return false;
-    // Whether the balls close so slowly that friction alone could end the rebound within the Hertz contact time.
+    // Whether the balls close so slowly that friction alone
+    // could end the rebound within the Hertz contact time.
     const bool slow = !in_space && holds(v_n, 2.0 * plan_.motion.front().slide, plan_.balls.e_b);
     if (slow && hold_in_cluster(Pressed::kBefore)) return true;
     log_.note_long_round();
@@ -234,8 +237,8 @@ void Resolver::cushion(const Contact& contact) {
     const double lost = energy_twice(motion.R, came) - energy_twice(motion.R, {v, w});
     v.z() = std::min(up, std::sqrt(std::max(0.0, lost)));
     const Segment after = after_impact(ball, r, v, w);
-    // A ball that rolls in slowly is decelerated before the impact, but the spin that it keeps drives it back to the
-    // cushion and ends the bounce: the acceleration after the impact decides.
+    // A ball that rolls in slowly is decelerated before the impact, but the spin that it keeps drives it back
+    // to the cushion and ends the bounce: the acceleration after the impact decides.
     for (TableTouch& touch : touches) {
         touch.approach.a_c = touch.pressing(after.a);
         held |= holds(touch.approach.v_n, motion.slide, e_c) && resting_.try_begin(touch.approach, e_c);
@@ -274,7 +277,8 @@ void Resolver::pocket(const Contact& contact) {
     log_.event(EventType::kBallEdge, contact);
 }
 
-// Whether another ball is where a ball would come out of a pocket: that one passed above it while it had sunk.
+// Whether another ball is where a ball would come out of
+// a pocket: that one passed above it while it had sunk.
 bool Resolver::is_barred(int ball, const Vec3& place) const {
     const double R = balls_.radius(ball), reach = R * (1.0 + kBoxShare);
     bool barred = false;
@@ -296,7 +300,8 @@ void Resolver::leave_pocket(const Contact& contact) {
     const Vec3 r = balls_.position(ball), v = balls_.velocity(ball);
     const Vec2 out = planar(r) - pocket.center, n = out / length(out);
     const double v_n = dot(n, planar(v)), falls = fall_speed(s, balls_.now() - s.start, motion.gravity);
-    // The height at which the fall began is that of a ball on the cloth, unless another ball has hit it since.
+    // The height at which the fall began is that of a ball
+    // on the cloth, unless another ball has hit it since.
     const double sunk = falls * falls / (2.0 * motion.gravity * motion.R) - (r.z() - motion.R) / motion.R;
     const auto away = climbs(v_n, std::max(0.0, sunk), motion.R, motion.gravity);
     if (!away || !is_bed(plan_.scene.table, pocket, planar(r), motion.R)) {

@@ -11,7 +11,8 @@ namespace carom {
 
 namespace {
 
-// [R] A ball that has flown over a pocket and is not higher than this at its far side falls into it. pooltool's value.
+// [R] A ball that has flown over a pocket and is not higher
+// than this at its far side falls into it. pooltool's value.
 constexpr double kCatchHeight = 1.4;
 
 }  // namespace

@@ -15,13 +15,16 @@ namespace carom {
 
 namespace {
 
-// [s] A contact that bounces again and again within this time chatters: a twentieth of the duration of one contact of two balls.
+// [s] A contact that bounces again and again within this time
+// chatters: a twentieth of the duration of one contact of two balls.
 constexpr double kChatterSpan = 1e-5;
-// [-] So many bounces are as many as take all but this share of a speed, within limits: a row of 15 elastic balls, resolved pair by pair, needs 30.
+// [-] So many bounces are as many as take all but this share of a speed,
+// within limits: a row of 15 elastic balls, resolved pair by pair, needs 30.
 constexpr double kSpeedLeft = 1e-3;
 constexpr int kFewestBounces = 20, kMostBounces = 200;
-// [bounces] What a resting contact counts for that began and ended within that time, and a cluster that begins with this contact: it resolves all
-// bounces of its balls at once. No row of impacts has one, and even a second cluster is rare.
+// [bounces] What a resting contact counts for that began and ended within that
+// time, and a cluster that begins with this contact: it resolves all bounces of its
+// balls at once. No row of impacts has one, and even a second cluster is rare.
 constexpr int kManyAtOnce = 20;
 // [balls] Room for those of one impact; a larger cluster takes more.
 constexpr std::size_t kMostStruck = 32;
@@ -83,10 +86,13 @@ bool RestingContacts::find(const Contact& contact) const {
 }
 
 // A contact becomes a resting contact if
-//  - the rebound would be shorter than the Hertz contact time (holds()): as it is pressed together or, where a ball is in a resting
-//    contact already, as friction alone could press it. The bounces within a group lose a share of their speed each and come ten times for
-//    every power of ten down to rounding; their limit is the resting contact, which the group's solution then keeps or opens. Or if
-//  - it has chattered (Zeno behaviour, as in a wedge with a plastic side, or where an impact goes back and forth through balls that rest on
+//  - the rebound would be shorter than the Hertz contact time (holds()): as it is pressed together or, where
+//  a ball is in a resting
+//    contact already, as friction alone could press it. The bounces within a group lose a share of their
+//    speed each and come ten times for every power of ten down to rounding; their limit is the resting
+//    contact, which the group's solution then keeps or opens. Or if
+//  - it has chattered (Zeno behaviour, as in a wedge with a plastic side, or where an impact goes back and
+//  forth through balls that rest on
 //    each other between two rails): the limit of such a sequence is the resting contact.
 bool RestingContacts::try_begin(const Approach& a, double restitution) {
     const Contact& c = a.contact;
@@ -226,8 +232,8 @@ bool RestingContacts::has_come_to_transition(const Segment& s) const {
     return s.held && s.ends && s.start + s.duration <= balls_.now();
 }
 
-// The balls that are connected to the ball by resting contacts, in their present states. Removes their contacts from
-// the list.
+// The balls that are connected to the ball by resting contacts,
+// in their present states. Removes their contacts from the list.
 RestingGroup RestingContacts::group_of(int ball, Transitions transitions) {
     std::vector<int> members{ball};
     const auto is_member = [&](int b) {
@@ -286,8 +292,8 @@ void RestingContacts::solve(int ball, Transitions transitions) {
     }
 }
 
-// Logs the transitions that really happened: a ball that the group drives on at once has not stopped, and a ball that
-// continues to slide has no event.
+// Logs the transitions that really happened: a ball that the group drives on
+// at once has not stopped, and a ball that continues to slide has no event.
 void RestingContacts::log_transitions(const RestingGroup& group) {
     for (const RestingBall& member : group.balls) {
         const Segment& s = balls_.segment(member.ball);
@@ -298,7 +304,8 @@ void RestingContacts::log_transitions(const RestingGroup& group) {
     }
 }
 
-// A ball that moves over the end of its cushion leaves it when the remaining time is below the resolution of the clock.
+// A ball that moves over the end of its cushion leaves it when
+// the remaining time is below the resolution of the clock.
 bool RestingContacts::release_past_ends(RestingGroup& group) {
     return std::erase_if(group.contacts, [this](const RestingContact& c) {
                if (c.contact.with != With::kCushion) return false;
@@ -313,7 +320,8 @@ bool RestingContacts::release_past_ends(RestingGroup& group) {
            }) > 0;
 }
 
-// Sorts contacts by their positions on the table, which depends neither on ids nor on the order in which they began.
+// Sorts contacts by their positions on the table, which depends
+// neither on ids nor on the order in which they began.
 void RestingContacts::sort_by_place(std::vector<RestingContact>& contacts) const {
     const auto place_of = [this](const RestingContact& c) {
         return Vec2(planar(balls_.position(c.contact.ball)) + balls_.radius(c.contact.ball) * c.n);

@@ -45,10 +45,12 @@ class RestingContacts : private Borrowed<RestingMemory> {
     /// try_hold() in two parts, for contacts of one ball that begin together: the ball waits for start().
     bool try_begin(const Approach& approach, double restitution);
     void start(int ball);
-    /// Ends all resting contacts of a ball before another event changes its motion; its partners continue without it.
+    /// Ends all resting contacts of a ball before another event
+    /// changes its motion; its partners continue without it.
     void release(int ball);
-    /// Notes the motion of a ball after an impact; go_on() begins those that were noted together. Of the resting contacts of these balls
-    /// those go on that now close or open so slowly that friction alone could press or close them (holds()); the others end.
+    /// Notes the motion of a ball after an impact; go_on() begins those that were noted
+    /// together. Of the resting contacts of these balls those go on that now close or open
+    /// so slowly that friction alone could press or close them (holds()); the others end.
     void strike(int ball, const Segment& after) { struck_.push_back({ball, after}); }
     void go_on();
     /// Ends an interval of the ball's group: applies the state transitions, then starts the next interval.

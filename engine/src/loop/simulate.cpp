@@ -1,4 +1,5 @@
-// The event loop: find the next event -> advance -> resolve -> search the contacts of the balls whose motion changed.
+// The event loop: find the next event -> advance -> resolve
+// -> search the contacts of the balls whose motion changed.
 #include "carom/engine/simulate.h"
 
 #include <fmt/format.h>
@@ -81,7 +82,8 @@ StopReason Run::run(const Record* so_far) {
     return StopReason::kEvents;
 }
 
-// Without friction a slow ball can be under way for longer than the clock has digits for: it would pass through what it meets.
+// Without friction a slow ball can be under way for longer than
+// the clock has digits for: it would pass through what it meets.
 void Run::check_digits(int ball, double time) {
     const Segment& s = balls_.segment(ball);
     const double R = balls_.radius(ball);

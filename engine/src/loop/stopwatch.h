@@ -13,7 +13,8 @@ struct Costs {
     double search_ns = 0.0;  ///< part of event.detect_ns: the search for contacts
 };
 
-/// Adds its lifetime [ns] to `sum`. If `sum` is nullptr (a run that is not profiled), it does not read the clock.
+/// Adds its lifetime [ns] to `sum`. If `sum` is nullptr (a
+/// run that is not profiled), it does not read the clock.
 class Stopwatch {
   public:
     explicit Stopwatch(double* sum) : sum_(sum) {

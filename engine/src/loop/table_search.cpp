@@ -98,7 +98,8 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
         if (t < s.duration) first = {s.start + t, {ball, With::kPocket, under}};
     }
     for (const int part : near_) {
-        // Contacts after the first one found so far are not needed: it limits the window of the quick rejection.
+        // Contacts after the first one found so far are not
+        // needed: it limits the window of the quick rejection.
         const Contact contact = parts_[part].of(ball);
         if (falls && contact.with == With::kPocket) continue;
         const double t = time_to(contact, p, std::min(p.horizon, span(s.start, first.time)));
@@ -106,7 +107,8 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
     }
 }
 
-// [s] Time until the contact; kNever if the ball stays away for the whole window, or is already in this contact.
+// [s] Time until the contact; kNever if the ball stays away
+// for the whole window, or is already in this contact.
 double Detector::time_to(const Contact& contact, const Path& p, double window) const {
     const double R = balls_.radius(contact.ball);
     switch (contact.with) {

@@ -72,8 +72,9 @@ kernel::HertzLaw law_of(const ClusterSettings& s, double V) {
     return {1.0 - b, b, p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip, s.mu_b_more, s.mu_b_fall * V};
 }
 
-// The integration reads and writes four numbers at once. From the start of a cache line on, none of these lies across two:
-// where the heap happened to put them elsewhere, the contact phase of a break took a fifth longer.
+// The integration reads and writes four numbers at once. From the start of
+// a cache line on, none of these lies across two: where the heap happened
+// to put them elsewhere, the contact phase of a break took a fifth longer.
 double* on_cache_line(std::vector<double>& numbers) {
     void* first = numbers.data();
     std::size_t space = numbers.size() * sizeof(double);
@@ -134,8 +135,9 @@ void ClusterMap::keep_energy(double before, int axes) {
 
 namespace {
 
-// L/(2 R), by which normals turn. The stiffness is that of pool balls, so that small balls at hundreds of m/s would overlap by more than their
-// radius, and then no normal is left; they are taken for larger ones that touch in the same places.
+// L/(2 R), by which normals turn. The stiffness is that of pool balls, so that
+// small balls at hundreds of m/s would overlap by more than their radius, and then
+// no normal is left; they are taken for larger ones that touch in the same places.
 double curvature(double L, const ClusterSettings& settings) {
     constexpr double kLargest = 0.125;
     return settings.turns ? std::min(kLargest, L / (2.0 * settings.R)) : 0.0;

@@ -1,6 +1,7 @@
-// Many contacts at once: the compliant map (Hertz contacts of the whole cluster, which turn as the balls move; instantaneous
-// for the engine, which gets velocities and spins) and the rigid symmetric projection. Equations: docs/reference/physics.md;
-// docs/design/hard_cases.md says what such a model can and cannot claim.
+// Many contacts at once: the compliant map (Hertz contacts of the whole cluster, which turn as the balls
+// move; instantaneous for the engine, which gets velocities and spins) and the rigid symmetric projection.
+// Equations: docs/reference/physics.md; docs/design/hard_cases.md says what such a model can and cannot
+// claim.
 #pragma once
 
 #include <vector>
@@ -11,14 +12,16 @@
 
 namespace carom {
 
-/// [V] A contact of a cluster that closes faster than this, times its nearness, sets the scale V itself: the step is made
-/// for approaches near V. Above 1 by what the reach may jump where another contact sets it.
+/// [V] A contact of a cluster that closes faster than this, times its nearness, sets the scale V itself: the
+/// step is made for approaches near V. Above 1 by what the reach may jump where another contact sets it.
 inline constexpr double kClusterFaster = 1.05;
 /// [share of R] Gaps up to this are rounding of the positions: the balls touch.
 inline constexpr double kTouchUlp = 64.0 * kEpsilon;
 
-/// [V] and [L/V] Regularisation of the friction in the compliant map, from which its errors come: 6e-4 V in racks that touch, up to 2.7e-3 V
-/// where gaps of 0.3 mm let errors grow (lab/notes/2026-11-moving_normals.md); and its longest steps, without friction (at the speed V) and with it.
+/// [V] and [L/V] Regularisation of the friction in the compliant map, from which its errors come: 6e-4 V in
+/// racks that touch, up to 2.7e-3 V where gaps of 0.3 mm let errors grow
+/// (lab/notes/2026-11-moving_normals.md); and its longest steps, without friction (at the speed V) and with
+/// it.
 inline constexpr double kClusterEpsilon = 1.3e-3;
 inline constexpr double kClusterStep = 1.0 / 60.0;
 inline constexpr double kClusterFrictionStep = 1.0 / 12.0;
@@ -51,7 +54,8 @@ struct ClusterSettings {
     bool turns = true;  ///< false: all normals stay as the contacts give them
 };
 
-/// Duration of a Hertz contact at the approach speed V, t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation 5).
+/// Duration of a Hertz contact at the approach speed V,
+/// t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation 5).
 double contact_time(double V);
 
 /// L = (V^2 m / k)^0.4 [m] with kContactStiffness.
@@ -69,13 +73,14 @@ class ClusterMap {
     long compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                    const ClusterSettings& settings, double V);
 
-    /// The same in space, where a ball flies or may leave the cloth: without the cloth, which answers next. `turn` and the friction of
-    /// the cloth are not read.
+    /// The same in space, where a ball flies or may leave the cloth: without the
+    /// cloth, which answers next. `turn` and the friction of the cloth are not read.
     long compliant_in_space(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                             const ClusterSettings& settings, double V);
 
-    /// Rigid: v := (1 + e) P(v) - e v with P the nearest velocities that close no contact (equations 7, 8), nor press a ball that
-    /// lies (r_z not above R) into the cloth; frictionless. Returns the number of sweeps.
+    /// Rigid: v := (1 + e) P(v) - e v with P the nearest velocities that
+    /// close no contact (equations 7, 8), nor press a ball that lies (r_z not
+    /// above R) into the cloth; frictionless. Returns the number of sweeps.
     long rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double e_b,
                double R);
 

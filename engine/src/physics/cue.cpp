@@ -18,7 +18,8 @@ namespace effects {
     return {-S / h, C / h};
 }
 
-// The same in space: the velocity turns away from the offset by that angle, in the plane of the cue and the point that is hit.
+// The same in space: the velocity turns away from the offset by
+// that angle, in the plane of the cue and the point that is hit.
 [[gnu::noinline]] Vec3 spatial_squirt(const Cue& cue, const BallSize& ball, const Vec3& along,
                                       const Vec3& left, const Vec3& up) {
     const double a = cue.side, b = cue.height, r = std::sqrt(a * a + b * b);

@@ -32,7 +32,8 @@ MotionParams motion_params(const BallParams& balls, double gravity, double R) {
 
 namespace effects {
 
-// Friction of a slipping ball: a = -mu_s g u/|u|, dw_xy/dt = -(5 mu_s g / 2R) (u x z)/|u|, until t = 2|u|/(7 mu_s g).
+// Friction of a slipping ball: a = -mu_s g u/|u|, dw_xy/dt =
+// -(5 mu_s g / 2R) (u x z)/|u|, until t = 2|u|/(7 mu_s g).
 [[gnu::noinline]] void sliding_friction(Segment& s, const Vec2& u, double slip, const MotionParams& p) {
     if (p.slide == 0.0) return;
     const Vec2 direction = u / slip;
@@ -61,8 +62,9 @@ namespace effects {
 
 namespace {
 
-// [m/s] A ball whose centre and surface are slower, without its vertical spin, neither slides nor rolls. Impacts at one instant may each take half of a
-// speed or more, down to numbers whose squares are none, and by which friction cannot be divided.
+// [m/s] A ball whose centre and surface are slower, without its vertical spin, neither
+// slides nor rolls. Impacts at one instant may each take half of a speed or more, down
+// to numbers whose squares are none, and by which friction cannot be divided.
 constexpr double kStill = 1e-100;
 
 }  // namespace

@@ -21,8 +21,8 @@ MotionParams motion_params(const BallParams& balls, double gravity, double R);
 /// the slip is at most kRollingUlp ulp of |v| + R |w| (spin is then set to the rolling one), and so on.
 Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
 
-/// The segment of a ball that falls into a pocket at the speed `falls` [m/s]: it moves on straight, without the cloth, until its
-/// centre is as low as the cloth.
+/// The segment of a ball that falls into a pocket at the speed `falls` [m/s]: it moves on straight, without
+/// the cloth, until its centre is as low as the cloth.
 /// @param r  with the height at which the fall began, or would have begun: its centre is falls^2/2g lower
 Segment falling_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, double falls,
                         const MotionParams& params);
@@ -32,7 +32,8 @@ inline double fall_speed(const Segment& segment, double tau, double gravity) {
     return gravity * tau - segment.v.z();
 }
 
-/// Place and velocity of a ball with the height that a fall or a flight gives it; position_at and velocity_at leave that out.
+/// Place and velocity of a ball with the height that a fall or a
+/// flight gives it; position_at and velocity_at leave that out.
 struct Placed {
     Vec3 position, velocity;
 };
@@ -58,11 +59,12 @@ inline Placed placed_at(const Segment& segment, double tau, double gravity, doub
     return {Vec3(there.x(), there.y(), R - kFloorDepth), Vec3::Zero()};
 }
 
-/// The segment of a ball that flies until it comes down on the cloth: a parabola, without friction. r_z is at least R.
+/// The segment of a ball that flies until it comes down on the
+/// cloth: a parabola, without friction. r_z is at least R.
 Segment airborne_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
 
-/// The segment that starts at time t where balls may leave the cloth: airborne if the ball is above it or rises faster than
-/// bounce_end(), else as start_segment().
+/// The segment that starts at time t where balls may leave the cloth: airborne if the ball is above it or
+/// rises faster than bounce_end(), else as start_segment().
 Segment free_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
 
 /// The velocity with which a ball that flies comes down: exact, also for a ball that rose from the cloth.

@@ -14,7 +14,8 @@
 namespace carom {
 namespace {
 
-// [-] Margin on how far a ball can go when the plan decides what it can reach; far above the rounding of the bound.
+// [-] Margin on how far a ball can go when the plan decides
+// what it can reach; far above the rounding of the bound.
 constexpr double kReachMargin = 1e-9;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
@@ -102,7 +103,8 @@ class Bounds {
 
     double by_energy() const {
         const Physics& p = scene_.physics;
-        // An impact can gain energy with the published sign of the cloth slip, with few steps, and with a loose tolerance.
+        // An impact can gain energy with the published sign of the
+        // cloth slip, with few steps, and with a loose tolerance.
         const bool coarse = p.substeps ? *p.substeps < 100 : p.tolerance > 1e-6;
         const bool gains =
             p.ball_ball->reads_tolerance && (p.cloth_slip == ClothSlipSign::kAsPublished || coarse);

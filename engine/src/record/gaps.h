@@ -21,8 +21,8 @@ struct SeenBall {
     double rounding = 0.0;  ///< [m] rounding_of()
 };
 
-/// [m] What a ball with these speeds may have come too far in t [s]: closing speeds that are rounding (kClosingUlp) are no approach, and a
-/// time is rounded.
+/// [m] What a ball with these speeds may have come too far in t [s]: closing speeds that are rounding
+/// (kClosingUlp) are no approach, and a time is rounded.
 double rounding_of(const Vec3& v, const Vec3& w, double R, double t);
 /// [m] How deep it may be in something.
 double allowed_depth(const SeenBall& ball);
@@ -32,8 +32,8 @@ double allowed_depth(const SeenBall& ball);
 SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const Vec3& r, double rounding,
              bool flights);
 
-/// [m] Between two balls, negative where they overlap. The planar distance, unless one flies, or has flown since the other
-/// began to fall into a pocket.
+/// [m] Between two balls, negative where they overlap. The planar distance,
+/// unless one flies, or has flown since the other began to fall into a pocket.
 double gap_between(const SeenBall& one, const SeenBall& two);
 /// [m] To the nose of a cushion; a large number where the ball is beyond its ends.
 double gap_to(const CushionLine& line, const SeenBall& ball);

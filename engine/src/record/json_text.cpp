@@ -15,12 +15,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// [bytes] It is long enough for any id or method name, and so short that a hostile file cannot fill messages.
+/// [bytes] It is long enough for any id or method name,
+/// and so short that a hostile file cannot fill messages.
 constexpr std::size_t kLongestName = 256;
 /// [bytes] What one byte of a text takes at most, where it is written as an escape: \u0000.
 constexpr std::size_t kLongestEscape = 6;
-/// The largest number of a record. What a scene may ask for stays far below it, in every unit; products of a few such numbers,
-/// of which states and orientations are made, are still finite.
+/// The largest number of a record. What a scene may ask for stays far below it, in every unit; products of a
+/// few such numbers, of which states and orientations are made, are still finite.
 constexpr double kLargestNumber = 1e25;
 
 bool is_space(char c) {

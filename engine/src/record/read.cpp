@@ -1,4 +1,5 @@
-// read_record: what write_record wrote, checked item by item. A file comes from anywhere: nothing in it is trusted.
+// read_record: what write_record wrote, checked item by item.
+// A file comes from anywhere: nothing in it is trusted.
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>

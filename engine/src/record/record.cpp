@@ -42,11 +42,13 @@ Eigen::Quaterniond rotation(const Vec3& turn) {
     return {c, k * turn.x(), k * turn.y(), k * turn.z()};
 }
 
-// [rad] The largest angle of a step, and [-] the number of steps that all balls of a record may take together. A record that
-// turns them more, which no shot does, is followed in larger steps, so that the work has a bound.
+// [rad] The largest angle of a step, and [-] the number of steps that all
+// balls of a record may take together. A record that turns them more, which
+// no shot does, is followed in larger steps, so that the work has a bound.
 constexpr double kLargestStep = 0.2, kMostSteps = 1e6;
 
-// Returns how many steps it takes to follow w from w0 at the rate dw over `time`, if each turns the ball by `largest_step`.
+// Returns how many steps it takes to follow w from w0 at the rate
+// dw over `time`, if each turns the ball by `largest_step`.
 double step_count(const Vec3& w0, const Vec3& dw, double time, double largest_step) {
     const double steps = std::max(w0.norm(), (w0 + time * dw).norm()) * time / largest_step;
     return steps < kMostSteps ? steps : kMostSteps;
@@ -56,8 +58,8 @@ double step_count(const Vec3& w0, const Vec3& dw, double time, double largest_st
 Eigen::Quaterniond turned(const Vec3& w0, const Vec3& dw, double time, double largest_step) {
     const Vec3 swerve = w0.cross(dw);
     if (swerve == Vec3::Zero()) return rotation(w0 * time + 0.5 * time * time * dw);  // fixed axis
-    // Magnus expansion to fourth order: Omega = h w_mid - h^3/12 w_mid x dw. With steps of a fifth of a radian the error is
-    // 1e-7 rad over a shot.
+    // Magnus expansion to fourth order: Omega = h w_mid - h^3/12 w_mid x dw.
+    // With steps of a fifth of a radian the error is 1e-7 rad over a shot.
     const int steps = 1 + static_cast<int>(step_count(w0, dw, time, largest_step));
     const double h = time / steps;
     Eigen::Quaterniond q = Eigen::Quaterniond::Identity();

@@ -177,13 +177,14 @@ class Checker {
         }
     }
 
-    // Compares the velocities before and after a ball-ball impact, at the ends of the segments that meet there.
+    // Compares the velocities before and after a ball-ball
+    // impact, at the ends of the segments that meet there.
     void check_impacts() {
         for (event_ = 0; event_ < record_.events.size() && !found_; ++event_) {
             const Event& e = record_.events[event_];
             if (e.type != EventType::kBallBall) continue;
-            // This is done only where each ball has exactly one segment that starts here, because two impacts at one
-            // instant cannot be told apart.
+            // This is done only where each ball has exactly one segment that starts
+            // here, because two impacts at one instant cannot be told apart.
             const Segment *before1, *after1, *before2, *after2;
             if (!around(e.a, e.time, before1, after1) || !around(e.b, e.time, before2, after2)) continue;
             const auto is_free = [this](const Segment& s) {
@@ -213,8 +214,8 @@ class Checker {
                 dv2(after2->v.x() - v2.x(), after2->v.y() - v2.y(), up2);
             const Vec3 change = m1 * dv1 + m2 * dv2;
             const Vec3 dw1 = m1 * R1 * (after1->w - w1), dw2 = m2 * R2 * (after2->w - w2);
-            // During the whole impact the friction of the cloth is at most mu_s times the vertical friction, which is at most
-            // mu_b times the normal impulse.
+            // During the whole impact the friction of the cloth is at most mu_s times
+            // the vertical friction, which is at most mu_b times the normal impulse.
             const double J_n = std::max(m1 * std::abs(dv1.dot(n3)), m2 * std::abs(dv2.dot(n3)));
             const bool cloth = !free && plan_.balls.mu_s > 0.0 && plan_.ball_ball->reads_cloth;
             const double limit =

@@ -146,7 +146,8 @@ class Between {
             middle += still ? pieces_[i].energy : energy(i, half);
         }
         if (from == times_.front()) first_energy_ = last_energy_ = start;
-        // At the start stands what slow contacts of balls in the air have added; each of them is judged at its event.
+        // At the start stands what slow contacts of balls in the
+        // air have added; each of them is judged at its event.
         double added = plan_.in_force(Effect::kAirborne) ? slow_contacts() : 0.0;
         for (const auto& [t, now] : {std::pair{from, start}, std::pair{half, middle}}) {
             if (now > last_energy_ + 1e-12 * first_energy_ + rounding_ + std::exchange(added, 0.0))

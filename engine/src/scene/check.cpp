@@ -103,8 +103,8 @@ void check_noses(const Section& top, const Scene& scene) {
     for (const Jaw& j : scene.table.jaws) check("jaw", j.id, j.height);
 }
 
-/// Refuses a cloth on which a ball would lose more speed by rolling than by sliding: resting contacts have no answer there.
-/// Without sliding friction (mu_s = 0) there is nothing to compare with.
+/// Refuses a cloth on which a ball would lose more speed by rolling than by sliding: resting contacts have no
+/// answer there. Without sliding friction (mu_s = 0) there is nothing to compare with.
 void check_cloth(const Section& top, const Scene& scene) {
     const BallParams& p = scene.balls;
     if (p.mu_s == 0.0 || p.mu_r <= p.mu_s) return;

@@ -1,4 +1,5 @@
-// Keys with dots, as sweeps and batches write them: cue.offset.side, ball.1.position.x, table.pocket.p1.radius.
+// Keys with dots, as sweeps and batches write them:
+// cue.offset.side, ball.1.position.x, table.pocket.p1.radius.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +11,8 @@ namespace carom::detail {
 /// Takes "name." from the front of a key; false where the key does not begin so.
 bool take(std::string_view& key, std::string_view name);
 
-/// Takes the name of a part of the table from the front of a key ("c2" in the list "cushion"), and returns its place in the
-/// list. @throws std::invalid_argument
+/// Takes the name of a part of the table from the front of a key ("c2" in the list
+/// "cushion"), and returns its place in the list. @throws std::invalid_argument
 std::size_t take_part(std::string_view& key, const std::string& list);
 
 /// Returns the place in an array that "x", "side" or "0" stands for. @throws std::invalid_argument

@@ -31,8 +31,8 @@ void shuffle(std::vector<int>& numbers, SplitMix64& random) {
     }
 }
 
-/// By the world standardised rules the 8 lies in the middle of the third row, one solid and one stripe in the back corners,
-/// and the rest at random.
+/// By the world standardised rules the 8 lies in the middle of the third row,
+/// one solid and one stripe in the back corners, and the rest at random.
 std::vector<int> eight_ball_numbers(SplitMix64& random) {
     const int solid = 1 + random.below(7);
     const int stripe = 9 + random.below(7);
@@ -67,10 +67,10 @@ std::vector<int> numbers_of(const Rack& rack, SplitMix64& random) {
     return out;
 }
 
-/// Balls with a spot of their own. Snooker: the baulk line is 737 mm from the bottom cushion, the radius of the D is 292 mm,
-/// and the black spot is 324 mm from the top cushion (rules of the WPBSA, section 1). Three-cushion: white is 182.5 mm to the
-/// left of yellow, which is on the head spot (opening position of the rules of the UMB;
-/// measured in the first shot of a match: 178.5 +- 2 mm).
+/// Balls with a spot of their own. Snooker: the baulk line is 737 mm from the bottom cushion, the radius of
+/// the D is 292 mm, and the black spot is 324 mm from the top cushion (rules of the WPBSA, section 1).
+/// Three-cushion: white is 182.5 mm to the left of yellow, which is on the head spot (opening position of the
+/// rules of the UMB; measured in the first shot of a match: 178.5 +- 2 mm).
 std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
     const Vec2 origin = table.corner;
     const double middle = table.width / 2.0, l = table.length;
@@ -111,7 +111,8 @@ std::vector<Vec2> slots_of(const Rack& rack, const Vec2& apex, double R) {
 
 /// Metropolis sampling of hard discs. Every step is a valid rack; the first one is the rack without jitter.
 void add_jitter(std::vector<Vec2>& places, const Rack& rack, double R, SplitMix64& random) {
-    // With a gap of 0 only the balls at the rim can move at first; after a hundred rounds every ball has moved.
+    // With a gap of 0 only the balls at the rim can move at
+    // first; after a hundred rounds every ball has moved.
     constexpr int kRounds = 100;
     const std::vector<Vec2> slots = places;
     const double contact = 4.0 * R * R;

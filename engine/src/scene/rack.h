@@ -20,10 +20,10 @@ int balls_of(const Rack& rack);
 ///
 /// @param R  ball radius [m]
 ///
-/// The apex, or rack.spot_ball, which has to be in the rack, stands at rack.position, or else on the foot spot (snooker: behind
-/// the pink, a diameter and a gap away). Rows run towards +y, turned by rack.angle_deg about that ball.
-/// The colours of snooker and the balls of three-cushion stand on their spots, whose distances (rack.cpp) are scaled with
-/// the length of the table; they do not jitter.
+/// The apex, or rack.spot_ball, which has to be in the rack, stands at rack.position, or else on the foot
+/// spot (snooker: behind the pink, a diameter and a gap away). Rows run towards +y, turned by rack.angle_deg
+/// about that ball. The colours of snooker and the balls of three-cushion stand on their spots, whose
+/// distances (rack.cpp) are scaled with the length of the table; they do not jitter.
 ///
 /// Without jitter the rack is the exact mirror image of itself about x = apex.x, bit for bit, and neighbours
 /// are 2R + gap apart to within rounding.

@@ -1,4 +1,5 @@
-// A typed reader over toml++: every value is checked where it is read, and every error names its place in the file.
+// A typed reader over toml++: every value is checked where
+// it is read, and every error names its place in the file.
 #pragma once
 
 #include <fmt/format.h>
@@ -27,8 +28,9 @@ class UnknownKey : public SceneError {
                const std::string& section, const std::vector<std::string_view>& keys);
 };
 
-/// Reads one table of the file. `path` names it in messages ("cue", "table.cushion"); the file as a whole is "".
-/// A section of a scene that was built in code has no table: it only checks, and its errors have no place.
+/// Reads one table of the file. `path` names it in messages ("cue",
+/// "table.cushion"); the file as a whole is "". A section of a scene that was
+/// built in code has no table: it only checks, and its errors have no place.
 class Section {
   public:
     Section(const std::string& file, std::string path) : file_(file), path_(std::move(path)) {}

@@ -59,10 +59,11 @@ PocketTable seven_foot() {
             .side_run = sin_cos_deg(kSideAngle).sin};
 }
 
-/// [m] Shelf of a corner pocket, from the middle of the mouth to the edge where the ball falls: 1 3/4 in, the middle of the BCA's
-/// 1 5/8 to 1 7/8 in and within the WPA's 1 to 2 1/4 in.
+/// [m] Shelf of a corner pocket, from the middle of the mouth to the edge where the ball falls: 1 3/4 in, the
+/// middle of the BCA's 1 5/8 to 1 7/8 in and within the WPA's 1 to 2 1/4 in.
 constexpr double kCornerShelf = 1.75 * 0.0254;
-/// [m] How far the point where a nose goes over into a facing is rounded: the facings of a pool table have none but that of the rubber.
+/// [m] How far the point where a nose goes over into a facing is rounded:
+/// the facings of a pool table have none but that of the rubber.
 constexpr double kPointRadius = 0.003;
 
 /// The depth of the pocket's centre that gives this shelf.
@@ -73,8 +74,8 @@ double depth_of_shelf(const PocketTable& t, double shelf) {
 /// Nine-foot table. Playing surface 100 x 50 in; the mouths are the middle of what the WPA equipment
 /// specifications allow (corner 4.5 to 4.625 in, side 5 to 5.125 in), and so are the angles between rail and
 /// facing (corner 142, side 104 degrees; here they count from 135 and from 90). The nose, at 64 % of the
-/// ball's diameter, lies within their 62.5 to 64.5 %. Carried over from the seven-foot table: cushion width, pocket radii and the depth at
-/// the sides, which gives a shelf of 4 mm there (specified: 0 to 9.5 mm).
+/// ball's diameter, lies within their 62.5 to 64.5 %. Carried over from the seven-foot table: cushion width,
+/// pocket radii and the depth at the sides, which gives a shelf of 4 mm there (specified: 0 to 9.5 mm).
 PocketTable nine_foot() {
     PocketTable t = seven_foot();
     t.length = 2.54;
@@ -99,8 +100,9 @@ PocketTable eight_foot() {
     return t;
 }
 
-/// Coin-operated bar table, called seven-foot in America: playing surface 80 x 40 in (Valley, Diamond), mouths of Valley's (corner
-/// 4 7/8, side 4 3/4 in), angles of the BCA (corner 142, side 103 degrees). The rest as for the nine-foot table.
+/// Coin-operated bar table, called seven-foot in America: playing surface 80 x 40
+/// in (Valley, Diamond), mouths of Valley's (corner 4 7/8, side 4 3/4 in), angles
+/// of the BCA (corner 142, side 103 degrees). The rest as for the nine-foot table.
 PocketTable bar_table() {
     PocketTable t = nine_foot();
     t.length = 80.0 * 0.0254;
@@ -137,7 +139,8 @@ PocketTable snooker_table() {
             .side_run = tan_deg(kSideAngle)};
 }
 
-/// A jaw and the straight facing beside it, in the frame of the corner: x and y from the corner into the table.
+/// A jaw and the straight facing beside it, in the frame
+/// of the corner: x and y from the corner into the table.
 struct JawAndFacing {
     Vec2 jaw;        ///< centre of the circle
     Vec2 tip, back;  ///< ends of the facing, at the nose and behind it
@@ -164,8 +167,8 @@ JawAndFacing side_jaw(const PocketTable& t) {
     return {{-r, y}, {-r + r * s.sin, y + r * s.cos}, {-t.cushion_width, end + t.cushion_width * t.side_run}};
 }
 
-/// Clockwise from the corner at the origin: head-left corner, left rail, foot rail, right rail, head rail. Each quarter of
-/// the table is the mirror image of the one before it.
+/// Clockwise from the corner at the origin: head-left corner, left rail, foot rail, right rail, head rail.
+/// Each quarter of the table is the mirror image of the one before it.
 Table build(const char* preset, const PocketTable& t) {
     const JawAndFacing short_rail = corner_jaw(t), long_rail = short_rail.swapped(), side = side_jaw(t);
     const double w = t.width, l = t.length, h = t.nose_height;

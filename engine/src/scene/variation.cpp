@@ -180,7 +180,8 @@ std::vector<Step> find_path(toml::table& file, std::string_view key) {
     return path;
 }
 
-/// Refuses a key that no scene has. Where the file has no value for it, nothing else tells it from one that was left out.
+/// Refuses a key that no scene has. Where the file has no value
+/// for it, nothing else tells it from one that was left out.
 void check_known(toml::table file, const std::string& name, const std::vector<Step>& path) {
     put_value(file, path, 0.0);
     try {
@@ -209,8 +210,9 @@ bool overlap(const Rule& a, const Rule& b) {
     return std::equal(a.path.begin(), a.path.begin() + static_cast<std::ptrdiff_t>(common), b.path.begin());
 }
 
-/// Whether a key of the file is the same number of the scene, on which nothing else in the scene depends: noses, racks and balls of
-/// a size of their own go by the size of the balls, and the surface by the parts of the table.
+/// Whether a key of the file is the same number of the scene, on which nothing
+/// else in the scene depends: noses, racks and balls of a size of their own go
+/// by the size of the balls, and the surface by the parts of the table.
 bool is_number_alone(std::string_view key) {
     const std::string_view section = key.substr(0, key.find('.')), last = key.substr(key.rfind('.') + 1);
     if (section == "cue" || section == "physics" || section == "stop") return true;

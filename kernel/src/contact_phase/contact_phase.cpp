@@ -1,10 +1,10 @@
 // The contact phase, four contacts at a time. Built once per instruction set.
 //
-// An evaluation of the right-hand side gathers the motions of the balls of four contacts and computes their forces in
-// lanes; then it adds all forces to the balls, one contact after the other in the order of their numbers. A lane computes what
-// a scalar program would compute, and every sum has one written order. Only contacts that overlap at that stage take
-// part. Memory is laid out for whole registers: the velocity and the horizontal spin of a ball are one row of four
-// numbers.
+// An evaluation of the right-hand side gathers the motions of the balls of four contacts and computes their
+// forces in lanes; then it adds all forces to the balls, one contact after the other in the order of their
+// numbers. A lane computes what a scalar program would compute, and every sum has one written order. Only
+// contacts that overlap at that stage take part. Memory is laid out for whole registers: the velocity and the
+// horizontal spin of a ball are one row of four numbers.
 #include "carom/kernel/contact_phase.h"
 #include "contact_phase/flight.h"
 #include "contact_phase/law.h"
@@ -60,7 +60,8 @@ CAROM_INLINE bool out_of_order(const Work& w, const double* d) {
     return change != 0;
 }
 
-// Whether a whole register could be saved: contacts that open stay among those that come first, where they have no force.
+// Whether a whole register could be saved: contacts that open
+// stay among those that come first, where they have no force.
 CAROM_INLINE bool gaps_add_up(const Work& w) {
     Four open = broadcast<4>(0.0);
     for (int c = 0; c < w.count; c += 4)
@@ -68,9 +69,9 @@ CAROM_INLINE bool gaps_add_up(const Work& w) {
     return sum(open) >= 4.0 + padded(w.count) - w.count;
 }
 
-// The forces of four contacts, into w.force. At a stage the normals have turned for `time`, and `rate` gets the rates of the overlaps.
-// Apart from add_forces(), because a processor that looks a few hundred instructions ahead then has the roots and divisions of all
-// contacts under way at once.
+// The forces of four contacts, into w.force. At a stage the normals have turned for `time`, and `rate` gets
+// the rates of the overlaps. Apart from add_forces(), because a processor that looks a few hundred
+// instructions ahead then has the roots and divisions of all contacts under way at once.
 template <bool kFalls, bool kStage>
 CAROM_INLINE void find_forces(const Work& w, const Law<kFalls>& law, const double* y, const double* d,
                               double time, int first, double* rate) {
@@ -129,10 +130,11 @@ CAROM_INLINE void add_forces(const Work& w, int first, double* dy) {
     }
 }
 
-// The friction of the cloth between two steps, under the balls that are pressed down. It answers half of what pressed a ball in the
-// last step and half of what the force at its end would press in the next one if that is as long: so the error is of second order. What was
-// answered ahead (kAhead) is left out the next time. The slip u decays at the rate 3.5 mu_s N / |u|; by the implicit midpoint rule, which is
-// stable for any step, and exact while the ball slides. |u| in the middle comes from half an implicit step.
+// The friction of the cloth between two steps, under the balls that are pressed down. It answers half of what
+// pressed a ball in the last step and half of what the force at its end would press in the next one if that
+// is as long: so the error is of second order. What was answered ahead (kAhead) is left out the next time.
+// The slip u decays at the rate 3.5 mu_s N / |u|; by the implicit midpoint rule, which is stable for any
+// step, and exact while the ball slides. |u| in the middle comes from half an implicit step.
 template <bool kFalls>
 CAROM_INLINE void drag(const Work& w, const Law<kFalls>& law, double* y) {
     const Four zero = broadcast<4>(0.0);
@@ -164,7 +166,8 @@ CAROM_INLINE void drag(const Work& w, const Law<kFalls>& law, double* y) {
     }
 }
 
-// Adds the right-hand side to dy, in units of V and L: forces are d^1.5, masses 1. At a stage `rate` gets the rates of the overlaps.
+// Adds the right-hand side to dy, in units of V and L: forces are
+// d^1.5, masses 1. At a stage `rate` gets the rates of the overlaps.
 template <bool kStage, bool kFalls>
 CAROM_INLINE void forces(Work& w, const Law<kFalls>& law, const double* y, const double* d, double time,
                          double* dy, double* rate) {
@@ -193,8 +196,9 @@ CAROM_INLINE double largest_lane(const Four& v) {
     return largest(largest(each[0], each[1]), largest(each[2], each[3]));
 }
 
-// The state after a step of length h, into y_stage, and its largest difference from the midpoint rule in a velocity or spin if it is
-// watched. The slopes of the later stages become zero, because forces() adds to them.
+// The state after a step of length h, into y_stage, and its largest
+// difference from the midpoint rule in a velocity or spin if it is watched.
+// The slopes of the later stages become zero, because forces() adds to them.
 template <bool kWatched>
 CAROM_INLINE double finish(const Work& w, const RungeKutta& method, double h) {
     double *k0 = w.dy[0], *k1 = w.dy[1], *k2 = w.dy[2], *k3 = w.dy[3];
@@ -271,8 +275,9 @@ CAROM_INLINE void stages(Work& w, const Law<kFalls>& law, const RungeKutta& meth
     }
 }
 
-// One Runge-Kutta step; returns its length. At entry rate[0] belongs to the state. `longest` is its limit; the error, which friction
-// makes, sets that of the next step into `next`; without friction `next` is not read.
+// One Runge-Kutta step; returns its length. At entry rate[0] belongs to the
+// state. `longest` is its limit; the error, which friction makes, sets that
+// of the next step into `next`; without friction `next` is not read.
 template <bool kFalls>
 CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double shortest, double longest, double& next) {
     forces<false>(w, law, w.y, w.d, 0.0, w.dy[0], nullptr);

@@ -1,5 +1,5 @@
-// What happens between the contacts of a contact phase: flights, and contacts that turn less than the balls. Part of
-// contact_phase.cpp.
+// What happens between the contacts of a contact phase: flights, and
+// contacts that turn less than the balls. Part of contact_phase.cpp.
 #pragma once
 
 #include "carom/kernel/contact_phase.h"
@@ -10,8 +10,8 @@
 namespace carom::kernel {
 namespace {
 
-// Where a contact closes after a flight, its normal turns with the balls up to this share of the look-ahead; less from
-// there to the end, and so do contacts that close up to so long after it [L/V].
+// Where a contact closes after a flight, its normal turns with the balls up to this share of the look-ahead;
+// less from there to the end, and so do contacts that close up to so long after it [L/V].
 constexpr double kFlight = 0.5, kSoonAfter = 0.5;
 // [longest steps] A contact that touches within this time touches at once.
 constexpr double kAtOnce = 1e-3;
@@ -35,7 +35,8 @@ CAROM_INLINE bool any_pressed(const Work& w, const HertzLaw& law, double time_le
 
 constexpr double kNever = 1e300;
 
-// The motion of two balls along and across their line of centres, while nothing pushes them. Lengths in L, kappa = L/(2 R).
+// The motion of two balls along and across their line of centres,
+// while nothing pushes them. Lengths in L, kappa = L/(2 R).
 struct Way {
     double closing, across, speed2;  // speeds, and their square together
     double kappa, gap, apart;        // kappa, and kappa times the distance of the centres
@@ -91,9 +92,9 @@ CAROM_INLINE double falling(double x, double from, double to) {
     return 1.0 - t * t * (3.0 - 2.0 * t);
 }
 
-// Moves all balls straight on for `time`, when the first contact closes. Where that takes almost the look-ahead, the caller is almost
-// about to take over, whose balls have not moved during the contacts: such contacts, and those that close soon after,
-// turn less.
+// Moves all balls straight on for `time`, when the first contact closes. Where that takes
+// almost the look-ahead, the caller is almost about to take over, whose balls have not
+// moved during the contacts: such contacts, and those that close soon after, turn less.
 CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double look_ahead) {
     const double less = 1.0 - falling(time, kFlight * look_ahead, look_ahead);
     w.shares = false;
@@ -110,8 +111,9 @@ CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double lo
     look(w);
 }
 
-// A contact closes that turns less than the balls do: its normal goes from that of the balls to the one with which the balls
-// would meet if they had moved with their present velocities since the first touch, without any contact before.
+// A contact closes that turns less than the balls do: its normal goes from that
+// of the balls to the one with which the balls would meet if they had moved with
+// their present velocities since the first touch, without any contact before.
 CAROM_INLINE void close_contact(const ContactPhase& phase, Work& w, int c, double time) {
     double &nx = w.nx[c], &ny = w.ny[c];
     turn_by_flight(way(w, c, nx, ny, largest(0.0, -w.d[c])), time, nx, ny);
@@ -128,7 +130,8 @@ CAROM_INLINE void close_contact(const ContactPhase& phase, Work& w, int c, doubl
     w.bend[c] = share * w.curvature;
 }
 
-// Contacts that turn less than the balls do so from their touch to their end. A step ends where one of them touches.
+// Contacts that turn less than the balls do so from their touch to their end. A step ends where one of them
+// touches.
 // @return the longest step
 CAROM_INLINE double settle(const ContactPhase& phase, Work& w, double longest) {
     double h = longest;

@@ -246,8 +246,8 @@ class InSpace {
         return false;
     }
 
-    // When the next contact closes, if nothing pushes: |z - v s| = 2 R, without the difference of numbers that are
-    // nearly equal.
+    // When the next contact closes, if nothing pushes: |z - v s| =
+    // 2 R, without the difference of numbers that are nearly equal.
     double next_touch() const {
         double first = kNever;
         for (int c = 0; c < phase_.contacts; ++c) {
@@ -274,8 +274,8 @@ class InSpace {
     double *y_, *stage_, *slope_[kStages];
     double next_;        // limit of the next step by the error of the last one
     double* stiffness_;  // per ball: the sum of friction over slip
-    // Per contact: from one centre to the other at the start (3 numbers); the largest overlap since it opened; overlap and its
-    // slope before the step.
+    // Per contact: from one centre to the other at the start (3 numbers); the
+    // largest overlap since it opened; overlap and its slope before the step.
     double *apart_, *memory_, *before_, *rate_;
 };
 

@@ -1,8 +1,8 @@
 // The loop of the published march: explicit Euler in the normal impulse, equation by equation in double.
 //
-// The names are those of the 2014 paper: P is the normal impulse and dP its step; dP1 and dP2 are the horizontal and
-// the vertical friction impulse between the balls; dPix, dPiy, dPjx and dPjy are the impulses of the cloth on ball i
-// (1) and ball j (2); C = 5/(2 m R); W is the work of the normal impulse.
+// The names are those of the 2014 paper: P is the normal impulse and dP its step; dP1 and dP2 are the
+// horizontal and the vertical friction impulse between the balls; dPix, dPiy, dPjx and dPjy are the impulses
+// of the cloth on ball i (1) and ball j (2); C = 5/(2 m R); W is the work of the normal impulse.
 #pragma once
 
 #include "carom/kernel/march.h"
@@ -12,13 +12,13 @@
 namespace carom::kernel {
 namespace {
 
-// [m/s] A slip below this gives no friction, as in the published code. It is an absolute speed and so breaks the
-// homogeneity of the model at extremely low speed (hard case H26), but this file has to agree with the published
-// code.
+// [m/s] A slip below this gives no friction, as in the published code. It is an
+// absolute speed and so breaks the homogeneity of the model at extremely low
+// speed (hard case H26), but this file has to agree with the published code.
 constexpr double kSlipCutoff = 1e-16;
 
-// kSign is +1 for the cloth slip u = (v_x + R w_y, v_y - R w_x), as published, and -1 for the consistent sign.
-// Returns the number of steps, or -1 at the bound on steps.
+// kSign is +1 for the cloth slip u = (v_x + R w_y, v_y - R w_x), as published, and -1 for the consistent
+// sign. Returns the number of steps, or -1 at the bound on steps.
 template <int kSign>
 long march_loop(FrameState& s, const ImpactParams& p, int n) {
     const double R = p.R, m = p.m;

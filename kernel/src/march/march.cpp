@@ -1,5 +1,5 @@
-// The published march, the plain reference that every faster variant is compared with. Built once per instruction
-// set.
+// The published march, the plain reference that every faster
+// variant is compared with. Built once per instruction set.
 #include "kernel_set.h"
 #include "march/drive.h"
 #include "march/loop.h"

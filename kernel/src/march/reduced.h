@@ -1,11 +1,13 @@
-// The march in a reduced state. The ten velocities follow from six numbers and the normal impulse, because every
-// change is a sum of five impulses per unit mass: Xi (horizontal friction), T (vertical friction), Q (two of the
-// cloth) and p (normal).
+// The march in a reduced state. The ten velocities follow from six numbers and the normal impulse, because
+// every change is a sum of five impulses per unit mass: Xi (horizontal friction), T (vertical friction), Q
+// (two of the cloth) and p (normal).
 //
 //   x = v1x - v2x - R (w1z + w2z), z = R (w1x + w2x)     slip between the balls
-//   U[1] = u2, U[0] = -u1                                cloth slips; -u1, so that both sides have the same equations
+//   U[1] = u2, U[0] = -u1                                cloth slips; -u1, so that both sides have the same
+//   equations
 //
-// With c = |(x, z)|, A = mu_b h / c, xi = A x, t = A |z| and the pressed ball's q = mu_s t U / |U| one step is
+// With c = |(x, z)|, A = mu_b h / c, xi = A x, t = A |z|
+// and the pressed ball's q = mu_s t U / |U| one step is
 //
 //   x += -7 xi + q_x          |z| += -5 t + 5/2 q_y          v_n += 2 h - q_y
 //   U_pressed += (xi - kappa q_x, h - 5/2 sigma t - kappa q_y)

@@ -1,7 +1,7 @@
-// Exact sums of polynomials over consecutive steps. A block has K steps, t = 0 .. K. A rate F is represented by its
-// values at eight Gauss-Legendre nodes, that is by the polynomial of degree 7 through them. The sum over m < t of
-// F(m) is then a polynomial of degree 8 in t, and the sum of these sums one of degree 9: there is no quadrature
-// error, only the error of the interpolation.
+// Exact sums of polynomials over consecutive steps. A block has K steps, t = 0 .. K. A rate F is represented
+// by its values at eight Gauss-Legendre nodes, that is by the polynomial of degree 7 through them. The sum
+// over m < t of F(m) is then a polynomial of degree 8 in t, and the sum of these sums one of degree 9: there
+// is no quadrature error, only the error of the interpolation.
 #pragma once
 
 namespace carom::kernel {
@@ -17,8 +17,8 @@ struct alignas(64) SumTable {
     double sums[kNodes][kNodes];  // [l][i]: the share of F(node l) in the sum at node i
     double total[kNodes];         // [l]: its share in the sum over the block
     double double_total[kNodes];  // [l]: its share in the sum over m < K of the sums at m
-    // Coefficients in theta of the sum (degree 8) and of the sum of sums (degree 9): of degrees 0 .. 7 by node,
-    // [l][k], and of higher degrees by degree, [k - 8][l].
+    // Coefficients in theta of the sum (degree 8) and of the sum of sums (degree 9): of degrees 0 .. 7 by
+    // node, [l][k], and of higher degrees by degree, [k - 8][l].
     double once_low[kNodes][kNodes], once_high[1][kNodes];
     double twice_low[kNodes][kNodes], twice_high[2][kNodes];
     double steps;               // K

@@ -1,12 +1,13 @@
-// The result of the march without its steps. The explicit Euler march is the sequence y(m+1) = y(m) + h f(y(m)).
-// Over a block of K steps the rates are a smooth function of m: a polynomial through eight nodes represents them all,
-// and its sums over consecutive m are exact (sum_tables.h). The values at the nodes are found by fixed-point sweeps,
-// eight lanes at once. What is summed is the Euler sequence, not the continuous impact: step count, last step and
-// discretisation error are those of the march. Where the rates are not smooth (a change of the pressed side, a slip
-// near zero, a ball that starts rolling) exact steps are taken.
+// The result of the march without its steps. The explicit Euler march is the sequence y(m+1) = y(m) + h
+// f(y(m)). Over a block of K steps the rates are a smooth function of m: a polynomial through eight nodes
+// represents them all, and its sums over consecutive m are exact (sum_tables.h). The values at the nodes are
+// found by fixed-point sweeps, eight lanes at once. What is summed is the Euler sequence, not the continuous
+// impact: step count, last step and discretisation error are those of the march. Where the rates are not
+// smooth (a change of the pressed side, a slip near zero, a ball that starts rolling) exact steps are taken.
 //
-// Where rounding decides the published march, no other order of its sums can follow it, and this one gives up: where many
-// exact steps chatter near stick, and where the step that ends compression or the impact is a tie within rounding.
+// Where rounding decides the published march, no other order of its sums can follow
+// it, and this one gives up: where many exact steps chatter near stick, and where
+// the step that ends compression or the impact is a tie within rounding.
 #pragma once
 
 #include "loop_marks.h"
@@ -19,19 +20,20 @@ namespace carom::kernel {
 namespace {
 
 constexpr int kMostBlockSweeps = 24;
-// Largest change of a node in the last sweep, and largest highest modes of the rates, both relative to the approach
-// speed.
+// Largest change of a node in the last sweep, and largest highest
+// modes of the rates, both relative to the approach speed.
 constexpr double kSweepTolerance = 5e-13, kModeTolerance = 5e-11;
-// After two sweeps the modes may exceed kModeTolerance by this factor; a block in which they are larger is given up.
+// After two sweeps the modes may exceed kModeTolerance by
+// this factor; a block in which they are larger is given up.
 constexpr double kEarlySlack = 10.0;
 // Rounding error of a sweep, summed over the nodes, relative to the slips.
 constexpr double kSweepRounding = 4e-15;
-// Exact steps, and the growth of a small difference over them, after which an impact is left to the published march: near
-// stick, or where a cloth slip comes next to zero, rounding may decide the sign of a slip.
+// Exact steps, and the growth of a small difference over them, after which an impact is left to the published
+// march: near stick, or where a cloth slip comes next to zero, rounding may decide the sign of a slip.
 constexpr long kMostExactSteps = 40;
 constexpr double kMostGrowth = 10.0;
-// How close v_n and the work may come to the values that end a phase, relative to the approach speed; in addition the
-// published march rounds v_n by up to half an ulp of the fastest speed in each step.
+// How close v_n and the work may come to the values that end a phase, relative to the approach speed; in
+// addition the published march rounds v_n by up to half an ulp of the fastest speed in each step.
 constexpr double kTie = 1e-9, kTieRounding = 0x1p-51;
 
 template <int kSign>
@@ -72,8 +74,8 @@ class SummedMarch {
     bool tied = false;
     double enlarged = 1.0;
 
-    // The factor by which the next step enlarges a difference of a slip, at most: the step turns with the direction of the
-    // slip.
+    // The factor by which the next step enlarges a difference of a
+    // slip, at most: the step turns with the direction of the slip.
     double growth_of_step() const {
         const int pressed = r.z < 0.0;
         const double c = largest(absolute(r.x), absolute(r.z)),
@@ -84,7 +86,8 @@ class SummedMarch {
         return 1.0 + k.mu_h * (of_slip + of_cloth);
     }
 
-    // Takes exact steps until the march ends or `count` are done; returns how many. Each shows whether it is a tie.
+    // Takes exact steps until the march ends or `count` are
+    // done; returns how many. Each shows whether it is a tie.
     long exact_steps(long count) {
         const long before = steps;
         while (count-- > 0 && stop.goes_on(r.v_n)) {
@@ -96,8 +99,8 @@ class SummedMarch {
         return steps - before;
     }
 
-    // The reciprocal lengths C and U and the rates at the present state. `cloth`: there is friction between the
-    // pressed ball and the cloth.
+    // The reciprocal lengths C and U and the rates at the present state.
+    // `cloth`: there is friction between the pressed ball and the cloth.
     struct FirstStep {
         int pressed;
         bool slips, turns, cloth, rolls;
@@ -154,8 +157,8 @@ class SummedMarch {
         Eight xi, t, q_x, q_y;
     };
 
-    // y is close to 1/sqrt(square), with e = 1 - square y^2; corrected by the series of (1 - e)^(-1/2). The error
-    // 35/128 e^4 is left to the next sweep.
+    // y is close to 1/sqrt(square), with e = 1 - square y^2; corrected by the
+    // series of (1 - e)^(-1/2). The error 35/128 e^4 is left to the next sweep.
     static Eight refined(Eight y, Eight e) { return y + (y * e) * (0.5 + e * (0.375 + e * 0.3125)); }
 
     // C and U are the reciprocal lengths of the sweep before on entry and of this sweep on return.
@@ -226,7 +229,8 @@ class SummedMarch {
             a = next_a;
             b = next_b;
             CAROM_LOOP_END("summed sweep");
-            // Sweeps converge faster and faster: the next change would be smaller by at least the same factor.
+            // Sweeps converge faster and faster: the next change
+            // would be smaller by at least the same factor.
             const double left =
                 sweep > 2 && change < change_before ? change * change / change_before : change;
             if (left <= settled) {
@@ -245,7 +249,8 @@ class SummedMarch {
     }
 
     bool resolved(const SumTable& table, const Rates& f, double slack) const {
-        // One mixture of the four rates represents them all; its weights are uneven, so that no symmetry cancels.
+        // One mixture of the four rates represents them all;
+        // its weights are uneven, so that no symmetry cancels.
         const Eight F = (f.xi + 0.7 * f.t) + (1.3 * f.q_x - 0.6 * f.q_y);
         const double missing = absolute(total(table.mode7, F)) + 0.1 * absolute(total(table.mode6, F));
         return missing * table.steps <= slack * kModeTolerance * scale;
@@ -269,7 +274,8 @@ class SummedMarch {
         const Profile at(table, f.q_y, v0, h);
         double from = 0.0, v_from = v0, V_from = 0.0;
         if (stop.compressing) {
-            // The first step after which v_n > 0: a secant, because v grows almost linearly, and one correction.
+            // The first step after which v_n > 0: a secant, because
+            // v grows almost linearly, and one correction.
             const double slope = (v_end - v0) / K;
             double t = -v0 / slope;
             t -= at.v(t) / slope;
@@ -384,19 +390,21 @@ class SummedMarch {
 struct Summed {
     static constexpr int kFewestSubsteps = 100;  // below this the steps themselves cost no more than the sums
 
-    // Frictions beyond these are left to the published march. As published, the cloth feeds the slip, and beyond them the
-    // equations themselves enlarge a difference without limit.
+    // Frictions beyond these are left to the published march. As published, the cloth feeds the slip, and
+    // beyond them the equations themselves enlarge a difference without limit.
     static bool usual(const ImpactParams& p, int sign) {
         const double mu_s = largest(p.mu_s1, p.mu_s2);
         return sign > 0 ? p.mu_b <= 0.2 && mu_s <= 0.5 : p.mu_b <= 1.0 && mu_s <= 1.0;
     }
 
-    // Returns the number of steps, or -1 where the published march has to be asked; the state is then as it was.
+    // Returns the number of steps, or -1 where the published
+    // march has to be asked; the state is then as it was.
     template <int kSign>
     static long loop(FrameState& s, const ImpactParams& p, int n) {
         if (n < kFewestSubsteps || !usual(p, kSign)) return -1;
         ReducedConstants k = reduced_constants<kSign>(s, p, n);
-        // Without friction between the balls the cloth is not felt, and its slips may not decide how the blocks lie.
+        // Without friction between the balls the cloth is not
+        // felt, and its slips may not decide how the blocks lie.
         if (p.mu_b == 0.0) k.mu_s[0] = k.mu_s[1] = 0.0;
         const Reduced start = reduce<kSign>(s, p.R);
         SummedMarch<kSign> march(start, k,

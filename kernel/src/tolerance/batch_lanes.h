@@ -1,5 +1,5 @@
-// The lanes of a batch by tolerance: impacts are loaded into lanes, brought into their canonical form there, solved
-// by one collocation, and written back. tolerance.cpp says which impacts are solved this way.
+// The lanes of a batch by tolerance: impacts are loaded into lanes, brought into their canonical form there,
+// solved by one collocation, and written back. tolerance.cpp says which impacts are solved this way.
 #pragma once
 
 #include "carom/kernel/batch.h"
@@ -64,7 +64,8 @@ inline BatchView view(const ImpactBatch& batch, const ImpactBatchResult& result)
     return v;
 }
 
-// The results of a block of lanes: which lanes are a proper impact, which are solved, and which more nodes may solve.
+// The results of a block of lanes: which lanes are a proper
+// impact, which are solved, and which more nodes may solve.
 struct BlockResult {
     Wide out[kOutputs];
     Wide sweeps;
@@ -100,8 +101,8 @@ CAROM_INLINE WideMask wide_enter(const Wide (&in)[kInputs], WideFrame& f) {
         ((absolute(f.x1) + absolute(f.y1)) + (absolute(f.x2) + absolute(f.y2))) +
         in[kRadius] * ((absolute(f.wx1) + absolute(f.wy1)) + (absolute(f.wz1) + absolute(f.wx2)) +
                        (absolute(f.wy2) + absolute(f.wz2)));
-    // Impacts with an extreme range of speeds are left to the single kernel, which tells whether they are impacts at
-    // all.
+    // Impacts with an extreme range of speeds are left to the
+    // single kernel, which tells whether they are impacts at all.
     return (wrong == 0.0) & (d > 0.0) & (absolute(dz) <= kHeightTolerance * d) & (in[kRadius] > 1e-100) &
            (in[kMass] > 0.0) & (in[kMuS1] >= 0.0) & (in[kMuS2] >= 0.0) & (in[kMuB] > 0.0) &
            (in[kMuS1] <= kLargestFriction) & (in[kMuS2] <= kLargestFriction) &

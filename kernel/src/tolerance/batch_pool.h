@@ -1,4 +1,5 @@
-// Impacts of a batch that are solved in stretches. Each lane starts the next impact as soon as it has finished one.
+// Impacts of a batch that are solved in stretches. Each lane
+// starts the next impact as soon as it has finished one.
 #pragma once
 
 #include "tolerance/single.h"
@@ -10,8 +11,8 @@ namespace {
 // Impacts that are solved in one go.
 constexpr int kPool = 128;
 
-// From this tolerance on, lanes solve stretches of 4 nodes faster than stretches of 8: they are shorter, but a sweep
-// of 8 nodes costs more than twice as much and its values do not fit into the registers.
+// From this tolerance on, lanes solve stretches of 4 nodes faster than stretches of 8: they are shorter, but
+// a sweep of 8 nodes costs more than twice as much and its values do not fit into the registers.
 constexpr double kLooseWide = 1e-7;
 
 // Impacts in their canonical form, and their results.
@@ -81,8 +82,9 @@ CAROM_INLINE WideMask wide_plan(WideRuns& r, double tolerance) {
     return vanished;
 }
 
-// As add_stretch() and advance(), for the lanes that converged and for those that can be shortened. Returns the lanes that are
-// through; `frozen` are those that neither converged nor can be shortened, which are left as they were.
+// As add_stretch() and advance(), for the lanes that converged and for those
+// that can be shortened. Returns the lanes that are through; `frozen` are those
+// that neither converged nor can be shortened, which are left as they were.
 CAROM_INLINE WideMask wide_advance(WideRuns& r, const WideStretchResult& result, WideMask& frozen) {
     const WideModel& m = r.m;
     const WideResult& t = result.t;
@@ -313,7 +315,8 @@ class StretchLanes {
         set_lane(r.busy, i, 0);
     }
 
-    // Steps that are too short to be shortened are taken as they come. Returns the lanes that are then through.
+    // Steps that are too short to be shortened are taken as
+    // they come. Returns the lanes that are then through.
     WideMask freeze(WideMask lanes) {
         WideMask through = {};
         for (int i = 0; i < kWidth; ++i) {

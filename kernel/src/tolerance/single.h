@@ -9,12 +9,12 @@ namespace {
 // The cloth slip of a rolling ball is rounding noise: up to this share of the speeds it counts as zero.
 constexpr double kSlipNoise = 0x1p-49;
 
-// Loosest tolerance that is solved for. A looser one would save nothing, and the iteration could stop so early that
-// energy rises.
+// Loosest tolerance that is solved for. A looser one would save
+// nothing, and the iteration could stop so early that energy rises.
 constexpr double kLoosestSolved = 1e-3;
 
-// What an impulse does to a ball, as a share of what it does to one of two equal balls of the same reduced mass:
-// 2 m_r/m_i, from 0 to 2 and together 2. Equal balls have exactly 1.
+// What an impulse does to a ball, as a share of what it does to one of two equal balls of the same reduced
+// mass: 2 m_r/m_i, from 0 to 2 and together 2. Equal balls have exactly 1.
 struct Shares {
     double one, two;
 };
@@ -33,10 +33,10 @@ CAROM_INLINE bool tolerance_in_range(const ImpactParams& p, const Shares& share,
 
 // Brings an impact into its canonical form. Returns whether ball 2 is the one that is pressed on the cloth.
 //
-// Impulses are over twice the reduced mass. With the share f of the pressed ball, friction of the cloth acts on its own
-// slip u as in x' = -7 xi + f g_a and u' = f (..., ... - kappa g): so f mu_s, kappa/f and u/f take the places of mu_s,
-// kappa and u in the equations of equal balls, which see of u its direction alone. Their g then is what changes the
-// pressed ball's velocity.
+// Impulses are over twice the reduced mass. With the share f of the pressed ball, friction of the cloth acts
+// on its own slip u as in x' = -7 xi + f g_a and u' = f (..., ... - kappa g): so f mu_s, kappa/f and u/f take
+// the places of mu_s, kappa and u in the equations of equal balls, which see of u its direction alone. Their
+// g then is what changes the pressed ball's velocity.
 CAROM_INLINE bool pose(const FrameState& s, const ImpactParams& p, const Shares& share, double tolerance,
                        Problem& problem) {
     const double R = p.R, n = s.v1y - s.v2y, scale = 1.0 / n;

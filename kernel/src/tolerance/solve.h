@@ -11,8 +11,9 @@ namespace {
 // Most stretches of one impact; only degenerate input comes near it.
 constexpr int kMostStretches = 2000;
 
-// The error of one collocation of 4 nodes is at most kSizeS mu_b rho_s^-6 + kSizeU mu_b mu_s rho_u^-5, and of one of
-// 8 nodes kSizeS mu_b rho_s^-12 + kSizeU/2 mu_b mu_s rho_u^-10, with a margin of 4 or more: fitted to random impacts.
+// The error of one collocation of 4 nodes is at most kSizeS mu_b rho_s^-6 + kSizeU
+// mu_b mu_s rho_u^-5, and of one of 8 nodes kSizeS mu_b rho_s^-12 + kSizeU/2 mu_b
+// mu_s rho_u^-10, with a margin of 4 or more: fitted to random impacts.
 constexpr double kSizeS = 1.0, kSizeU = 1.2;
 
 // The sum of the axes where no singularity is near.
@@ -35,9 +36,9 @@ struct Solution {
     ToleranceMethod method;
 };
 
-// Powers of rho, the Bernstein ellipse about [0, 1] on which a singularity lies: the error of N nodes falls as rho^-2N. They come
-// from the sum of its axes rho + 1/rho, 2 or more, without a root, because rho^n + rho^-n is a polynomial of that sum. What is
-// returned is up to 1 less than the power.
+// Powers of rho, the Bernstein ellipse about [0, 1] on which a singularity lies: the error of N nodes falls
+// as rho^-2N. They come from the sum of its axes rho + 1/rho, 2 or more, without a root, because rho^n +
+// rho^-n is a polynomial of that sum. What is returned is up to 1 less than the power.
 template <class T>
 struct Powers {
     T five, six, ten, twelve;
@@ -61,7 +62,8 @@ CAROM_INLINE auto eight_will_do(const Powers<T>& s, const Powers<T>& u, T mu_b, 
     return (tolerance * s.twelve >= kSizeS * mu_b) & (tolerance * u.ten >= 0.5 * kSizeU * (mu_b * mu_s));
 }
 
-// |s|^2/mu_b times the fastest that |s| can shrink; the cloth force adds up to (1 + 2.5^2)^(1/2) mu_s mu_b z/|s|.
+// |s|^2/mu_b times the fastest that |s| can shrink; the cloth force adds up to (1 + 2.5^2)^(1/2) mu_s mu_b
+// z/|s|.
 CAROM_INLINE double fall(const Model& m, const State& at, double s) {
     return (7.0 * (at.x * at.x) + 5.0 * (at.z * at.z)) + (2.7 * m.mu_s) * (at.z * s);
 }
@@ -77,8 +79,9 @@ CAROM_INLINE void finish_frictionless(double v, double work_left, bool compressi
     if (work_left > 0.0) total.p += 2.0 * work_left / (v + square_root(v * v + 4.0 * work_left));
 }
 
-// The rest of an impact whose slip has nearly vanished. The slip ends while the cloth slip keeps its direction; where
-// the impulse that is left is too small to end it, the friction impulses are reduced in proportion.
+// The rest of an impact whose slip has nearly vanished. The slip ends while
+// the cloth slip keeps its direction; where the impulse that is left is too
+// small to end it, the friction impulses are reduced in proportion.
 inline void finish_stuck(const Model& m, State at, double left, Impulses& total, double& v) {
     const double s = square_root(at.x * at.x + at.z * at.z), u = square_root(at.a * at.a + at.b * at.b);
     const double ga = u > 0.0 ? m.mu_s * (at.a / u) : 0.0, gb = u > 0.0 ? m.mu_s * (at.b / u) : 0.0;
@@ -92,7 +95,8 @@ inline void finish_stuck(const Model& m, State at, double left, Impulses& total,
     v -= gb * zeta;
 }
 
-// Ellipses of stretches, each 1.125 times the one before: rho^6 (4 nodes) or rho^12 (8 nodes), and the sum of the axes.
+// Ellipses of stretches, each 1.125 times the one before: rho^6
+// (4 nodes) or rho^12 (8 nodes), and the sum of the axes.
 template <int N>
 struct Ellipses {
     static constexpr int kCount = 33;
@@ -110,8 +114,8 @@ struct Ellipses {
 template <int N>
 constexpr Ellipses<N> kEllipses;
 
-// The sum of the axes of the smallest of the ellipses for which N nodes keep an error that is this multiple of the
-// tolerance for rho = 1.
+// The sum of the axes of the smallest of the ellipses for which N nodes
+// keep an error that is this multiple of the tolerance for rho = 1.
 template <int N>
 CAROM_INLINE double needed_axes(double excess) {
     // The powers rise. All are asked at once: no question waits for another one.
@@ -122,7 +126,8 @@ CAROM_INLINE double needed_axes(double excess) {
     return kEllipses<N>.sum_of_axes[too_small == ~0u ? Ellipses<N>::kCount - 1 : __builtin_ctz(~too_small)];
 }
 
-// The last resort, which always makes progress: one explicit Euler step over a stretch that is too short to matter.
+// The last resort, which always makes progress: one explicit
+// Euler step over a stretch that is too short to matter.
 inline void frozen_step(const Model& m, double h, State& at, Impulses& total, double& done) {
     const double s = square_root(at.x * at.x + at.z * at.z), u = square_root(at.a * at.a + at.b * at.b);
     const double xi = s > 0.0 ? m.mu_b * (at.x / s) * h : 0.0, zeta = s > 0.0 ? m.mu_b * (at.z / s) * h : 0.0;
@@ -159,8 +164,8 @@ CAROM_INLINE bool resolved(const Model& m, const Stretch& stretch, double tolera
     return resolved(m.mu_b, m.mu_s, stretch.h, stretch.s_top2, stretch.g_top2, tolerance);
 }
 
-// An impact that is solved in stretches, each so short that |s| and |u| keep a share of their size over it. `plan`
-// chooses the next stretch; `advance` accepts or rejects the result of its collocation.
+// An impact that is solved in stretches, each so short that |s| and |u| keep a share of their size over it.
+// `plan` chooses the next stretch; `advance` accepts or rejects the result of its collocation.
 struct Adaptive {
     Model m;
     double tolerance, S, shortest;
@@ -324,8 +329,8 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
     }
     const double guess = 0.5 * (1.0 + m.e_b);
     const double ss = start.x * start.x + start.z * start.z, s = square_root(ss), root_s = inverse_root(ss);
-    // How far away the singularities are: stick lies straight ahead, the zero of the cloth slip beside its nearly
-    // straight path.
+    // How far away the singularities are: stick lies straight ahead,
+    // the zero of the cloth slip beside its nearly straight path.
     const double axes_s = 4.0 * (s * ss) / ((guess * m.mu_b) * fall(m, start, s)) - 2.0;
     double axes_u = kFarAway;
     if (!problem.from_rest) {

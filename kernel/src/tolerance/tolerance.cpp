@@ -1,8 +1,8 @@
 // Impacts by tolerance, single and in batches. Built once per instruction set.
 //
-// A batch solves its easy impacts in lanes as they come, by one collocation of 4 nodes. Impacts that need 8 nodes are
-// gathered until they fill a register; those that need stretches are gathered too, and each lane starts the next one
-// as soon as it has finished one. Special cases are left to the single kernel.
+// A batch solves its easy impacts in lanes as they come, by one collocation of 4 nodes. Impacts that need 8
+// nodes are gathered until they fill a register; those that need stretches are gathered too, and each lane
+// starts the next one as soon as it has finished one. Special cases are left to the single kernel.
 #include "kernel_set.h"
 #include "tolerance/batch_lanes.h"
 #include "tolerance/batch_pool.h"
@@ -48,7 +48,8 @@ struct Remaining {
     int resolvables, hards;
 };
 
-// Sorts the resolvable impacts by how many sweeps they will need, roughly: all lanes of a register wait for the slowest.
+// Sorts the resolvable impacts by how many sweeps they will
+// need, roughly: all lanes of a register wait for the slowest.
 inline void sort_resolvable(Remaining& rest) {
     constexpr int kBins = 32;
     const auto bin = [&](int i) {

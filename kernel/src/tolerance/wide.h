@@ -1,8 +1,8 @@
-// One collocation of many impacts at once: each lane is an impact, and the nodes are elements of arrays. Legend:
-// collocation.h.
+// One collocation of many impacts at once: each lane is an impact,
+// and the nodes are elements of arrays. Legend: collocation.h.
 //
-// A lane reads only its own numbers and keeps the impulses of the sweep at which it converged itself. Its bits
-// therefore depend neither on the width of the registers nor on the impacts in the other lanes.
+// A lane reads only its own numbers and keeps the impulses of the sweep at which it converged itself. Its
+// bits therefore depend neither on the width of the registers nor on the impacts in the other lanes.
 #pragma once
 
 #include "tolerance/collocation.h"
@@ -104,8 +104,8 @@ CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exac
             n.root_s[i] = fresh_s;
             n.root_u[i] = fresh_u;
         } else {
-            // Newton's step: fewer operations than the cubic one of forces(), and as many sweeps. Where a root is off by
-            // much it leads to the negative one, so that its callers look at what is returned.
+            // Newton's step: fewer operations than the cubic one of forces(), and as many sweeps. Where a
+            // root is off by much it leads to the negative one, so that its callers look at what is returned.
             const Wide rs = 1.0 - ss * (n.root_s[i] * n.root_s[i]),
                        ru = 1.0 - uu * (n.root_u[i] * n.root_u[i]);
             n.root_s[i] += n.root_s[i] * (0.5 * rs);
@@ -206,7 +206,8 @@ CAROM_INLINE void wide_refine(const WideModel& m, const WideStart& start, Wide h
 template <int N>
 constexpr int kBefore = N == 8 ? kCoarseSweeps : 0;
 
-// As begin(). `end` finds the end from g_b at 4 nodes. A root that goes astray here spoils no more than the guess.
+// As begin(). `end` finds the end from g_b at 4 nodes. A
+// root that goes astray here spoils no more than the guess.
 template <int N, bool kWhole, class End4>
 CAROM_INLINE void wide_begin(const WideModel& m, const WideStart& start, Wide root_s, Wide& h,
                              WideNodes<N>& n, End4 end) {
@@ -319,7 +320,8 @@ CAROM_INLINE WideGoals wide_goals(const WideModel& m, double tolerance) {
     return {kSweepGoalOfLanes * left2, (0.035 * left2) / (m.mu_b * m.mu_b)};
 }
 
-// As collocate() of a whole impact, for the lanes `wanted`; lanes that do not converge are not in `out.converged`.
+// As collocate() of a whole impact, for the lanes `wanted`;
+// lanes that do not converge are not in `out.converged`.
 template <int N>
 CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, WideMask wanted, Wide root_s,
                                  double tolerance, WideResult& out) {

@@ -1,5 +1,5 @@
-// One stretch of many impacts at once, as collocate() does for one impact. Legend: collocation.h. A lane reads only
-// its own numbers, as in wide.h.
+// One stretch of many impacts at once, as collocate() does for one impact.
+// Legend: collocation.h. A lane reads only its own numbers, as in wide.h.
 #pragma once
 
 #include "tolerance/wide.h"
@@ -7,8 +7,8 @@
 namespace carom::kernel {
 namespace {
 
-// Sweeps after which a stretch that has not been shortened before is given up and shortened: the other lanes wait for
-// it.
+// Sweeps after which a stretch that has not been shortened before
+// is given up and shortened: the other lanes wait for it.
 constexpr int kPatience = 10;
 
 struct WideStretch {

@@ -31,13 +31,13 @@ struct KernelAccuracyRow {
     bool other_model = false;  ///< a formula for simpler physics: its error is the model's, not numerical
     double ns_min = 0.0, ns_median = 0.0, ns_max = 0.0;
     double error_median = 0.0, error_p99 = 0.0, error_max = 0.0;
-    /// Tolerance alone: the largest error as a share of what is promised for that impact, which is the tolerance and what
-    /// rounding makes of its speeds.
+    /// Tolerance alone: the largest error as a share of what is promised for that
+    /// impact, which is the tolerance and what rounding makes of its speeds.
     std::optional<double> share_of_bound;
 };
 
-/// The time that a method needs to reach an error: that of its fastest setting which reaches it for half of all impacts, and
-/// for all of them. Infinite if no setting does.
+/// The time that a method needs to reach an error: that of its fastest setting which reaches it for half of
+/// all impacts, and for all of them. Infinite if no setting does.
 struct KernelReach {
     std::string method, kind;
     double error = 0.0, ns_median = 0.0, ns_all = 0.0;

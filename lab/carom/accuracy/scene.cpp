@@ -1,4 +1,5 @@
-// carom-lab accuracy: the report of `carom accuracy` as a plot or a page, beside Box2D, and that of one impact.
+// carom-lab accuracy: the report of `carom accuracy` as a
+// plot or a page, beside Box2D, and that of one impact.
 #include <fmt/format.h>
 
 #include <algorithm>

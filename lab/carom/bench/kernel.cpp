@@ -144,7 +144,8 @@ void evict_caches() {
 
 ShareRow shares_of(const TimedKernel& s, const ImpactSet& five, double probe_ns) {
     std::vector<ImpactResult> results(five.impacts.size());
-    // The call for balls that separate ends after validation and projection, which is the part before the loop.
+    // The call for balls that separate ends after validation
+    // and projection, which is the part before the loop.
     ImpactSet apart(five.impacts, five.impacts[0].params.cloth_slip, 8);
     for (Impact& i : apart.impacts) {
         for (double& v : i.ball1.v) v = -v;
@@ -201,7 +202,8 @@ KernelBench measure_kernel(const BenchKernelArgs& options) {
     bench.random = options.random;
     bench.cycle_ns = cycle_ns();
     bench.probe_ns = cost_of_a_probe();
-    // The baseline is the v3 build where there is one, also under CAROM_ISA=scalar or v4: all ratios mean the same.
+    // The baseline is the v3 build where there is one, also
+    // under CAROM_ISA=scalar or v4: all ratios mean the same.
     const Isa baseline_isa = available(Isa::kV3) ? Isa::kV3 : Isa::kScalar;
     bench.baseline_isa = name(baseline_isa);
     const TimedKernel baseline(

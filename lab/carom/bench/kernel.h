@@ -19,8 +19,9 @@ struct BenchKernelArgs {
     std::vector<std::string> only;  ///< names, or their beginnings in whole words; empty: all
 };
 
-/// One row at N = 1000. Times are per impact [ns]; ratios are the baseline's time in the same run over this time;
-/// differences (from the baseline) and errors (from the converged solution) are shares of the approach speed.
+/// One row at N = 1000. Times are per impact [ns]; ratios are the baseline's
+/// time in the same run over this time; differences (from the baseline) and
+/// errors (from the converged solution) are shares of the approach speed.
 struct KernelRow {
     std::string name, section, kind;
     kernel::Isa isa;

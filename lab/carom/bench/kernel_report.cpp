@@ -36,7 +36,8 @@ Table growth_of(const KernelBench& bench) {
     return table;
 }
 
-/// A row for each kernel, with a column for each N: what was measured comes kernel after kernel for one N after the other.
+/// A row for each kernel, with a column for each N: what was
+/// measured comes kernel after kernel for one N after the other.
 Table growth_by_kernel(const KernelBench& bench) {
     Table table(Column("", "", "<26"), Column("", "isa", "<7"));
     std::size_t kernels = 0;

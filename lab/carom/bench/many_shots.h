@@ -1,4 +1,5 @@
-// Batches of carom-lab bench shot: shots with random numbers, one after the other, as a search or a learner plays them.
+// Batches of carom-lab bench shot: shots with random numbers,
+// one after the other, as a search or a learner plays them.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +12,15 @@
 
 namespace carom::tools {
 
-/// One kind of batch. Shot after shot draws its numbers, sets, checks, plans and plays them, and reads the outcome.
+/// One kind of batch. Shot after shot draws its numbers,
+/// sets, checks, plans and plays them, and reads the outcome.
 class ManyShots {
   public:
     /// @param name  of many_names() @throws std::invalid_argument for an unknown one
     ManyShots(const std::string& name, kernel::Isa isa);
 
-    /// The next `shots` shots of an endless sequence, the same in every run. @throws std::runtime_error if one has no result
+    /// The next `shots` shots of an endless sequence, the same in
+    /// every run. @throws std::runtime_error if one has no result
     void play(std::size_t shots);
     /// Starts the sequence again.
     void rewind();

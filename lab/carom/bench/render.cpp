@@ -95,8 +95,8 @@ StageOptions stage_options(const Picture& picture) {
     _exit(status);
 }
 
-// CPU time for one picture, in a process of its own: in this one every row but the first would find the driver ready. To be called before
-// anything is drawn, because a child has none of its parent's threads.
+// CPU time for one picture, in a process of its own: in this one every row but the first would find the
+// driver ready. To be called before anything is drawn, because a child has none of its parent's threads.
 double set_up_ms(const Record& record, const Picture& picture, Backend backend) {
     std::array<int, 2> ends{};
     if (pipe(ends.data()) != 0) throw RenderError("no pipe for measuring the set-up");

@@ -18,8 +18,8 @@ struct RenderBenchRow {
     double slow_ms = 0.0;
     /// Median share of the picture that is encoded anew, 0..1
     double encoded_share = 0.0;
-    /// CPU time of a process of its own from the first call until it has one picture, without shaders that Mesa kept from an earlier process:
-    /// the OpenGL library, shaders, and the table once
+    /// CPU time of a process of its own from the first call until it has one picture, without shaders that
+    /// Mesa kept from an earlier process: the OpenGL library, shaders, and the table once
     double setup_ms = 0.0;
     double fps = 0.0;  ///< frames a second from the first to the last, in files, with a thread per core
 };

@@ -23,7 +23,8 @@
 namespace carom::tools {
 namespace {
 
-/// The unit of all costs [ns]: one impact of the published march at N = 1000, the mean over the five states of the paper.
+/// The unit of all costs [ns]: one impact of the published march
+/// at N = 1000, the mean over the five states of the paper.
 double baseline_impact(kernel::Isa isa) {
     const kernel::MarchFunction march = kernel::march_function(isa);
     kernel::ImpactResult result;
@@ -106,7 +107,8 @@ struct Gas {
         std::size_t first = 0;
         const double before = heap_bytes();
         SimulateOptions options;
-        // The first call comes after the first event, when the set-up is finished and its memory is allocated.
+        // The first call comes after the first event, when
+        // the set-up is finished and its memory is allocated.
         options.progress_rounds = 1;
         options.progress = [&](std::size_t events, double) {
             if (begin != 0.0) return;

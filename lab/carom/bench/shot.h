@@ -1,5 +1,5 @@
-// carom-lab bench shot: whole shots in units of one baseline impact, and how the cost of an event grows with the
-// number of balls.
+// carom-lab bench shot: whole shots in units of one baseline impact,
+// and how the cost of an event grows with the number of balls.
 #pragma once
 
 #include <string>

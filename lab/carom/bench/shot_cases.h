@@ -1,5 +1,5 @@
-// The scenes of carom-lab bench shot and of lab/measure/callgrind_shot.py: seeded, so that a name and a seed mean the
-// same shot everywhere.
+// The scenes of carom-lab bench shot and of lab/measure/callgrind_shot.py:
+// seeded, so that a name and a seed mean the same shot everywhere.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@ std::vector<std::string> shot_names();
 /// scenes/eight_ball_break.toml. @throws std::invalid_argument for an unknown name
 Scene shot_scene(const std::string& name, std::uint64_t seed);
 
-/// The scene of a batch (many_shots.h), every coefficient written. @throws std::invalid_argument for an unknown name
+/// The scene of a batch (many_shots.h), every coefficient
+/// written. @throws std::invalid_argument for an unknown name
 Scene many_scene(const std::string& name);
 
 /// n balls without friction that move at 1 m/s in random directions in a box of reflecting cushions, elastic,

@@ -1,4 +1,5 @@
-// What carom-lab bench kernel times: every rung of the ladder and every tolerance, on single impacts or on batches.
+// What carom-lab bench kernel times: every rung of the ladder
+// and every tolerance, on single impacts or on batches.
 #pragma once
 
 #include <cstddef>
@@ -70,7 +71,8 @@ struct TimedKernel : KernelCall {
     }
 };
 
-/// All forms on the instruction sets of this run (CAROM_ISA, or all that the processor has), or those that `only` names.
+/// All forms on the instruction sets of this run (CAROM_ISA, or all that the processor has), or those that
+/// `only` names.
 /// @throws UsageError naming them all where one is unknown
 std::vector<TimedKernel> timed_kernels(const std::vector<std::string>& only);
 

@@ -1,4 +1,5 @@
-// carom-lab margin: the report of `carom margin`, as a plot, a page or a trace, and at every accuracy and frame rate.
+// carom-lab margin: the report of `carom margin`, as a plot,
+// a page or a trace, and at every accuracy and frame rate.
 #pragma once
 
 #include <string>

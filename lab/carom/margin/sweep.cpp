@@ -25,8 +25,8 @@ namespace carom::tools {
 namespace {
 
 constexpr double kRates[] = {30.0, 60.0, 120.0, 240.0, 480.0, 1000.0};
-/// Frames are drawn once, at this rate. At other rates a frame is given the cost of the drawn frame that is nearest in time,
-/// because it shows nearly the same picture.
+/// Frames are drawn once, at this rate. At other rates a frame is given the cost of the drawn frame that is
+/// nearest in time, because it shows nearly the same picture.
 constexpr double kDrawnRate = 60.0;
 
 struct Setting {

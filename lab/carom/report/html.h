@@ -24,7 +24,8 @@ struct Report {
     std::vector<std::string> charts, tables;
 };
 
-/// Written under a temporary name and renamed; nothing if the path is empty. @throws std::runtime_error naming the file
+/// Written under a temporary name and renamed; nothing if the
+/// path is empty. @throws std::runtime_error naming the file
 void write_html_report(const Report& report, const std::string& path);
 
 }  // namespace carom::tools

@@ -1,4 +1,5 @@
-// Validation cases: shots of real tables, what was measured of them, and what carom is claimed to make of each number.
+// Validation cases: shots of real tables, what was measured
+// of them, and what carom is claimed to make of each number.
 #pragma once
 
 #include <cstddef>
@@ -49,8 +50,8 @@ inline const QuantityInfo& info(Quantity quantity) {
 
 /// When it is measured.
 enum class Instant : std::uint8_t { kStart, kHit, kCushion, kRolled, kRest };
-/// In case files, and for people: right after the ball's first impact with another ball, right after that with a cushion,
-/// when it rolls (again) after its first impact, and when all is at rest.
+/// In case files, and for people: right after the ball's first impact with another ball, right after that
+/// with a cushion, when it rolls (again) after its first impact, and when all is at rest.
 inline constexpr const char* kInstants[] = {"start", "hit", "cushion", "rolled", "rest"};
 
 /// One measured number.
@@ -62,8 +63,8 @@ struct Measured {
     double value = 0.0;        ///< in the unit of the quantity; 0 for a place
     double uncertainty = 0.0;  ///< the same; what the number is known to, the unknown of the shot included
     Vec2 place = Vec2::Zero();
-    // Of a share: a shot counts if one of these balls (empty: any but the cue ball) falls into one of these pockets (empty:
-    // any) and, if asked for, the cue ball into none.
+    // Of a share: a shot counts if one of these balls (empty: any but the cue ball) falls into one of these
+    // pockets (empty: any) and, if asked for, the cue ball into none.
     std::vector<std::string> balls, pockets;
     bool cue_stays = false;
     std::string note;
@@ -77,7 +78,8 @@ struct ValidationShot {
     std::vector<Measured> measured;
 };
 
-/// What a variant is claimed to compute for one number: nothing, it is within the uncertainty; or the value itself.
+/// What a variant is claimed to compute for one number:
+/// nothing, it is within the uncertainty; or the value itself.
 using Claim = std::optional<double>;
 
 /// Preset and models under which all shots of a case are played.
@@ -98,8 +100,8 @@ inline constexpr const char* kAbout[] = {"cushion", "ball_ball", "clusters", "cl
 /// How far to trust the numbers.
 inline constexpr const char* kTrust[] = {"measured", "published", "second hand", "forum"};
 
-/// The figure of a case: the first number of each shot over one of the template's values, or over the shots. Shots that begin with
-/// another quantity than the first one are not in it.
+/// The figure of a case: the first number of each shot over one of the template's values, or over the shots.
+/// Shots that begin with another quantity than the first one are not in it.
 struct CasePlot {
     std::string x;        ///< a value of the template; empty: the shots side by side
     std::string over;     ///< a value by which the quantity is divided; empty: none
@@ -124,7 +126,8 @@ struct ValidationCase {
     std::vector<Variant> variants;
 };
 
-/// A file of lab/data/validation. The build puts them into the program, so that an installed one has them, too.
+/// A file of lab/data/validation. The build puts them into
+/// the program, so that an installed one has them, too.
 struct CaseFile {
     std::string_view name, text;
 };
@@ -136,7 +139,8 @@ ValidationCase read_case(const CaseFile& file);
 /// The case of this id, or all where it is empty, in their order. @throws UsageError that lists the cases
 std::vector<ValidationCase> chosen_cases(const std::string& id);
 
-/// A template with its {name}s replaced by the shot's values, {preset}, {keys} and {physics} by those of the variant.
+/// A template with its {name}s replaced by the shot's values, {preset}, {keys} and {physics} by those of the
+/// variant.
 /// @throws SceneError for a name that has no value
 std::string filled_in(const ValidationCase& of, const ValidationShot& shot, const Variant& variant,
                       const std::string& text);

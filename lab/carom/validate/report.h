@@ -19,8 +19,8 @@ std::string validation_text(const std::vector<ValidationRow>& rows);
 /// {"cases": [...]}, a row a number and variant.
 std::string validation_json(const std::vector<ValidationRow>& rows);
 
-/// Of one case what its file says, measured and computed; of several, or where the file says nothing, every row's difference
-/// in units of its uncertainty.
+/// Of one case what its file says, measured and computed; of several, or where
+/// the file says nothing, every row's difference in units of its uncertainty.
 Plot validation_plot(const std::vector<ValidationRow>& rows);
 
 }  // namespace carom::tools

@@ -26,8 +26,8 @@ namespace {
 
 constexpr double kClaimBand = 0.25;  ///< of the uncertainty
 constexpr double kShareBand = 3.0;   ///< standard deviations
-constexpr double kNinetyFive =
-    1.96;  ///< standard deviations to each side that hold 95 % of a normal distribution
+/// standard deviations to each side that hold 95 % of a normal distribution
+constexpr double kNinetyFive = 1.96;
 
 double share_deviation(double share, int count) {
     return std::sqrt(share * (1.0 - share) / count);

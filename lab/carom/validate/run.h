@@ -25,13 +25,13 @@ struct ValidationRow {
     /// computed - measured, in units of the uncertainty
     double deviation() const;
     bool within() const;
-    /// Whether what is claimed holds: within; or outside and within a quarter of the uncertainty of the claimed value; or a
-    /// share within three standard deviations of the claimed one.
+    /// Whether what is claimed holds: within; or outside and within a quarter of the uncertainty of the
+    /// claimed value; or a share within three standard deviations of the claimed one.
     bool as_claimed() const;
 };
 
-/// Plays all shots of a case under all variants: rows by shot, number and variant. `progress` is called after each run of
-/// the case with the runs so far.
+/// Plays all shots of a case under all variants: rows by shot, number and variant. `progress` is called after
+/// each run of the case with the runs so far.
 /// @throws SceneError, std::runtime_error that names case, variant and shot
 std::vector<ValidationRow> run_case(const ValidationCase& of, kernel::Isa isa,
                                     const std::function<void(long)>& progress);

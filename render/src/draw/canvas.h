@@ -14,8 +14,8 @@
 
 namespace carom::render {
 
-// Painters take copies of what they read for every pixel: a byte that is written to an image might be any object, so that the
-// compiler would read all of them again behind every pixel.
+// Painters take copies of what they read for every pixel: a byte that is written to an image might be any
+// object, so that the compiler would read all of them again behind every pixel.
 class Canvas {
   public:
     /// @param table of the same size as the image
@@ -53,7 +53,8 @@ class Canvas {
         float per_x_, per_y_;
     };
 
-    /// Calls paint(first, count, ray) for the pixels of a box, up to four neighbours at a time; `first` is the index of the first in the image.
+    /// Calls paint(first, count, ray) for the pixels of a box, up to four
+    /// neighbours at a time; `first` is the index of the first in the image.
     template <class Paint>
     void each(const PixelBox& box, Paint paint) const {
         const Rays rays(view_);
@@ -119,8 +120,8 @@ class Canvas {
       public:
         explicit Brush(std::uint8_t* image) : image_(image) {}
 
-        /// Paints screen values 0..1 over four pixels; `cover` is the share that they cover. Alpha falls to 0 under paint: no edge of the table
-        /// is seen there.
+        /// Paints screen values 0..1 over four pixels; `cover` is the share that they
+        /// cover. Alpha falls to 0 under paint: no edge of the table is seen there.
         void blend(std::size_t first, int count, const lanes::Vec& color, lanes::Floats cover) const {
             using namespace lanes;
             const auto there = load<Ints>(image_ + 4 * first, count);

@@ -77,8 +77,8 @@ PixelBox clipped(const Vec2& low, const Vec2& high, FrameSize size) {
             inside(high.x() + 3.0, size.width), inside(high.y() + 3.0, size.height)};
 }
 
-// Pixels that show a place within `reach` of the centre on either side, `down` below it and a radius above; the whole image if part of
-// that is behind the eye.
+// Pixels that show a place within `reach` of the centre on either side, `down`
+// below it and a radius above; the whole image if part of that is behind the eye.
 PixelBox box_around_ball(const DrawBall& ball, const Camera& camera, double reach, double down) {
     const PixelBox all = whole(camera.size);
     Vec2 low(1e9, 1e9), high(-1e9, -1e9);

@@ -1,5 +1,5 @@
-// What a picture shows over the table. Comparing two pictures tells which pixels can differ, so that the time of a
-// frame depends only on what moved.
+// What a picture shows over the table. Comparing two pictures tells which
+// pixels can differ, so that the time of a frame depends only on what moved.
 #pragma once
 
 #include <cstddef>
@@ -91,8 +91,8 @@ std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPic
 struct Inside {
     std::vector<bool> balls, shapes;
 };
-/// The box of each ball and shape that overlaps one of the boxes is added to them, and so on until none is partly inside. If that comes to
-/// half of the image, it is everything.
+/// The box of each ball and shape that overlaps one of the boxes is added to them, and so on until none is
+/// partly inside. If that comes to half of the image, it is everything.
 Inside inside(const DrawnPicture& picture, std::vector<PixelBox>& boxes, FrameSize size);
 
 }  // namespace carom::render

@@ -19,8 +19,8 @@ struct DrawnShape {
 /// The lines of a list, then its boxes, in the order of drawing within each kind.
 std::vector<DrawnShape> drawn_shapes(const DrawList& list);
 
-/// Adds boxes outside of which two lists of shapes look the same: those of shapes that only one of them has, or that are drawn in another
-/// order. A long line has several boxes.
+/// Adds boxes outside of which two lists of shapes look the same: those of shapes that only one of them has,
+/// or that are drawn in another order. A long line has several boxes.
 void add_differing(const std::vector<DrawnShape>& before, const std::vector<DrawnShape>& after,
                    std::vector<PixelBox>& boxes);
 

@@ -42,7 +42,8 @@ class Smoother {
         Clip a = project(edge.a), b = project(edge.b);
         const float near = view_.planes[0];
         if (std::max(a.w, b.w) <= near) return;
-        // The faces on each side of the edge, as seen: below[0] for the left-hand side of the way from a to b.
+        // The faces on each side of the edge, as seen: below[0]
+        // for the left-hand side of the way from a to b.
         faces_ = {};
         for (const TableEdge::Side& side : edge.sides) {
             if (side.face == 0) continue;
@@ -169,7 +170,8 @@ void smooth_edges(Image& image, const std::vector<TableEdge>& edges, const View&
                   const std::vector<PixelBox>& skip) {
     Smoother smoother(image, view, skip);
     for (const TableEdge& edge : edges) smoother.look_at(edge);
-    // All colours were taken from the picture as it was drawn, so that an edge does not spread along another one.
+    // All colours were taken from the picture as it was drawn,
+    // so that an edge does not spread along another one.
     smoother.apply();
 }
 

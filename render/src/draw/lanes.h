@@ -1,7 +1,8 @@
 // Four pixels at a time: vectors of floats and what GLSL calls vec3, for painting on pictures in memory.
 //
-// The vector extensions of gcc and clang give + - * / and comparisons on every processor; a comparison has all bits set
-// where it holds. Every lane is computed alike, so a pixel has the same bits whichever pixels are painted with it.
+// The vector extensions of gcc and clang give + - * / and comparisons on every
+// processor; a comparison has all bits set where it holds. Every lane is computed
+// alike, so a pixel has the same bits whichever pixels are painted with it.
 #pragma once
 
 #ifdef __SSE2__

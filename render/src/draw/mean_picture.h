@@ -11,7 +11,8 @@ namespace carom::render {
 
 class MeanPicture {
   public:
-    /// @param rgba the first of the pictures, four bytes a pixel; it becomes the mean. It must outlive this object.
+    /// @param rgba the first of the pictures, four bytes a pixel; it becomes the mean. It must outlive this
+    /// object.
     /// @param boxes where the others count, none of them twice; elsewhere the mean is the first picture
     MeanPicture(std::vector<std::uint8_t>& rgba, int width, std::vector<PixelBox> boxes);
 

@@ -1,4 +1,5 @@
-// Draws the table by OpenGL as seen by one camera: with many samples per pixel, or with one for a camera that moves.
+// Draws the table by OpenGL as seen by one camera: with many
+// samples per pixel, or with one for a camera that moves.
 #pragma once
 
 #include <array>
@@ -23,8 +24,8 @@ class StaticLayer {
     StaticLayer(const StaticLayer&) = delete;
     StaticLayer& operator=(const StaticLayer&) = delete;
 
-    /// Draws the table in `samples` jittered passes, averaged in linear light; after the first one only what is busy (busy_tiles.h). `on_pass`,
-    /// if set, is called after every finished pass; it may throw.
+    /// Draws the table in `samples` jittered passes, averaged in linear light; after the first one only what
+    /// is busy (busy_tiles.h). `on_pass`, if set, is called after every finished pass; it may throw.
     void draw(const TableMesh& table, const View& view, FrameSize size, int samples,
               const std::function<void(int done, int total)>& on_pass);
 

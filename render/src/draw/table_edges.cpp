@@ -15,7 +15,8 @@ namespace carom::render {
 
 namespace {
 
-// Cosines of the angles between two triangles up to which they are one face, and up to which they are one plane.
+// Cosines of the angles between two triangles up to which
+// they are one face, and up to which they are one plane.
 constexpr double kOneFace = 0.94, kOnePlane = 0.999998;
 
 struct Triangle {
@@ -147,8 +148,8 @@ class EdgeFinder {
         found.edges.push_back(edge);
     }
 
-    // Where a cushion ends at the wood, both have an edge, and a pixel would be smoothed twice: the part of the line that
-    // lies within a longer edge is left out.
+    // Where a cushion ends at the wood, both have an edge, and a pixel would be smoothed twice: the part of
+    // the line that lies within a longer edge is left out.
     static void drop_doubled(std::vector<TableEdge>& edges) {
         const auto point = [](const std::array<float, 3>& p) { return Vec3(p[0], p[1], p[2]); };
         constexpr double kLong = 0.2, kSame = 1e-5;  // [m]
@@ -157,7 +158,8 @@ class EdgeFinder {
             double length;
         };
         std::vector<Long> longest;
-        // Of each cell of the table the long edges that may come near it, so that an edge looks at few of them.
+        // Of each cell of the table the long edges that may
+        // come near it, so that an edge looks at few of them.
         double size = 0.0;
         for (const TableEdge& edge : edges) size = std::max(size, point(edge.a).cwiseAbs().maxCoeff());
         const double side = std::max(0.25, size / 32.0);

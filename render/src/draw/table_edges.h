@@ -24,8 +24,9 @@ struct TableEdge {
     bool smooth = false;  ///< inside a curved surface: visible only where the surface turns away from the eye
 };
 
-/// A face is a set of triangles of one material that join without a crease and without a seam of the grain. Faces that
-/// share a mark because a table has more than kLastFace of them get no smooth edge where they meet.
+/// A face is a set of triangles of one material that join without a crease
+/// and without a seam of the grain. Faces that share a mark because a table
+/// has more than kLastFace of them get no smooth edge where they meet.
 struct TableEdges {
     std::vector<std::uint8_t> faces;  ///< the mark of every triangle of TableMesh::solid
     std::vector<TableEdge> edges;

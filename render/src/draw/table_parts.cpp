@@ -11,8 +11,8 @@ namespace carom::render {
 
 namespace {
 
-// [-] With more holes than this the mesh is not cut: every line goes through the whole table, so that neighbouring
-// triangles keep their corners in common, and there would be too many pieces.
+// [-] With more holes than this the mesh is not cut: every line goes through the whole table, so that
+// neighbouring triangles keep their corners in common, and there would be too many pieces.
 constexpr std::size_t kMostCutHoles = 16;
 
 class PartSorter {

@@ -13,7 +13,8 @@ void put(const Vector& v, float (&out)[kSize]) {
     for (std::size_t i = 0; i < kSize; ++i) out[i] = static_cast<float>(v[i]);
 }
 
-// Near and far clip planes around everything visible, as tight as the distance of the eye from the table allows.
+// Near and far clip planes around everything visible, as
+// tight as the distance of the eye from the table allows.
 std::array<double, 2> clip_planes(const Camera& camera, const TableMesh& table) {
     const Vec3 low(table.bounds.low.x(), table.bounds.low.y(), -0.3);
     const Vec3 high(table.bounds.high.x(), table.bounds.high.y(), table.bounds.top + 0.1);

@@ -5,8 +5,8 @@
 
 namespace carom::render {
 
-/// The uniform block View of shaders/common.glsl: the same members in the layout std140, which aligns vectors of three
-/// to 16 bytes. It is written to a buffer once per frame; programs read it at binding point 0.
+/// The uniform block View of shaders/common.glsl: the same members in the layout std140, which aligns vectors
+/// of three to 16 bytes. It is written to a buffer once per frame; programs read it at binding point 0.
 struct View {
     alignas(16) float view_projection[16] = {};  ///< column-major; row 0 of the image is the top
     alignas(16) float eye[3] = {};

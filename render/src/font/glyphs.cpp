@@ -9,8 +9,8 @@ namespace carom::render {
 
 namespace {
 
-// In the order of kGlyphs: polylines on a grid 4 wide and 6 high with the origin at the lower left, as pairs of
-// digits x y. A blank starts a new polyline.
+// In the order of kGlyphs: polylines on a grid 4 wide and 6 high with the origin
+// at the lower left, as pairs of digits x y. A blank starts a new polyline.
 constexpr std::array<std::string_view, kGlyphs.size()> kStrokes{"103041453616050110",
                                                                 "152620 1030",
                                                                 "05163645440040",

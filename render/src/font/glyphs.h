@@ -19,7 +19,8 @@ inline constexpr std::string_view kGlyphs = "0123456789.:-%/+=()ABCDEFGHIJKLMNOP
 /// Cell of a character (a lower-case letter without a cell gets that of its capital), or -1 for a blank.
 int glyph_index(char c);
 
-/// One byte per texel, row 0 at the top: 255 on the centre line of a stroke, 0 at the distance kGlyphReach and beyond.
+/// One byte per texel, row 0 at the top: 255 on the centre line
+/// of a stroke, 0 at the distance kGlyphReach and beyond.
 std::vector<std::uint8_t> glyph_atlas();
 
 /// The atlas between its texels, 0..1, at a place within a cell: x and y are 0..1 from its upper left corner.

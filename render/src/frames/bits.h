@@ -8,7 +8,8 @@
 
 namespace carom::render {
 
-/// [bytes] A reader of bits may look so far behind the last one, and a writer writes so far: their buffers are longer.
+/// [bytes] A reader of bits may look so far behind the last
+/// one, and a writer writes so far: their buffers are longer.
 inline constexpr std::size_t kBitsSlack = 8;
 
 inline std::uint64_t load_little(const std::uint8_t* at) {

@@ -14,12 +14,14 @@ namespace carom::render {
 
 namespace {
 
-// The text of a chunk: a keyword of the PNG specification, and what `identify -verbose` and exiftool then show.
+// The text of a chunk: a keyword of the PNG specification,
+// and what `identify -verbose` and exiftool then show.
 constexpr std::string_view kBefore("tEXtComment\0frame of picture ", 29);
 constexpr std::string_view kAfter = ", drawn by carom render";
 constexpr std::size_t kMark = 46;  // of mark_at()
 constexpr std::size_t kText = kBefore.size() + kMark + kAfter.size();
-/// The last chunk of a PNG file is empty. A frame gets its name when it is complete: only a power cut leaves one without.
+/// The last chunk of a PNG file is empty. A frame gets its name
+/// when it is complete: only a power cut leaves one without.
 constexpr std::string_view kEnd("\0\0\0\0IEND\xAE\x42\x60\x82", 12);
 constexpr std::string_view kSignature = "\x89PNG\r\n\x1A\n";
 

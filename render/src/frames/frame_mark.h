@@ -1,4 +1,5 @@
-// Of which picture a frame is: a line of text in the PNG file itself, that anyone can read and that no copy loses.
+// Of which picture a frame is: a line of text in the PNG
+// file itself, that anyone can read and that no copy loses.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +11,8 @@
 
 namespace carom::render {
 
-/// What stands for all that decides the pixels of the frames of a run, but for the time of each: the record, the table, the view, the
-/// overlay and the size. 16 digits.
+/// What stands for all that decides the pixels of the frames of a run, but for the time of each: the record,
+/// the table, the view, the overlay and the size. 16 digits.
 std::string picture_of(const Record& record, const SequenceOptions& options);
 
 /// The mark of the frame at this time [s].

@@ -19,9 +19,9 @@ double share_of(const std::vector<PixelBox>& boxes, FrameSize size) {
     return std::min(1.0, pixels / (double(size.width) * size.height));
 }
 
-// Weights of red, green and blue in 65536ths: Y = 16 + 219 (0.2126 R + 0.7152 G + 0.0722 B) / 255, and for the differences
-// 128 + 224 (B - Y') / 1.8556 / 255 and 128 + 224 (R - Y') / 1.5748 / 255 with Y' before it is scaled. Rounding is such that the
-// weights of a difference add up to 0: grey stays grey.
+// Weights of red, green and blue in 65536ths: Y = 16 + 219 (0.2126 R + 0.7152 G + 0.0722 B) / 255, and for
+// the differences 128 + 224 (B - Y') / 1.8556 / 255 and 128 + 224 (R - Y') / 1.5748 / 255 with Y' before it
+// is scaled. Rounding is such that the weights of a difference add up to 0: grey stays grey.
 struct Weights {
     int red, green, blue;
 };

@@ -21,8 +21,9 @@ class PackedRgb {
     double share_ = 0.0;
 };
 
-/// A frame of a Y4M stream: a line, the brightness of every pixel, two colour differences of every square of 2 x 2 pixels. Colours as
-/// in ITU-R BT.709, limited range (16 to 235, and 16 to 240); a square has the mean of its pixels.
+/// A frame of a Y4M stream: a line, the brightness of every pixel, two colour
+/// differences of every square of 2 x 2 pixels. Colours as in ITU-R BT.709,
+/// limited range (16 to 235, and 16 to 240); a square has the mean of its pixels.
 class PackedYuv {
   public:
     const std::vector<std::uint8_t>& pack(const KeptImage& image);

@@ -10,8 +10,8 @@ constexpr int kCount = 284;                 // codes up to the one of the longes
 struct Repeated {
     unsigned length, codes;
 };
-// Lengths of the codes [bits], and how many codes in a row have each; 0: no run of whole pixels has this code. By
-// lab/measure/png_code_lengths.py from 1080p frames of five tables and seven cameras.
+// Lengths of the codes [bits], and how many codes in a row have each; 0: no run of whole pixels has this
+// code. By lab/measure/png_code_lengths.py from 1080p frames of five tables and seven cameras.
 constexpr Repeated kLengthsInRows[] = {
     {1, 1},  {3, 1},  {5, 1}, {6, 1}, {7, 1}, {8, 1}, {9, 1}, {10, 3}, {11, 7}, {12, 223},
     {11, 6}, {10, 3}, {9, 2}, {8, 1}, {7, 1}, {6, 1}, {5, 1}, {3, 1},  {12, 1}, {10, 1},
@@ -57,7 +57,8 @@ constexpr std::array<Code, kCount> make_codes() {
     return codes;
 }
 
-// RFC 1951, 3.2.5: 8 lengths have codes of their own; then every group of four codes has one more bit behind them.
+// RFC 1951, 3.2.5: 8 lengths have codes of their own; then
+// every group of four codes has one more bit behind them.
 constexpr Code run_code(const std::array<Code, kCount>& codes, unsigned bytes) {
     unsigned code = kFirstRun, least = 3, extra = 0;
     for (; least + (1U << extra) <= bytes; ++code) {
@@ -88,8 +89,8 @@ void write_head(BitWriter& out) {
     constexpr unsigned kLast = 1, kOwnCodes = 2, kDistances = 3;
     out.put({kLast | (kOwnCodes << 1), 3});
     out.put({(kCount - kFirstRun) | ((kDistances - 1) << 5) | (15U << 10), 14});
-    // The lengths themselves are written in four bits: codes of 4 bits for the lengths 0 to 15, none for repetitions (16 to 18), whose
-    // three places come first.
+    // The lengths themselves are written in four bits: codes of 4 bits for the lengths 0 to 15, none for
+    // repetitions (16 to 18), whose three places come first.
     constexpr unsigned kRepetitions = 3, kPlain = 16;
     for (unsigned i = 0; i < kRepetitions; ++i) out.put({0, 3});
     for (unsigned i = 0; i < kPlain; ++i) out.put({4, 3});

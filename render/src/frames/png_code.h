@@ -1,5 +1,6 @@
-// The Huffman codes of every PNG file that carom writes itself. Codes that are the same in all files make the bits of a piece of a
-// picture depend on its pixels alone, so that they can be kept from one frame to the next. They cost 1 to 4 % of the size.
+// The Huffman codes of every PNG file that carom writes itself. Codes that are the same
+// in all files make the bits of a piece of a picture depend on its pixels alone, so
+// that they can be kept from one frame to the next. They cost 1 to 4 % of the size.
 #pragma once
 
 #include <array>
@@ -25,7 +26,8 @@ struct Code {
 struct Codes {
     std::array<Code, 256> byte{};
     Code end;
-    /// [n]: n more pixels like the one before (its code, the bits that complete the length, the distance of 3 bytes)
+    /// [n]: n more pixels like the one before (its code, the
+    /// bits that complete the length, the distance of 3 bytes)
     std::array<Code, kLongestRun + 1> run{};
 };
 

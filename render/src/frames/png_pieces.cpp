@@ -106,7 +106,8 @@ void PngPieces::update_row(const Image& image, std::size_t y) {
     row_marks_[y] = 0;
 }
 
-// Adler-32 of all rows, from their sums: the second of its two sums weighs a byte with the number of bytes from it to the end.
+// Adler-32 of all rows, from their sums: the second of its two
+// sums weighs a byte with the number of bytes from it to the end.
 std::uint32_t PngPieces::adler() const {
     std::uint64_t below = row_bytes() * rows_.size();
     std::uint64_t a = 1, b = below % kAdlerBase;

@@ -11,12 +11,14 @@
 
 namespace carom::render {
 
-/// Every row is filtered in the same way and cut into segments; the whole file is one deflate block with codes that are built in. So the
-/// bits of a segment depend on its pixels and their neighbours alone. They are kept, and joined by shifting.
+/// Every row is filtered in the same way and cut into segments; the whole file is
+/// one deflate block with codes that are built in. So the bits of a segment depend
+/// on its pixels and their neighbours alone. They are kept, and joined by shifting.
 class PngPieces {
   public:
-    /// Writes the file of an image. Outside of the boxes it must show what the image of the last call did, which must have had the same
-    /// size; the first call needs a box around everything. @throws RenderError for an image without pixels
+    /// Writes the file of an image. Outside of the boxes it must show what the image
+    /// of the last call did, which must have had the same size; the first call needs
+    /// a box around everything. @throws RenderError for an image without pixels
     void encode(const Image& image, const std::vector<PixelBox>& changed, std::vector<std::uint8_t>& bytes);
 
     /// The share of the segments that the last call encoded, 0..1.

@@ -15,15 +15,15 @@ namespace {
 static_assert(kSegment == png_code::kLongestRun && kSegment == 64, "a bit for every pixel");
 static_assert(kSegmentBits == std::size_t{png_code::kLongestCode} * 3 * kSegment);
 
-// Loops over these arrays become vector instructions, and so they begin with four pixels that are left of the segment, of which one is
-// needed. A row has one more, to the left of these.
+// Loops over these arrays become vector instructions, and so they begin with four pixels that are left of the
+// segment, of which one is needed. A row has one more, to the left of these.
 constexpr int kLeft = 4;
 constexpr std::size_t kBytes = 4 * std::size_t{kLeft + kSegment};
 using Row = std::array<std::uint8_t, kBytes + 4>;
 using Rest = std::array<std::uint8_t, kBytes>;
 
-// The bytes of a row from four pixels before the segment and one more: in the image itself or, at an end of a row, in `copy`.
-// Outside of the picture everything is 0.
+// The bytes of a row from four pixels before the segment and one more: in the image itself or, at an end of a
+// row, in `copy`. Outside of the picture everything is 0.
 const std::uint8_t* row_at(const Image& image, int x, int y, Row& copy) {
     const int begin = x - kLeft - 1, end = x + kSegment;
     const int first = std::max(0, begin), behind = std::min(end, image.size.width);
@@ -42,7 +42,8 @@ constexpr auto kUsed = [] {
     return used;
 }();
 
-// Sixteen bytes at once: what a register of every processor holds (an extension of the language that gcc and clang know).
+// Sixteen bytes at once: what a register of every processor
+// holds (an extension of the language that gcc and clang know).
 using Lanes = std::uint8_t __attribute__((vector_size(16)));
 using Wide = std::uint16_t __attribute__((vector_size(32)));
 
@@ -56,9 +57,10 @@ std::uint8_t less(std::uint8_t a, std::uint8_t b) {
     return static_cast<std::uint8_t>(std::max(a, b) - b);  // a - b, or 0
 }
 
-// What the filter leaves: the difference to that one of three neighbours (left, above, left above) which is nearest to
-// left + above - corner (PNG specification, 9.4). Written with bytes and without branches: the lower of left and above is nearest if
-// the corner is nearer to the higher one by a factor of 2, and the other way round.
+// What the filter leaves: the difference to that one of three neighbours (left, above, left above) which is
+// nearest to left + above - corner (PNG specification, 9.4). Written with bytes and without branches: the
+// lower of left and above is nearest if the corner is nearer to the higher one by a factor of 2, and the
+// other way round.
 void filter(const std::uint8_t* here, const std::uint8_t* above, Rest& rest) {
     for (std::size_t i = 0; i < rest.size(); ++i) {
         const std::uint8_t left = here[i], up = above[i + 4], corner = above[i];
@@ -70,8 +72,8 @@ void filter(const std::uint8_t* here, const std::uint8_t* above, Rest& rest) {
     }
 }
 
-// In a whole segment, byte c of pixel q of block j has the weight 12 (16 - j) - 3 q - c. Adding up the sums after each block counts block j
-// 16 - j times. 16 bits are enough: 255 (1 + ... + 16) is less than 2^16.
+// In a whole segment, byte c of pixel q of block j has the weight 12 (16 - j) - 3 q - c. Adding up the sums
+// after each block counts block j 16 - j times. 16 bits are enough: 255 (1 + ... + 16) is less than 2^16.
 SegmentSums sums_of(const std::uint8_t* rest, int pixels) {
     Wide sum{}, sum_of_sums{};
     for (std::size_t block = 0; block < std::size_t{4} * kSegment; block += sizeof(Lanes)) {

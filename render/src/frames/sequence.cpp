@@ -51,8 +51,8 @@ long frame_of(const std::string& pattern, const std::string& name) {
     return -1;
 }
 
-/// The frames in files of one run. No other run writes them meanwhile, and frames of other pictures go before the first one is
-/// written, so that a film which is interrupted and resumed is of one picture.
+/// The frames in files of one run. No other run writes them meanwhile, and frames of other pictures go before
+/// the first one is written, so that a film which is interrupted and resumed is of one picture.
 class FrameFiles {
   public:
     /// @param count  of frames; one by itself leaves the others alone, and others may be drawn meanwhile
@@ -186,7 +186,8 @@ class FrameLoop {
         return stage_.at(frames_[i].time, cost);
     }
 
-    // The time of the frame itself is not known while it is drawn; the times of the latest frames are used instead.
+    // The time of the frame itself is not known while it is
+    // drawn; the times of the latest frames are used instead.
     double last_cost_ms(std::size_t i) {
         const double encode_ms = writer_.last_encode_ms();
         return (options_.simulate_ms ? options_.simulate_ms(frames_[i].frame) : 0.0) +

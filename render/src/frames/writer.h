@@ -43,7 +43,8 @@ class Encoder {
 class FrameWriter {
   public:
     /// @param picture  of the marks (frame_mark.h); "" for none
-    /// @param threads  0: submit() does the work itself. Raw frames need exactly one thread, which preserves their order.
+    /// @param threads  0: submit() does the work itself. Raw frames need exactly one thread, which preserves
+    /// their order.
     /// @throws RenderError if the system cannot start that many threads
     FrameWriter(const SequenceOptions& options, const std::string& picture, int threads);
 
@@ -52,10 +53,12 @@ class FrameWriter {
     FrameWriter(const FrameWriter&) = delete;
     FrameWriter& operator=(const FrameWriter&) = delete;
 
-    /// Returns an image to fill; waits while all images are in flight. Rethrows the exception of a failed thread.
+    /// Returns an image to fill; waits while all images are
+    /// in flight. Rethrows the exception of a failed thread.
     std::unique_ptr<KeptImage> acquire();
 
-    /// Encodes and writes the image as frame timing.frame and sets the times. `timing` must outlive the writer.
+    /// Encodes and writes the image as frame timing.frame and
+    /// sets the times. `timing` must outlive the writer.
     void submit(std::unique_ptr<KeptImage> image, FrameTiming& timing);
 
     /// Encoding time of the last finished frame [ms]; 0 before the first one.

@@ -1,4 +1,5 @@
-// The OpenGL functions that the renderer uses, looked up at run time; the list is the same for OSMesa and EGL.
+// The OpenGL functions that the renderer uses, looked up
+// at run time; the list is the same for OSMesa and EGL.
 #pragma once
 
 #include <GL/glcorearb.h>

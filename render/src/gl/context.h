@@ -1,5 +1,5 @@
-// An OpenGL 3.3 core context without a window. The interface is small, so that any library can implement it. Includes
-// no OpenGL header, because the headers of OSMesa and of the loader are incompatible.
+// An OpenGL 3.3 core context without a window. The interface is small, so that any library can implement it.
+// Includes no OpenGL header, because the headers of OSMesa and of the loader are incompatible.
 #pragma once
 
 #include <memory>

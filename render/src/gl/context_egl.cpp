@@ -1,6 +1,7 @@
 // EGL without a surface or display server. It replaces OSMesa, which Mesa 25.1 removed.
 //
-// The few types and constants of EGL 1.5 that are needed are declared here, so that the build needs no EGL header.
+// The few types and constants of EGL 1.5 that are needed
+// are declared here, so that the build needs no EGL header.
 #include <array>
 #include <cstdint>
 #include <memory>

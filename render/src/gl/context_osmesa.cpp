@@ -1,7 +1,7 @@
 // OSMesa: Mesa's software renderer that draws into memory.
 //
-// The few types and constants that are needed are declared here, so that the build needs no OSMesa header: Mesa 25.1
-// removed OSMesa, but the library of an older Mesa still works.
+// The few types and constants that are needed are declared here, so that the build needs no OSMesa header:
+// Mesa 25.1 removed OSMesa, but the library of an older Mesa still works.
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -54,7 +54,8 @@ class OsmesaContext final : public Context {
     }
 
   private:
-    // [pixels] Side of the default framebuffer. It is never used: all drawing goes to framebuffer objects, as with EGL.
+    // [pixels] Side of the default framebuffer. It is never used:
+    // all drawing goes to framebuffer objects, as with EGL.
     static constexpr int kSide = 16;
     std::array<std::uint8_t, std::size_t{kSide} * kSide * 4> pixels_{};
     Handle context_ = nullptr;

@@ -1,5 +1,5 @@
-// A shared library that is opened at run time and never closed: drivers register thread-exit handlers, so closing
-// one is not safe.
+// A shared library that is opened at run time and never closed:
+// drivers register thread-exit handlers, so closing one is not safe.
 #pragma once
 
 #include <initializer_list>

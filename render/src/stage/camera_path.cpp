@@ -17,7 +17,8 @@ namespace {
 // [m] Position of the follow camera's eye relative to the ball.
 const Vec3 kFollowOffset(0.0, -0.95, 0.62);
 
-// [s] Half the time over which the position of the followed ball is averaged, and the number of steps on each side.
+// [s] Half the time over which the position of the followed
+// ball is averaged, and the number of steps on each side.
 constexpr double kFollowWindow = 0.5;
 constexpr int kFollowSteps = 12;
 
@@ -90,7 +91,8 @@ Camera fitting_camera(const Bounds& bounds, const Vec3& direction, double fov_y_
                       0.0);
     const double extent = (bounds.high - bounds.low).norm();
     Vec3 target = middle;
-    // Extent of the box in the image from distance d (1: it fills the image), and its centre in the image [pixels].
+    // Extent of the box in the image from distance d (1: it
+    // fills the image), and its centre in the image [pixels].
     const auto frame = [&](double d, Vec2& centre) {
         camera.target = target;
         camera.eye = target - d * along;
@@ -163,7 +165,8 @@ CameraPath::CameraPath(const Record& record, const TableMesh& table, const std::
 
 Camera CameraPath::at(double t) const {
     if (follow_ball_ < 0) return fixed_;
-    // Raised-cosine average over past and future positions: the camera starts before the ball and moves smoothly.
+    // Raised-cosine average over past and future positions:
+    // the camera starts before the ball and moves smoothly.
     Vec3 sum = Vec3::Zero();
     double weights = 0.0;
     for (int i = -kFollowSteps; i <= kFollowSteps; ++i) {

@@ -29,13 +29,13 @@ class MeshBuilder {
     /// Sweeps a profile along an outline. If `smooth`, the normals are averaged between neighbouring strips.
     void sweep(const Chain& outline, const std::vector<ProfileRow>& rows, Material material, bool smooth);
 
-    /// A horizontal disc. For a blended material `u` is its opacity; `edge`, for chalk: radius of the disc divided by the
-    /// radius of the spot that is drawn.
+    /// A horizontal disc. For a blended material `u` is its opacity; `edge`, for
+    /// chalk: radius of the disc divided by the radius of the spot that is drawn.
     void disc(const Vec2& center, double radius, double z, Material material, double u = 0.0,
               double edge = 0.0);
 
-    /// A horizontal ring; a blended material has the opacity u at its inner circle and 0 at the outer one. With `outside`,
-    /// only the part outside that box.
+    /// A horizontal ring; a blended material has the opacity u at its inner circle
+    /// and 0 at the outer one. With `outside`, only the part outside that box.
     void ring(const Vec2& center, double inner, double outer, double z, Material material, double u = 0.0,
               const Bounds* outside = nullptr);
 

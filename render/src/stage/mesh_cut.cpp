@@ -11,7 +11,8 @@ float coordinate(const MeshVertex& vertex, Axis axis) {
 }
 
 MeshVertex between(const MeshVertex& a, const MeshVertex& b, Axis axis, float at) {
-    // The neighbouring polygon passes the edge in the other direction; a fixed order gives both the same rounding.
+    // The neighbouring polygon passes the edge in the other
+    // direction; a fixed order gives both the same rounding.
     if (std::tie(b.x, b.y, b.z) < std::tie(a.x, a.y, a.z)) return between(b, a, axis, at);
     const float share = (at - coordinate(a, axis)) / (coordinate(b, axis) - coordinate(a, axis));
     const auto mix = [share](float from, float to) { return from + share * (to - from); };

@@ -9,10 +9,12 @@ namespace carom::render {
 
 namespace {
 
-// [m] Ends closer than this are drawn as joined: far below a pixel, far above the rounding of given coordinates.
+// [m] Ends closer than this are drawn as joined: far below
+// a pixel, far above the rounding of given coordinates.
 constexpr double kJoin = 1e-5;
 
-// [m] An end lies on a jaw if it is this close to its circle: this includes tangent points given with four decimals.
+// [m] An end lies on a jaw if it is this close to its circle:
+// this includes tangent points given with four decimals.
 constexpr double kOnJaw = 2e-4;
 
 // [rad] Length of one straight piece of a drawn arc.
@@ -157,7 +159,8 @@ std::vector<Vec2> offset_left(const std::vector<Vec2>& points, bool closed, doub
             continue;
         }
         const Vec2 middle = *before + *after;
-        // |middle|^2 / 2 = 1 + cos(turn); a shift by distance * middle / (1 + cos) moves both edges by the distance.
+        // |middle|^2 / 2 = 1 + cos(turn); a shift by distance * middle / (1 + cos) moves both edges by the
+        // distance.
         const double spread = std::max(0.5 * middle.squaredNorm(), 0.3);
         moved[i] = points[i] + middle * (distance / spread);
     }
@@ -179,8 +182,9 @@ std::vector<int> triangulate(const std::vector<Vec2>& polygon) {
         }
         return true;
     };
-    // A point that is no ear becomes one only by a cut beside it: as long as its triangle is the same, the innermost of the points in
-    // there is not convex, so it is not cut off. An outline of n points takes n^2 steps, where asking all anew takes n^3.
+    // A point that is no ear becomes one only by a cut beside it: as long as its triangle
+    // is the same, the innermost of the points in there is not convex, so it is not cut
+    // off. An outline of n points takes n^2 steps, where asking all anew takes n^3.
     std::vector<char> no_ear(polygon.size(), 0);
     while (left.size() >= 3) {
         const std::size_t n = left.size();
@@ -193,7 +197,8 @@ std::vector<int> triangulate(const std::vector<Vec2>& polygon) {
                 no_ear[left[i]] = 1;
         }
         if (ear == n) {
-            // No ear: the remaining points are collinear, or the outline crosses itself. Any cut then ends the loop.
+            // No ear: the remaining points are collinear, or the
+            // outline crosses itself. Any cut then ends the loop.
             ear = 0;
             std::fill(no_ear.begin(), no_ear.end(), 0);
         }

@@ -23,7 +23,8 @@ double signed_area(const std::vector<Vec2>& polygon);
 
 bool contains(const std::vector<Vec2>& polygon, const Vec2& point);
 
-/// Moves every vertex by `distance` to the left of the line with mitred corners (mitre at most about three times that).
+/// Moves every vertex by `distance` to the left of the line
+/// with mitred corners (mitre at most about three times that).
 std::vector<Vec2> offset_left(const std::vector<Vec2>& points, bool closed, double distance);
 
 /// Triangulates a simple counter-clockwise polygon by ear clipping; returns index triples.

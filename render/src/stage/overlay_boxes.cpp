@@ -15,12 +15,14 @@ namespace {
 constexpr Rgba kPanel{0.0F, 0.0F, 0.0F, 0.60F};      // background of the panels
 constexpr Rgba kTextInk{0.97F, 0.97F, 0.95F, 1.0F};  // text
 
-// [pixels] Height of a capital letter: readable in small frames, bounded in large ones; both panels fit side by side.
+// [pixels] Height of a capital letter: readable in small
+// frames, bounded in large ones; both panels fit side by side.
 double text_height(const DrawList& list) {
     return std::clamp(std::min(list.camera.size.height / 48.0, list.camera.size.width / 36.0), 5.0, 28.0);
 }
 
-// [pixels] From the sides of the image to the panels, so that they leave the corner pockets of a table free that fills it.
+// [pixels] From the sides of the image to the panels, so that
+// they leave the corner pockets of a table free that fills it.
 double side_room(const DrawList& list) {
     return 0.11 * list.camera.size.width;
 }

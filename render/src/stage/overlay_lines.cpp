@@ -118,7 +118,8 @@ void add_arrow_head(DrawList& list, const Vec3& tip, const Vec3& along, double s
     }
 }
 
-// Adds a dark copy under the lines from `first` on; a yellow line on a yellow ball would otherwise not be visible.
+// Adds a dark copy under the lines from `first` on; a yellow
+// line on a yellow ball would otherwise not be visible.
 void add_outline(DrawList& list, std::size_t first, float wider) {
     std::vector<DrawLine> dark(list.lines.begin() + static_cast<std::ptrdiff_t>(first), list.lines.end());
     for (DrawLine& line : dark) {

@@ -47,8 +47,9 @@ void add_diamonds(const Table& table, const TableMesh& mesh, MeshBuilder& builde
     }
 }
 
-// Baulk line, D and the six spots of an English table (World Snooker rules, section 1: the baulk line is 29 in from
-// the face of the bottom cushion, the D has a radius of 11 1/2 in, the black spot is 12 3/4 in from the top cushion).
+// Baulk line, D and the six spots of an English table (World Snooker rules,
+// section 1: the baulk line is 29 in from the face of the bottom cushion, the D
+// has a radius of 11 1/2 in, the black spot is 12 3/4 in from the top cushion).
 void add_snooker_marks(const Table& table, MeshBuilder& builder) {
     const double w = table.width, l = table.length, baulk = 0.737, d = 0.292;
     line(builder, {{0.0, baulk}, {w, baulk}}, 0.003, 0.6);

@@ -52,8 +52,9 @@ void wipe_line() {
     if (g_line_stands.exchange(false)) std::fputs("\r\033[K", stderr);
 }
 
-/// Columns that a progress line may have now; the window may have been resized. A terminal that does not tell its width is
-/// taken to have 80. Three columns stay free: a line that is wrapped could not be removed, and Ctrl-C is shown as "^C".
+/// Columns that a progress line may have now; the window may have been resized. A
+/// terminal that does not tell its width is taken to have 80. Three columns stay
+/// free: a line that is wrapped could not be removed, and Ctrl-C is shown as "^C".
 std::size_t columns() {
     struct winsize size {};
     constexpr std::size_t kUsual = 80, kFree = 3;
@@ -113,8 +114,8 @@ void prepare_process(int argc, char** argv, const char* version, const char* pro
     kept_program() = program;
     kept_command_line() = program;
     for (int i = 1; i < argc; ++i) kept_command_line() += " " + shell_word(argv[i]);
-    // If a standard stream is closed, the first file that is opened would get its number. So /dev/null is opened in its place, in
-    // the wrong direction, so that using the stream fails as if it were closed.
+    // If a standard stream is closed, the first file that is opened would get its number. So /dev/null is
+    // opened in its place, in the wrong direction, so that using the stream fails as if it were closed.
     for (int fd = 0; fd <= 2; ++fd) {
         if (::fcntl(fd, F_GETFD) != -1) continue;
         if (::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY) < 0) ::_exit(kFailed);
@@ -130,7 +131,8 @@ std::string counted(std::size_t count, std::string_view what) {
 }
 
 void print(std::string_view text) {
-    // Output to a file or a pipe does not remove the line: it may be the very work whose progress the line shows.
+    // Output to a file or a pipe does not remove the line: it
+    // may be the very work whose progress the line shows.
     static const bool on_terminal = ::isatty(1) == 1;
     if (on_terminal) wipe_line();
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) output_failed();

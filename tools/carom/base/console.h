@@ -23,14 +23,16 @@ class UsageError : public std::runtime_error {
 /// SIGINT or SIGTERM was received. The exit status is 130 or 143.
 class Interrupted : public std::exception {};
 
-/// The reader of standard output has ended (`carom ... | head -1`). The exit status is 1, and no message is printed.
+/// The reader of standard output has ended (`carom ... | head
+/// -1`). The exit status is 1, and no message is printed.
 class OutputClosed : public std::exception {};
 
-/// Sets up signals and the three standard streams, and keeps the command line. Must be called once, before anything else.
-/// `program`: how messages begin.
+/// Sets up signals and the three standard streams, and keeps the command line.
+/// Must be called once, before anything else. `program`: how messages begin.
 void prepare_process(int argc, char** argv, const char* version, const char* program = "carom");
 
-/// How the program was called, as it can be typed again; empty in a test that has not called prepare_process().
+/// How the program was called, as it can be typed again;
+/// empty in a test that has not called prepare_process().
 const std::string& command_line();
 const std::string& program_version();
 
@@ -40,7 +42,8 @@ std::string shell_word(const std::string& argument);
 /// "1 frame", "2 frames".
 std::string counted(std::size_t count, std::string_view what);
 
-/// Writes results to standard output. A progress line on the terminal is removed first. A failure to write is an error.
+/// Writes results to standard output. A progress line on the terminal is removed first. A failure to write is
+/// an error.
 /// @throws OutputClosed, std::runtime_error
 void print(std::string_view text);
 void flush_output();
@@ -48,13 +51,15 @@ void flush_output();
 /// Writes one line to standard error, which begins with the name of the program.
 void message(std::string_view text);
 
-/// SIGINT and SIGTERM only set a flag, so that no incomplete file is left. Long work must ask for it regularly.
+/// SIGINT and SIGTERM only set a flag, so that no incomplete
+/// file is left. Long work must ask for it regularly.
 bool interrupted() noexcept;
 void throw_if_interrupted();
 int interrupted_status() noexcept;
 
-/// A line on standard error that is renewed while work goes on. Nothing is written if standard error is not a terminal. The
-/// line is not longer than the terminal is wide, and it is removed before anything else is written.
+/// A line on standard error that is renewed while work goes on. Nothing is
+/// written if standard error is not a terminal. The line is not longer than
+/// the terminal is wide, and it is removed before anything else is written.
 class ProgressLine {
   public:
     explicit ProgressLine(std::string title);
@@ -62,8 +67,8 @@ class ProgressLine {
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    /// Whether it is time to renew the line; if so, the next true answer comes 0.1 s later. The call is cheap, so that
-    /// callers can make their text only when it is needed.
+    /// Whether it is time to renew the line; if so, the next true answer comes 0.1 s later. The call is
+    /// cheap, so that callers can make their text only when it is needed.
     bool due();
     void show_text(std::string_view text);
 

@@ -10,9 +10,9 @@
 
 namespace carom::tools {
 
-/// The frame k in 0..frames-1 with t_k <= t < t_(k+1), t_k being render::frame_time: an event at a frame's
-/// own time belongs to that frame only. An event before the first frame belongs to the first one, an event after the last
-/// frame to the last one.
+/// The frame k in 0..frames-1 with t_k <= t < t_(k+1), t_k being render::frame_time: an
+/// event at a frame's own time belongs to that frame only. An event before the first
+/// frame belongs to the first one, an event after the last frame to the last one.
 long frame_of(double t, double from, double fps, long frames);
 
 /// What the simulation cost during one frame [ms].
@@ -29,13 +29,14 @@ struct FrameCost {
 /// belongs to frame 0. The sums over all frames are equal to the sums over all events.
 std::vector<FrameCost> costs_by_frame(const Record& record, double from, double fps, long frames);
 
-/// Percentile by nearest rank: the smallest value such that at least p percent of all values are not above it.
+/// Percentile by nearest rank: the smallest value such that at least p percent of all values are not above
+/// it.
 /// @param sorted  ascending, not empty   @param p  0..100
 double percentile(const std::vector<double>& sorted, double p);
 
-/// Measures the wall time of frames that are made one after the other, from the times at which each one was finished. What the
-/// caller does between them (a progress bar, removing files) does not count. The caller gives the clock, so that a test can
-/// replace it.
+/// Measures the wall time of frames that are made one after the other, from the times at
+/// which each one was finished. What the caller does between them (a progress bar, removing
+/// files) does not count. The caller gives the clock, so that a test can replace it.
 class FrameWalls {
   public:
     explicit FrameWalls(std::function<double()> now_ms) : now_ms_(std::move(now_ms)) {}

@@ -54,7 +54,8 @@ void add_simulation(MarginRun& run, const FrameCost& frame);
 /// Simulates once, with the clock on. @param drawn  how the frames are drawn; null: they are not
 MarginRun one_run(const Plan& plan, const FrameSettings* drawn, double fps, const std::string& title);
 
-/// Compares the sum of the parts with the wall time, over all frames except the first, whose start is not known.
+/// Compares the sum of the parts with the wall time, over
+/// all frames except the first, whose start is not known.
 struct Accounting {
     double wall_ms = 0.0, parts_ms = 0.0;
     double share() const { return wall_ms > 0.0 ? parts_ms / wall_ms : 1.0; }

@@ -28,10 +28,12 @@ constexpr bool kIsList = false;
 template <class T>
 constexpr bool kIsList<std::vector<T>> = true;
 
-/// Shows options in --help in one form with every release of CLI11, whose own forms differ (2.1: "S=0", 2.4: "S [0]").
+/// Shows options in --help in one form with every release of
+/// CLI11, whose own forms differ (2.1: "S=0", 2.4: "S [0]").
 class HelpFormatter : public CLI::Formatter {
   public:
-    /// The text after the name: type and choices, default, whether it may be repeated, which options it needs or excludes.
+    /// The text after the name: type and choices, default, whether
+    /// it may be repeated, which options it needs or excludes.
     std::string make_option_opts(const CLI::Option* option) const override {
         if (option->get_type_size() == 0) return "";
         std::string text;
@@ -129,8 +131,9 @@ std::string path_of(const CLI::App& app) {
     return app.get_name() + (named.empty() ? "" : " " + path_of(*named.front()));
 }
 
-/// The arguments in the order that CLI11 wants, the last one first. `carom help [COMMAND]` and `carom version` are `--help` and
-/// `--version`, and a first word that is no command is told apart from an option. @throws UsageError
+/// The arguments in the order that CLI11 wants, the last one first. `carom help
+/// [COMMAND]` and `carom version` are `--help` and `--version`, and a first
+/// word that is no command is told apart from an option. @throws UsageError
 std::vector<std::string> with_spelled_help(const Options& program, int argc, char** argv) {
     std::vector<std::string> words(argv + 1, argv + argc);
     const auto named = [&program](const std::string& word) {

@@ -1,5 +1,6 @@
-// The commands of the program and their options as one table. From it the command line is parsed, and --help, the man page and
-// the completions are written. Only options.cpp includes CLI11, which takes seconds to compile.
+// The commands of the program and their options as one table. From it the
+// command line is parsed, and --help, the man page and the completions are
+// written. Only options.cpp includes CLI11, which takes seconds to compile.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,8 @@
 
 namespace carom::tools {
 
-/// The variable that an option sets; nothing for --help and --version. An option for a list of strings may be repeated; a list
-/// of numbers is written with commas.
+/// The variable that an option sets; nothing for --help and --version. An option
+/// for a list of strings may be repeated; a list of numbers is written with commas.
 using OptionTarget = std::variant<std::monostate, bool*, int*, long*, std::uint64_t*, double*, std::string*,
                                   std::optional<int>*, std::optional<long>*, std::optional<double>*,
                                   std::vector<int>*, std::vector<double>*, std::vector<std::string>*>;
@@ -54,7 +55,8 @@ struct Options {
 
     Options& command(std::string command_name, std::string description);
 
-    /// Adds a command that does `work`. Returns it, and the variables of its options, which live as long as the command.
+    /// Adds a command that does `work`. Returns it, and the
+    /// variables of its options, which live as long as the command.
     template <class Args>
     std::pair<Options&, Args&> command(std::string command_name, std::string description,
                                        int (*work)(const Args&)) {
@@ -64,8 +66,8 @@ struct Options {
         return {added, *args};
     }
 
-    // These add a row and return it, so that the members that few options use can be set. The next row may move it. A flag
-    // negates its variable.
+    // These add a row and return it, so that the members that few options use
+    // can be set. The next row may move it. A flag negates its variable.
     Option& argument(const std::string& place, std::string& variable, std::string description);
     Option& flag(const std::string& names, bool& variable, std::string description);
     Option& option(const std::string& names, OptionTarget variable, std::string value,

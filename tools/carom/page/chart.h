@@ -18,8 +18,8 @@ struct Axis {
     std::vector<std::pair<double, std::string>> marks{};
 };
 
-/// Points, which may be joined by a line. Values that are not finite are not drawn, and values of 0 and below are not drawn on
-/// a logarithmic axis.
+/// Points, which may be joined by a line. Values that are not finite are not
+/// drawn, and values of 0 and below are not drawn on a logarithmic axis.
 struct Series {
     /// In the legend; empty: not there.
     std::string name;

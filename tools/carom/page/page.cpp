@@ -61,7 +61,8 @@ std::string as_html(const std::string& text) {
     return out;
 }
 
-/// JSON in which no text can end the element: "<" stands in strings only, and there it may be written as an escape.
+/// JSON in which no text can end the element: "<" stands in
+/// strings only, and there it may be written as an escape.
 std::string inlined(const std::string& json) {
     std::string out;
     for (const char c : json) {

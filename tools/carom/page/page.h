@@ -1,5 +1,5 @@
-// Pages: self-contained HTML files. A page has a script and a style of its own, which its Content-Security-Policy names by their
-// hashes, and may load nothing.
+// Pages: self-contained HTML files. A page has a script and a style of its own, which its
+// Content-Security-Policy names by their hashes, and may load nothing.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -27,7 +27,8 @@ struct PageData {
 std::string page_html(const std::string& title, const std::vector<std::string>& scripts,
                       const std::vector<PageData>& data);
 
-/// What every page says about itself: its title, a line below that, the command that made it, program and machine.
+/// What every page says about itself: its title, a line below
+/// that, the command that made it, program and machine.
 nlohmann::ordered_json page_json(const std::string& title, const std::string& lead,
                                  const std::string& command, const std::string& version);
 

@@ -181,7 +181,8 @@ Json boards_json(const TableMesh& mesh) {
         double largest = 0.0;
         std::array<double, 3> u{}, v{};
     };
-    // A board is what has the same grain. Its bevels have that, too, and its largest triangle is its flat top.
+    // A board is what has the same grain. Its bevels have
+    // that, too, and its largest triangle is its flat top.
     std::map<std::array<std::int64_t, 3>, Board> boards;
     for (const Triangle& t : seen_from_above(mesh.solid, Material::kWood)) {
         const std::array<double, 3> u = gradient(t, &MeshVertex::u);

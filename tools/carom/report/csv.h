@@ -1,5 +1,5 @@
-// Writes events and samples of a record as CSV. Numbers read back to the same bits. Names need no quotes, because the scene
-// reader refuses a ball's id that holds a comma, a quote or a control character.
+// Writes events and samples of a record as CSV. Numbers read back to the same bits. Names need no quotes,
+// because the scene reader refuses a ball's id that holds a comma, a quote or a control character.
 #pragma once
 
 #include <string>

@@ -12,7 +12,8 @@
 
 namespace carom::tools {
 
-/// One value: nothing, a truth value, a count, a number or words. The text shows `text` in its place, unless that is empty.
+/// One value: nothing, a truth value, a count, a number or words.
+/// The text shows `text` in its place, unless that is empty.
 struct Cell {
     Cell() = default;
     template <class T>
@@ -30,9 +31,9 @@ struct Cell {
     std::string text;
 };
 
-/// `key` is the name in CSV and JSON, `title` the heading in the text. `format` is the format in the text as fmt writes it:
-/// alignment, width and the form of numbers, ">8.2f". A column without a key is in the text only, one without a format is not
-/// in the text.
+/// `key` is the name in CSV and JSON, `title` the heading in the text. `format` is the
+/// format in the text as fmt writes it: alignment, width and the form of numbers, ">8.2f".
+/// A column without a key is in the text only, one without a format is not in the text.
 struct Column {
     explicit Column(std::string of_key, std::string of_title = "", std::string of_format = "",
                     bool is_in_csv = true)
@@ -44,8 +45,8 @@ struct Column {
     bool in_csv;
 };
 
-/// A row may have fewer values than columns, as when a measurement failed: then text and JSON contain these values, and CSV does
-/// not contain the row.
+/// A row may have fewer values than columns, as when a measurement failed:
+/// then text and JSON contain these values, and CSV does not contain the row.
 struct Table {
     template <class... Columns>
     explicit Table(Columns... list) : columns{std::move(list)...} {}
@@ -65,8 +66,8 @@ struct Table {
 /// Titles and rows, each with a line end. What has no value is "-".
 std::string table_text(const Table& table);
 
-/// Keys and rows, each with a line end. Numbers read back to the same bits; a truth value is 1 or 0; words are in quotes where
-/// CSV needs it, and control characters in them become blanks.
+/// Keys and rows, each with a line end. Numbers read back to the same bits; a truth value is 1 or 0; words
+/// are in quotes where CSV needs it, and control characters in them become blanks.
 std::string table_csv(const Table& table);
 std::string csv_line(const std::vector<Cell>& cells);
 /// Appends one value as csv_line() writes it, and a comma.

@@ -18,8 +18,9 @@ struct BallBallSettings {
     double tolerance = 0.0;  ///< relative to the approach speed
 };
 
-/// Velocities after the impact of two balls of one radius, and of one mass but for a model that reads the tolerance; both centres are at one height, and v_z
-/// stays as it is. `result.status` says where nothing was computed (the velocities are then as they came).
+/// Velocities after the impact of two balls of one radius, and of one mass but for a model
+/// that reads the tolerance; both centres are at one height, and v_z stays as it is.
+/// `result.status` says where nothing was computed (the velocities are then as they came).
 using BallBallFunction = void (*)(const BallBallSettings& settings, const kernel::Ball& ball1,
                                   const kernel::Ball& ball2, const kernel::ImpactParams& params,
                                   kernel::ImpactResult& result);
@@ -44,8 +45,9 @@ std::span<const BallBallModelInfo* const> all_of(const BallBallModelInfo*);
 const BallBallModelInfo* ball_ball_model(std::string_view name);
 
 /// Two balls of different size. The planar model holds both to the cloth: the horizontal velocities along the
-/// line of centres part at e_b times the approach, whatever the tilt of that line. Friction is known for equal
-/// radii only: mu_b must be 0 where the radii differ. Equations: docs/reference/physics.md, "Balls of different size".
+/// line of centres part at e_b times the approach, whatever the tilt of that line. Friction is known for
+/// equal radii only: mu_b must be 0 where the radii differ. Equations: docs/reference/physics.md, "Balls of
+/// different size".
 ///
 /// @param params  R and m are not read
 void collide_unequal(const BallSize& size1, const BallSize& size2, const kernel::Ball& ball1,

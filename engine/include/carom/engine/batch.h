@@ -35,8 +35,8 @@ constexpr bool has_result(ShotStatus status) {
     return status < ShotStatus::kInvalid;
 }
 
-/// Plays one shot after the other; after the first ones a shot takes no memory, unless it fails or has resting contacts. One
-/// thread at a time.
+/// Plays one shot after the other; after the first ones a shot takes no
+/// memory, unless it fails or has resting contacts. One thread at a time.
 class Simulator {
   public:
     /// @param scene  need not be valid before the first shot changes it
@@ -52,7 +52,8 @@ class Simulator {
     ShotStatus play(Change change, const SimulateOptions& options = {});
     /// The same for a scene of its own, which is valid (it comes from a reader).
     ShotStatus play(const Scene& scene, const SimulateOptions& options = {});
-    /// The same for a shot of a variation whose base() this simulator was made for. All shots have to be of this one.
+    /// The same for a shot of a variation whose base() this simulator was made for. All shots have to be of
+    /// this one.
     /// @param values  receives what was drawn, as VariedShot
     ShotStatus play(const Variation& variation, std::uint64_t index, std::vector<std::string>& values,
                     const SimulateOptions& options = {});
@@ -87,19 +88,22 @@ struct BatchOptions {
     int threads = 0;             ///< 0: one for each core. The results do not depend on it.
     bool hash = false;           ///< fill Batch::hash
     SimulateOptions simulate{};  ///< `progress` is not called, nothing is profiled
-    /// Empty, or for every ball of every shot whether it is left out (not 0). Such a shot is that of the scene without these balls; they
-    /// have no numbers (NaN) as x and y, no pocket and no cushion.
+    /// Empty, or for every ball of every shot whether it is left out (not 0). Such a shot is that of the
+    /// scene without these balls; they have no numbers (NaN) as x and y, no pocket and no cushion.
     std::span<const std::uint8_t> absent{};
     /// Called by each thread between shots; true ends the batch with an exception of type BatchStopped.
     std::function<bool()> stop{};
-    /// Called by each thread for its shots that have a result, when the arrays have it: what judges shots reads them here, and they need not be
-    /// played again. Both are lent for the call; balls that were left out are in neither. What it throws ends the batch.
+    /// Called by each thread for its shots that have a result, when the arrays have it: what
+    /// judges shots reads them here, and they need not be played again. Both are lent for the
+    /// call; balls that were left out are in neither. What it throws ends the batch.
     std::function<void(std::size_t shot, const Outcome& outcome, const Record& record)> judge{};
-    /// Only shots whose number is a multiple of it (not 0) are hashed, the others have 0: short shots take half as long again with a hash.
+    /// Only shots whose number is a multiple of it (not 0) are hashed, the
+    /// others have 0: short shots take half as long again with a hash.
     std::uint64_t hash_every = 1;
 };
 
-/// Where the outcomes of n shots of b balls go: arrays of n or of n x b, as in Batch, in memory of the caller's. Null: not wanted.
+/// Where the outcomes of n shots of b balls go: arrays of n or of n
+/// x b, as in Batch, in memory of the caller's. Null: not wanted.
 struct BatchArrays {
     ShotStatus* status = nullptr;
     double* duration = nullptr;
@@ -117,8 +121,8 @@ class BatchStopped : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Outcomes of n shots of b balls: arrays of n, or of n x b with the balls of a shot one after the other, in the order of
-/// Scene::ball. A shot without a result has 0 everywhere and -1 as ball and pocket.
+/// Outcomes of n shots of b balls: arrays of n, or of n x b with the balls of a shot one after the other, in
+/// the order of Scene::ball. A shot without a result has 0 everywhere and -1 as ball and pocket.
 struct Batch {
     Batch() = default;
     /// Arrays for n shots of b balls, to be filled. @param hash  whether `hash` is wanted
@@ -151,20 +155,23 @@ inline constexpr std::size_t kMostBatchShots = std::size_t{1} << 31;
 /// @throws std::invalid_argument for more shots than that
 void check_shots(std::size_t shots);
 
-/// Plays `shots` shots that differ in the numbers of some columns. Shot i has the results of simulate() for the scene with these
-/// numbers, bit for bit, whatever the number of threads. A shot that is invalid or fails has its status, and the others are played.
-/// @throws std::invalid_argument for a key that names no number, a key that is there twice, or a column of another length
+/// Plays `shots` shots that differ in the numbers of some columns. Shot i has the results of simulate() for
+/// the scene with these numbers, bit for bit, whatever the number of threads. A shot that is invalid or fails
+/// has its status, and the others are played.
+/// @throws std::invalid_argument for a key that names no number, a key that is there twice, or a column of
+/// another length
 /// @throws std::bad_alloc, and std::system_error where the system gives no threads
 Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const BatchColumn> columns,
                     kernel::Isa isa, const BatchOptions& options = {});
 
-/// The same into arrays that are there already: memory is taken for the threads and the messages only. BatchOptions::hash is not
-/// read. @return the messages, in the order of the shots
+/// The same into arrays that are there already: memory is taken for the threads and the messages only.
+/// BatchOptions::hash is not read. @return the messages, in the order of the shots
 std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
                                           std::span<const BatchColumn> columns, kernel::Isa isa,
                                           const BatchOptions& options, const BatchArrays& out);
 
-/// Plays shots first, first + 1, ... of a variation, which differ in what its rules say; otherwise the same. `options.absent` is not read.
+/// Plays shots first, first + 1, ... of a variation, which differ in what its rules say; otherwise the same.
+/// `options.absent` is not read.
 /// @param values  receives what was drawn: for every shot a text for every key, as VariedShot has them
 std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint64_t first, std::size_t shots,
                                           kernel::Isa isa, const BatchOptions& options,

@@ -21,8 +21,9 @@ struct CushionContact {
     double height;  ///< of the nose above the cloth [m], 0 < height < 2 R
 };
 
-/// What an impact of a ball that comes with v and w reads: the friction is that of its slip at the nose, and the restitution
-/// that of its speed along the normal (BallParams::f_c_more, e_c_fall), both taken once, before the impact.
+/// What an impact of a ball that comes with v and w reads: the friction is that
+/// of its slip at the nose, and the restitution that of its speed along the
+/// normal (BallParams::f_c_more, e_c_fall), both taken once, before the impact.
 CushionContact cushion_contact(const BallParams& balls, const BallSize& size, double height,
                                const Vec2& normal, const Vec3& v, const Vec3& w);
 
@@ -55,7 +56,8 @@ struct CushionModelInfo {
     bool reads_cloth = false;     ///< mu_s matters
     /// Without friction, and with the nose at the height of the centre, the result has the bits of `smooth`.
     bool reflects_when_level = false;
-    /// Whether the model has a solution for all velocities; null: for every contact. In mathavan_2010 a ball can jam.
+    /// Whether the model has a solution for all velocities; null:
+    /// for every contact. In mathavan_2010 a ball can jam.
     bool (*accepts)(const CushionContact& contact) = nullptr;
     /// Friction of a ball in the air; null: none.
     GripFunction grip = coulomb_grip;

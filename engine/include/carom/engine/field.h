@@ -1,6 +1,7 @@
-// Fields: the keys of a section as rows of a table. What reads and writes scenes and records, the schemas, the tables of
-// docs/reference/scene_format.md and the C interface all go through the rows, so that a key which is added is known to each of them.
-// The rows of a section stand below its struct, in scene.h and table.h.
+// Fields: the keys of a section as rows of a table. What reads and writes scenes and records, the schemas,
+// the tables of docs/reference/scene_format.md and the C interface all go through the rows, so that a key
+// which is added is known to each of them. The rows of a section stand below its struct, in scene.h and
+// table.h.
 #pragma once
 
 #include <algorithm>
@@ -88,7 +89,8 @@ template <class T>
 struct Field : Key {
     FieldValue (*get)(const T&);
     void (*set)(T&, const FieldValue&);  ///< the value is of this kind, and one of the choices
-    /// Whether the value is one that files may have, found without memory; false also where that is not known.
+    /// Whether the value is one that files may have, found
+    /// without memory; false also where that is not known.
     bool (*fits)(const T&, const Key&) = nullptr;
     /// The k-th number of a list in the struct itself; null where it is no member of its own.
     double* (*element)(T&, std::size_t k) = nullptr;
@@ -104,7 +106,8 @@ struct Field : Key {
     }
 };
 
-/// Whether a scene file that says all of `object` has this row: it holds a value, and no other key stands in for it.
+/// Whether a scene file that says all of `object` has this
+/// row: it holds a value, and no other key stands in for it.
 template <class T, std::size_t kRows>
 bool is_written(const Field<T> (&fields)[kRows], const Field<T>& field, const T& object) {
     const bool replaced = std::any_of(fields, fields + kRows, [&](const Field<T>& other) {
@@ -244,8 +247,9 @@ void put(V& v, const FieldValue& value) {
 
 }  // namespace detail
 
-/// A row of one member: a number, an integer, a text, a vector, or a choice. A choice is an enumeration, whose names
-/// `names_of(V)` lists in the order of its values, or a pointer to a model: one of `all_of(V)`, called `name(v)`.
+/// A row of one member: a number, an integer, a text, a vector, or a choice. A
+/// choice is an enumeration, whose names `names_of(V)` lists in the order of
+/// its values, or a pointer to a model: one of `all_of(V)`, called `name(v)`.
 template <auto kMember>
 constexpr Field<detail::ClassOf<kMember>> field(const char* key, const Interval& range, const char* meaning,
                                                 const KeyOptions& options = {}) {
@@ -295,8 +299,9 @@ constexpr Field<detail::ClassOf<kFirst>> field(const char* key, const Interval& 
             }};
 }
 
-/// The rows of a coefficient that may be a number or a fit of three: `number` is the first of them alone, and takes the place of a
-/// fit; `fit` is the list of all three, in scene files and where one of the others is not 0.
+/// The rows of a coefficient that may be a number or a fit of three: `number`
+/// is the first of them alone, and takes the place of a fit; `fit` is the
+/// list of all three, in scene files and where one of the others is not 0.
 template <auto kFirst, auto... kOthers>
 constexpr Field<detail::ClassOf<kFirst>> number_or_fit(const char* key, const Interval& range,
                                                        const char* meaning, const KeyOptions& options = {}) {

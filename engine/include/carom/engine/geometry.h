@@ -28,7 +28,8 @@ struct Nose {
     double inset = 0.0;  ///< [m] a ball touches it with its centre at R + radius - inset
 };
 
-/// [m] By how much less than its radius the centre of a ball is away from a nose of this height that it touches.
+/// [m] By how much less than its radius the centre of a
+/// ball is away from a nose of this height that it touches.
 double nose_inset(CushionTouch touch, double R, double height);
 
 /// All parts of a table that a ball can meet.

@@ -77,7 +77,8 @@ struct Plan {
     ClusterModel clusters = ClusterModel::kSequential;
     Search ball_search = Search::kDirect;   ///< among balls
     Search table_search = Search::kDirect;  ///< among cushions, noses and pockets
-    /// [ball radii] Way that a ball's box covers before it is renewed; infinite: until the ball's next own event.
+    /// [ball radii] Way that a ball's box covers before it is
+    /// renewed; infinite: until the ball's next own event.
     double box_travel = std::numeric_limits<double>::infinity();
     std::vector<std::string> warnings;  ///< one sentence each, for stderr
 };
@@ -87,8 +88,8 @@ struct Plan {
 /// @throws SceneError where [effects] refuses what the scene needs
 Plan make_plan(const Scene& scene, kernel::Isa isa);
 
-/// Plans of one scene whose numbers change: the same decisions as make_plan, in memory that is kept. The plans have no reasons,
-/// no warnings, and no names of pockets in their geometry.
+/// Plans of one scene whose numbers change: the same decisions as make_plan, in memory that is kept. The
+/// plans have no reasons, no warnings, and no names of pockets in their geometry.
 class Planner {
   public:
     Planner(const Scene& scene, kernel::Isa isa);

@@ -6,8 +6,9 @@
 
 namespace carom {
 
-/// `text` as a terminal may have it: what could steer one (control characters, marks that turn the direction of
-/// writing, bytes that are no UTF-8) becomes "?", and what is longer than 60 bytes is cut and ends in "...".
+/// `text` as a terminal may have it: what could steer one (control characters,
+/// marks that turn the direction of writing, bytes that are no UTF-8) becomes
+/// "?", and what is longer than 60 bytes is cut and ends in "...".
 std::string printable(std::string_view text);
 
 /// printable() without the cut; line ends and tabs stay.

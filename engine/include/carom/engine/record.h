@@ -52,9 +52,9 @@ constexpr bool is_off_cloth(MotionState state) {
 /// One ball between two events that touch it. Times inside are relative to `start`.
 struct Segment {
     double start = 0.0;  ///< s since the start of the shot
-    /// Centre, velocity, angular velocity at the start. While a ball falls, r_z stays the height at which that began, and v_z
-    /// is how fast it falls at the start: tau later it is by (v_z - g tau)^2 / 2g lower than r_z. While it flies, its height is
-    /// r_z + v_z tau - g tau^2 / 2.
+    /// Centre, velocity, angular velocity at the start. While a ball falls, r_z stays the height at which
+    /// that began, and v_z is how fast it falls at the start: tau later it is by (v_z - g tau)^2 / 2g lower
+    /// than r_z. While it flies, its height is r_z + v_z tau - g tau^2 / 2.
     Vec3 r, v, w;
     Vec2 a;                   ///< acceleration [m/s^2], constant
     Vec2 dw;                  ///< d(w_x, w_y)/dt [rad/s^2], constant
@@ -220,8 +220,8 @@ class Record {
     /// gives the start, t past the duration the state at the duration.
     BallState state_at(int ball, double t) const;
 
-    /// The same of every ball at many times, time after time: position, velocity and spin in nine numbers, and the kind of motion. Null: not
-    /// wanted.
+    /// The same of every ball at many times, time after time: position, velocity
+    /// and spin in nine numbers, and the kind of motion. Null: not wanted.
     void states_at(std::span<const double> times, double* rvw, std::uint8_t* kinds) const;
 
     /// Orientation (body to table) at time t, starting from the identity, by the integral of the angular
@@ -269,20 +269,22 @@ inline Vec3 velocity_at(const Segment& s, double tau) {
 }
 Vec3 spin_at(const Segment& segment, double tau, double R);
 
-/// [m] How far the floor lies below the cloth, where a ball that has left the table comes to rest: the bed of a table is 29 1/4 to 31
-/// inches high (WPA Tournament Table & Equipment Specifications, 2), 0.743 to 0.787 m.
+/// [m] How far the floor lies below the cloth, where a ball that has left
+/// the table comes to rest: the bed of a table is 29 1/4 to 31 inches high
+/// (WPA Tournament Table & Equipment Specifications, 2), 0.743 to 0.787 m.
 inline constexpr double kFloorDepth = 0.76;
 
-/// Time from the start of a segment until a ball of radius R lies on the floor [s]; infinite for one that has not left the table.
+/// Time from the start of a segment until a ball of radius R lies
+/// on the floor [s]; infinite for one that has not left the table.
 inline double until_floor(const Segment& s, double R, double gravity) {
     if (s.state != MotionState::kOut || !(gravity > 0.0)) return std::numeric_limits<double>::infinity();
     const double v = s.v.z(), height = std::max(0.0, s.r.z() + (kFloorDepth - R));
     return (v + std::sqrt(v * v + 2.0 * gravity * height)) / gravity;
 }
 
-/// The scene for the next shot: that of the record with its balls where and as they are at the end, without the balls in
-/// pockets, without a cue. Whoever plays says who is struck, and puts fallen balls back. One that is falling does so
-/// from the beginning. It may need other [effects].
+/// The scene for the next shot: that of the record with its balls where and as they are at the end, without
+/// the balls in pockets, without a cue. Whoever plays says who is struck, and puts fallen balls back. One
+/// that is falling does so from the beginning. It may need other [effects].
 /// @param scene  that of the record: the same balls in the same order
 Scene scene_after(const Scene& scene, const Record& record);
 

@@ -63,7 +63,8 @@ inline constexpr Field<BallSize> kSizeFields[] = {
     field<&BallSize::m>("mass", kMass, "of this ball", {.standard = "as `[balls]`"}),
 };
 
-/// A coefficient that falls with a speed u [m/s]: at_rest + more exp(-fall u), and at_rest alone if `more` is 0.
+/// A coefficient that falls with a speed u [m/s]: at_rest
+/// + more exp(-fall u), and at_rest alone if `more` is 0.
 struct Falling {
     double at_rest, more = 0.0, fall = 0.0;  // fall [s/m]
     double operator()(double u) const;
@@ -89,20 +90,21 @@ struct BallParams {
     /// Cushion friction that falls with the slip u [m/s] at the nose: f_c + f_c_more exp(-f_c_fall u).
     double f_c_more = 0.0;
     double f_c_fall = 0.0;  ///< [s/m]
-    /// Cushion restitution that falls with the speed v_n [m/s] towards the cushion: above e_c_above by e_c_fall for
-    /// each m/s, and not below 0.
+    /// Cushion restitution that falls with the speed v_n [m/s] towards the
+    /// cushion: above e_c_above by e_c_fall for each m/s, and not below 0.
     double e_c_fall = 0.0;   ///< [s/m]
     double e_c_above = 0.0;  ///< [m/s]
-    /// Restitution of ball and cloth, which may fall with the speed V [m/s]: e_t + e_t_more exp(-e_t_fall V). Source of 0.5: D.
-    /// Alciatore, "Physical properties".
+    /// Restitution of ball and cloth, which may fall with the speed V [m/s]: e_t + e_t_more exp(-e_t_fall V).
+    /// Source of 0.5: D. Alciatore, "Physical properties".
     double e_t = 0.5, e_t_more = 0.0;
     double e_t_fall = 0.0;  ///< [s/m]
-    /// Share of the downward speed from a cushion that throws a ball up again. 0: the published planar cushions.
+    /// Share of the downward speed from a cushion that throws
+    /// a ball up again. 0: the published planar cushions.
     double e_h = 0.0;
     BallSize size() const { return {R, m}; }
-    /// Between two balls, by the slip of their surfaces at the contact. Source of the form: D. Alciatore, Technical Proof A.14:
-    /// a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact uses the value at the slip before it; in a compliant
-    /// cluster every contact has that of its own slip at every instant.
+    /// Between two balls, by the slip of their surfaces at the contact. Source of the form: D. Alciatore,
+    /// Technical Proof A.14: a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact uses the value at
+    /// the slip before it; in a compliant cluster every contact has that of its own slip at every instant.
     Falling ball_friction() const { return {mu_b, mu_b_more, mu_b_fall}; }
     /// At a cushion, by the slip at the nose.
     Falling cushion_friction() const { return {f_c, f_c_more, f_c_fall}; }
@@ -384,8 +386,8 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
         {.since = 2}),
 };
 
-/// What a plan computes or leaves out. The keywords of [effects], and when one is left out: effect_table() in plan.h, in this
-/// order.
+/// What a plan computes or leaves out. The keywords of [effects], and
+/// when one is left out: effect_table() in plan.h, in this order.
 enum class Effect : std::uint8_t {
     kSliding,
     kRolling,
@@ -454,7 +456,8 @@ struct Scene {
     Stop stop;
     RenderSettings render;
     BallSize size_of(const BallStart& start) const { return start.own.value_or(balls.size()); }
-    /// Whether a ball may leave the cloth before it meets anything: one starts in the air, or the cue is raised.
+    /// Whether a ball may leave the cloth before it meets
+    /// anything: one starts in the air, or the cue is raised.
     bool lifts() const {
         const bool raised = cue && cue->elevation_deg > 0.0 && cue->speed > 0.0;
         return physics.vertical == Vertical::kKeep &&
@@ -489,7 +492,8 @@ Scene parse_scene(std::string_view text, const std::string& name);
 /// written ones; names that only people read, and depths of pockets, are left out).
 std::string scene_text(const Scene& scene);
 
-/// For a scene that was built in code: all that parse_scene checks, in the same order and words, on the struct itself.
+/// For a scene that was built in code: all that parse_scene checks, in the same order and words, on the
+/// struct itself.
 /// @throws SceneError without a line
 void validate(const Scene& scene);
 

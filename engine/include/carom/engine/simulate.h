@@ -75,16 +75,16 @@ struct Outcome {
     int struck = -1;  ///< the ball that the cue strikes, or else the first one that moves at the start; or -1
     int first_hit = -1;  ///< the ball that it meets first: in a cluster the nearest one; or -1
     int contacts = 0;    ///< balls that it meets, each of them once
-    /// Its contacts with cushions and jaws before the second of them, or all; not with one that it was frozen to from the start and
-    /// has not left (still_frozen)
+    /// Its contacts with cushions and jaws before the second of them, or all; not
+    /// with one that it was frozen to from the start and has not left (still_frozen)
     int approach_cushions = 0;
     std::vector<BallOutcome> balls;  ///< in the order of Scene::ball
     std::uint64_t hash = 0;          ///< Record::hash() as a number, if SimulateOptions::hash asked for it
     bool operator==(const Outcome&) const = default;
 };
 
-/// Memory that runs use one after the other, of the same plan or of others. Of one thread at a time. The results do not depend
-/// on it.
+/// Memory that runs use one after the other, of the same plan or of
+/// others. Of one thread at a time. The results do not depend on it.
 class RunBuffers {
   public:
     RunBuffers();
@@ -102,11 +102,13 @@ class RunBuffers {
 /// simulate() in memory that is kept: only the record itself takes new memory. @throws SimulationError
 Record simulate(const Plan& plan, RunBuffers& buffers, const SimulateOptions& options = {});
 
-/// simulate() without a record. Once the buffers and the outcome have grown to what a shot needs, it takes no memory, unless
-/// balls rest against each other or against a cushion. A profile is not taken. @throws SimulationError
+/// simulate() without a record. Once the buffers and the outcome have grown to
+/// what a shot needs, it takes no memory, unless balls rest against each other
+/// or against a cushion. A profile is not taken. @throws SimulationError
 void simulate(const Plan& plan, RunBuffers& buffers, Outcome& outcome, const SimulateOptions& options = {});
 
-/// The outcome and the record of one run. The record is that of simulate(), in the memory that `record` has from an earlier shot.
+/// The outcome and the record of one run. The record is that of simulate(), in the memory that `record` has
+/// from an earlier shot.
 /// @throws SimulationError
 void simulate(const Plan& plan, RunBuffers& buffers, Outcome& outcome, Record& record,
               const SimulateOptions& options = {});

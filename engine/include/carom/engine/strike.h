@@ -10,9 +10,10 @@ namespace carom {
 /// is not simulated.
 inline constexpr double kMiscueOffset = 0.5;
 
-/// The strike with its numbers brought to what a scene takes; a strike that a scene takes is returned to the bit. The speed, the
-/// elevation and the aim go to the nearer end of their ranges. An offset beyond the disc of radius kMiscueOffset goes straight
-/// towards the centre, to the rim: its direction stays. The cue's own mass, end mass and restitution are left alone.
+/// The strike with its numbers brought to what a scene takes; a strike that a scene takes is returned to the
+/// bit. The speed, the elevation and the aim go to the nearer end of their ranges. An offset beyond the disc
+/// of radius kMiscueOffset goes straight towards the centre, to the rim: its direction stays. The cue's own
+/// mass, end mass and restitution are left alone.
 /// @throws std::invalid_argument for a number that is not finite
 Cue legal_strike(Cue cue);
 

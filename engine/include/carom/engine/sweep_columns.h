@@ -1,4 +1,5 @@
-// The table that a sweep makes of its shots: one list of columns, for the program's rows and for whatever keeps arrays.
+// The table that a sweep makes of its shots: one list of columns,
+// for the program's rows and for whatever keeps arrays.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +20,8 @@ struct SweepColumn {
     bool of_result = false;  ///< shots without a result have no value
 };
 
-/// shot, KEY..., outcome, duration, events, first_contact, contacts, cushions, pocketed, ID.x, ID.y, ID.pocket..., message
+/// shot, KEY..., outcome, duration, events, first_contact,
+/// contacts, cushions, pocketed, ID.x, ID.y, ID.pocket..., message
 std::vector<SweepColumn> sweep_columns(const Variation& variation);
 
 /// What one column has of some shots; only the arrays of its kind are filled.

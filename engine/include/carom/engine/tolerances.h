@@ -1,4 +1,5 @@
-// Tolerances that several files share, and the limits of files: name, unit, reason. A constant of one file stands at its top.
+// Tolerances that several files share, and the limits of files:
+// name, unit, reason. A constant of one file stands at its top.
 #pragma once
 
 #include <cstddef>
@@ -22,9 +23,9 @@ inline constexpr double kRollingUlp = 8.0;
 inline constexpr double kEventCapSpan = 1e-6;
 inline constexpr int kEventCap = 10000;
 
-/// [-] More events than the first are an error of a run whose [stop] does not say how many may come, and more than the second of
-/// any run. The longest shot of a real table has some thousand; a million take 0.4 GB with their segments, and a record of them is
-/// as long as any that can be read (kMaxRecordSize).
+/// [-] More events than the first are an error of a run whose [stop] does not say how many may come, and more
+/// than the second of any run. The longest shot of a real table has some thousand; a million take 0.4 GB with
+/// their segments, and a record of them is as long as any that can be read (kMaxRecordSize).
 inline constexpr int kUsualEvents = 1000000;
 inline constexpr int kMostEvents = 10 * kUsualEvents;
 
@@ -33,7 +34,8 @@ inline constexpr double kPocketDepth = 0.08;
 
 /// Below which approach a bounce is no bounce: one that would end before the contact itself has, 2 e v / a <
 /// t_c(v), with the Hertz contact time t_c = 2.6 (m / k)^0.4 v^-0.2 of two phenolic balls (E = 5.84 GPa, nu =
-/// 0.34: k/m = 3.094e9 m^-0.5 s^-2). Such a contact becomes a resting one instead. About 1.5e-3 m/s at a = 2 m/s^2.
+/// 0.34: k/m = 3.094e9 m^-0.5 s^-2). Such a contact becomes a resting one instead. About 1.5e-3 m/s at a = 2
+/// m/s^2.
 inline constexpr double kContactTimeFactor = 2.6;
 inline constexpr double kContactStiffness = 3.094e9;  ///< [m^-0.5 s^-2] k/m
 

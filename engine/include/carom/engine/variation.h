@@ -33,9 +33,10 @@ struct VariedShot {
 
 /// A scene file and the rules by which its values vary.
 ///
-/// A rule is KEY=DISTRIBUTION. KEY is written as in the file, with dots: cue.speed, balls.mu_b, rack.seed. One
-/// element of an array is named by its number from 0 or by its name (x, y, z; side, height): cue.offset.side.
-/// Balls go by their ids, parts of an outline by their names: ball.cue.position.x, table.pocket.p1.radius.
+/// A rule is KEY=DISTRIBUTION. KEY is written as in the file, with dots: cue.speed, balls.mu_b, rack.seed.
+/// One element of an array is named by its number from 0 or by its name (x, y, z; side, height):
+/// cue.offset.side. Balls go by their ids, parts of an outline by their names: ball.cue.position.x,
+/// table.pocket.p1.radius.
 ///
 ///   uniform(a,b)                a <= x < b
 ///   normal(sd), normal(mean,sd) without a mean, around the number in the file
@@ -57,7 +58,8 @@ class Variation {
 
     const Scene& base() const;  ///< the file as it is
     const std::vector<std::string>& keys() const;
-    /// The unit of what the rule number `key` draws: "m/s", "degrees"; "" where it has none, or is no number of the scene.
+    /// The unit of what the rule number `key` draws: "m/s",
+    /// "degrees"; "" where it has none, or is no number of the scene.
     std::string unit(std::size_t key) const;
 
     /// What that rule draws: it goes by the rule and not by what happens to come.
@@ -67,11 +69,13 @@ class Variation {
     /// size), there is no scene but an error: all shots share the columns of one table.
     VariedShot shot(std::uint64_t index) const;
 
-    /// The quick way to the same shot: puts its numbers into a scene that differs from base() in nothing but the values of these
-    /// keys. Takes no memory once `values` has its size, unless the rack varies.
+    /// The quick way to the same shot: puts its numbers into a scene that differs from base() in nothing but
+    /// the values of these keys. Takes no memory once `values` has its size, unless the rack varies.
     /// @param values  receives those of VariedShot
-    /// @return what has to be checked; or nothing, and then shot() has to make this shot: a key or a value of it is no number of
-    ///         the cue, the physics, the stop, the balls' material or their state, nor gap, jitter, seed or angle of the rack
+    /// @return what has to be checked; or nothing, and then shot() has to make this shot: a key or a value of
+    /// it is no number of
+    ///         the cue, the physics, the stop, the balls' material or their state, nor gap, jitter, seed or
+    ///         angle of the rack
     std::optional<Change> put(std::uint64_t index, Scene& scene, std::vector<std::string>& values) const;
 
     /// Of the file's content, the rules and the seed: the same number, the same shots.
@@ -83,7 +87,8 @@ class Variation {
     std::shared_ptr<const Parts> parts_;
 };
 
-/// A scene file with other values: KEY is written as in a rule above, and its VALUE as in the file ("3.5", "[0.1, 0.2]", "\"carom\"").
+/// A scene file with other values: KEY is written as in a rule above, and its VALUE as in the file ("3.5",
+/// "[0.1, 0.2]", "\"carom\"").
 /// @return the new file, without its comments; whether it is a valid scene is for parse_scene to say
 /// @throws SceneError for text that is no TOML, VariationError for a key or a value that cannot be read
 struct NewValue {

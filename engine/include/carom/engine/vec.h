@@ -1,4 +1,5 @@
-// Vectors of the engine. Planar sums (x, y) are taken as Vec2 so that swapping the axes swaps nothing but names.
+// Vectors of the engine. Planar sums (x, y) are taken as
+// Vec2 so that swapping the axes swaps nothing but names.
 #pragma once
 
 #include <Eigen/Core>
@@ -51,8 +52,8 @@ inline double cross(const Vec2& a, const Vec2& b) {
     return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Distance of p from the segment between two points that differ. The cross product keeps it exact to rounding where p is
-/// close to the line.
+/// Distance of p from the segment between two points that differ. The
+/// cross product keeps it exact to rounding where p is close to the line.
 inline double distance_to_segment(const Vec2& p, const Vec2& from, const Vec2& to) {
     const Vec2 along = to - from;
     const double s = dot(p - from, along);

@@ -22,7 +22,8 @@ struct Violation {
 ///   U1 every number finite                         U2 times never decrease
 ///   U3 no penetration deeper than 1e-12 m, and what the rounding of speeds has added up to
 ///   U4 energy never rises (slack 1e-12 of the first)
-///   U5 a ball-ball impact keeps the pair's momentum up to the cloth's impulse and the tolerance to which the impact is
+///   U5 a ball-ball impact keeps the pair's momentum up to the cloth's impulse and the tolerance to which the
+///   impact is
 ///      solved; exactly where mu_s = 0
 ///   U6 w . n is kept, and the two spins change alike, where mu_s = 0
 ///   U7 a rolling ball does not slip                U8 no more than kEventCap events in kEventCapSpan

@@ -3,7 +3,8 @@
 
 namespace carom::detail {
 
-/// A coefficient of the tableau. h is multiplied first and then divided: that order is part of the results' bits.
+/// A coefficient of the tableau. h is multiplied first and
+/// then divided: that order is part of the results' bits.
 struct Fraction {
     double numerator, denominator;
 };

@@ -1,7 +1,7 @@
-// Cushion model `han_2005`: Han, "Dynamics in carom and three cushion billiards", J. Mech. Sci. Tech. 19 (2005), 976, with the
-// misprints of equations 14c and 21a mended. Frame: X into the cushion, Z up, Y = Z x X. s, c: sine and
-// cosine of the nose's height angle. S: slip at the nose (S_x along the slope, S_y along the cushion); N:
-// normal impulse; P: tangential impulse (per mass).
+// Cushion model `han_2005`: Han, "Dynamics in carom and three cushion billiards", J. Mech. Sci. Tech. 19
+// (2005), 976, with the misprints of equations 14c and 21a mended. Frame: X into the cushion, Z up, Y = Z x
+// X. s, c: sine and cosine of the nose's height angle. S: slip at the nose (S_x along the slope, S_y along
+// the cushion); N: normal impulse; P: tangential impulse (per mass).
 #include <algorithm>
 #include <cmath>
 

@@ -1,16 +1,18 @@
 // Cushion model `mathavan_2010`: Mathavan, Jackson, Parkin, "A theoretical analysis of billiard ball dynamics
-// under cushion impacts", Proc. IMechE C 224 (2010). The published code integrates by explicit Euler steps in the
-// normal impulse; here the error per step is controlled.
+// under cushion impacts", Proc. IMechE C 224 (2010). The published code integrates by explicit Euler steps in
+// the normal impulse; here the error per step is controlled.
 //
-// Frame: y points into the cushion, z up, and x = y x z. a = R w. s and c are the sine and cosine of the nose's height
-// angle. q is the friction of the nose (|q| <= f) against the slip I there, p that of the cloth (|p| <= mu_s N) against
-// the slip C, and N = max(0, s + c q_y) is the load on the cloth. Per unit of normal impulse over mass:
+// Frame: y points into the cushion, z up, and x = y x z. a = R w. s and c are the sine and cosine of the
+// nose's height angle. q is the friction of the nose (|q| <= f) against the slip I there, p that of the cloth
+// (|p| <= mu_s N) against the slip C, and N = max(0, s + c q_y) is the load on the cloth. Per unit of normal
+// impulse over mass:
 //   dv_x = -(q_x + p_x)          da_x = -(5/2) (q_y + p_y)       I = (v_x + s a_y - c a_z, -s v_y + a_x)
 //   dv_y = -(c - s q_y + p_y)    da_y = -(5/2) (s q_x - p_x)     C = (v_x - a_y, v_y + a_x)
 //                                da_z =  (5/2) c q_x
-// A slip gives q = f I/|I| and p = mu_s N C/|C|. Where a slip vanishes, the contact sticks if static friction can hold it,
-// which is the limit of explicit Euler steps that become ever smaller. Otherwise it goes on to slip in the direction in
-// which it is driven. The two contacts never stick at the same time, because that would stop the ball.
+// A slip gives q = f I/|I| and p = mu_s N C/|C|. Where a slip vanishes, the contact sticks if static friction
+// can hold it, which is the limit of explicit Euler steps that become ever smaller. Otherwise it goes on to
+// slip in the direction in which it is driven. The two contacts never stick at the same time, because that
+// would stop the ball.
 //
 // The independent variable is the fall of v_y, from the approach speed (1, all velocities are relative to it)
 // to 0 and on until the work of restitution is e^2 times that of compression. Method: Dormand and Prince 5(4)
@@ -26,15 +28,15 @@ namespace carom {
 namespace detail {
 namespace {
 
-// [of the approach speed] Error allowed in each step. The error of a result, after about ten steps, is about as large,
-// and far below the default tolerance of a ball-ball impact.
+// [of the approach speed] Error allowed in each step. The error of a result, after about ten steps, is about
+// as large, and far below the default tolerance of a ball-ball impact.
 constexpr double kCushionTolerance = 1e-7;
-// [of the approach speed] A nose that can stick is taken to stick below this slip. What that leaves out is of second
-// order (docs/reference/physics.md, "Cushion impact").
+// [of the approach speed] A nose that can stick is taken to stick below this slip. What that leaves out is of
+// second order (docs/reference/physics.md, "Cushion impact").
 constexpr double kCushionStick = 3e-5;
-// [of the approach speed] A nose that has stopped to stick slips by less than this for a while. Its direction then follows
-// the drive without delay, which makes the equations stiff, so it is set to that of the drive. What that leaves out is of
-// second order: about the square root of this constant times its square.
+// [of the approach speed] A nose that has stopped to stick slips by less than this for a while. Its direction
+// then follows the drive without delay, which makes the equations stiff, so it is set to that of the drive.
+// What that leaves out is of second order: about the square root of this constant times its square.
 constexpr double kCushionCreep = 1e-4;
 constexpr int kCushionSteps = 5000;  // [-] bound on its steps; an impact takes 3 to 300
 
@@ -91,7 +93,8 @@ class Impact {
     }
     Forces forces(const State& y) const {
         const Vec2 nose = laws_.nose_slip(y), cloth = laws_.cloth_slip(y);
-        // A slip of rounding size has no direction; the contact goes where update_stick_state() found that it is driven.
+        // A slip of rounding size has no direction; the contact
+        // goes where update_stick_state() found that it is driven.
         const double nose_size = norm(nose), cloth_size = norm(cloth);
         const Vec2 cloth_direction = no_cloth_slip(cloth_size) ? cloth_direction_ : Vec2(cloth / cloth_size);
         if (nose_creeps_) return forces(driven_nose(cloth_direction), cloth_direction);
@@ -173,8 +176,9 @@ class Impact {
         return steps_ < kLateSteps ? kLateStick : kLateStick * (1 << std::min(10, steps_ / kLateSteps));
     }
 
-    // Takes away what is left of the slip at a nose that sticks from now on, by the friction that would do it:
-    // when it does makes no difference to first order, because a stuck nose takes up the drive in between.
+    // Takes away what is left of the slip at a nose that sticks from now on,
+    // by the friction that would do it: when it does makes no difference to
+    // first order, because a stuck nose takes up the drive in between.
     void end_slip(const Vec2& slip) {
         const Vec2 mu = nose_hold_clamped() ? Vec2(0.0, 0.0) : Vec2(laws_.mu * laws_.c * cloth_direction_);
         const double q_y = slip.y() / (laws_.s * laws_.s + 2.5 + (2.5 - laws_.s) * mu.y());
@@ -210,7 +214,8 @@ class Impact {
         return (direction - was).squaredNorm();
     }
 
-    // Most that v_y may fall before a slip vanishes; a little less, so that its direction is still one at the end.
+    // Most that v_y may fall before a slip vanishes; a little
+    // less, so that its direction is still one at the end.
     double until_gone(const Vec2& slip, const Vec2& rate) const {
         const double size = norm(slip);
         const double closing = size > zero_slip() ? -(slip.x() * rate.x() + slip.y() * rate.y()) / size : 0.0;
@@ -345,8 +350,8 @@ bool cushion_mathavan_2010_to(const CushionContact& p, const Vec2& normal, Vec3&
     return true;
 }
 
-// A ball cannot jam while the normal velocity falls all along, f_c s + mu_s (s + f_c c) < c, and while the cloth cannot hold the
-// ball at any friction of the nose.
+// A ball cannot jam while the normal velocity falls all along, f_c s + mu_s (s + f_c c) < c, and while the
+// cloth cannot hold the ball at any friction of the nose.
 bool mathavan_2010_ends(const CushionContact& p) {
     const double s = (p.height - p.R) / p.R, c = std::sqrt((1.0 - s) * (1.0 + s)), f = p.f_c;
     if (!(f * std::abs(s) + p.mu_s * (std::abs(s) + f * c) < c)) return false;

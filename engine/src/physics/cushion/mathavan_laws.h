@@ -1,5 +1,5 @@
-// The laws of the cushion model `mathavan_2010` (equations and letters: mathavan.cpp): slips, what static friction would need, and
-// what a pair of friction forces changes. Nothing here knows of steps.
+// The laws of the cushion model `mathavan_2010` (equations and letters: mathavan.cpp): slips, what static
+// friction would need, and what a pair of friction forces changes. Nothing here knows of steps.
 #pragma once
 
 #include <algorithm>

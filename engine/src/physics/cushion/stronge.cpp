@@ -57,8 +57,9 @@ struct Swing {
 };
 
 // When the spring's force reaches f times the normal force. h = f F - |s| / eta obeys h'' + omega^2 h = f F
-// (omega^2 - 1) > 0 in compression and starts there from h = h' = 0 (or h' > 0), and omega (t_c - t0) < pi, so that
-// h > 0: the nose lets go in restitution only. There the first sign change is bracketed on a grid and bisected.
+// (omega^2 - 1) > 0 in compression and starts there from h = h' = 0 (or h' > 0), and omega (t_c - t0) < pi,
+// so that h > 0: the nose lets go in restitution only. There the first sign change is bracketed on a grid and
+// bisected.
 double release_time(const Swing& swing, const NormalForce& normal, double f) {
     const auto margin = [&](double t) { return f * normal.force(t) - std::abs(swing.deflection(t)) / kEta; };
     const double from = std::max(swing.t0, kCompression), end = normal.end();

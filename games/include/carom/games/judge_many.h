@@ -11,8 +11,8 @@
 
 namespace carom::games {
 
-/// What comes of the shots, in memory of the caller's: arrays of n, and of n x balls in the order of Scene::ball. Of a shot that does not
-/// end at rest nothing is written.
+/// What comes of the shots, in memory of the caller's: arrays of n, and of n x balls in the order of
+/// Scene::ball. Of a shot that does not end at rest nothing is written.
 struct JudgedArrays {
     /// n x balls x 2 [m]: behind the shot, x and y in turns; NaN for a ball that is not on the table
     double* xy = nullptr;
@@ -28,8 +28,8 @@ struct JudgedArrays {
 /// The state of a game in the middle of a turn of player 0, who has these balls of eight-ball.
 State state_of_turn(Game game, Group group);
 
-/// Plays shots as simulate_many() does, and each thread judges what it has played: by judge(), for player 0 in the middle of a turn. Of
-/// eight-ball the first ball that counts and falls is taken as called.
+/// Plays shots as simulate_many() does, and each thread judges what it has played: by judge(), for player 0
+/// in the middle of a turn. Of eight-ball the first ball that counts and falls is taken as called.
 /// @param options  `judge` is not read
 /// @return the messages of simulate_many()
 /// @throws what simulate_many() and judge() throw

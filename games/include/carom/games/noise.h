@@ -20,20 +20,23 @@ struct Noise {
 
 /// Noise by name:
 ///   "none"     nothing
-///   "fastfiz"  0.075 m/s, aim 0.125 degrees, elevation 0.1 degrees, offset 0.5 mm both ways: the default of class GaussianNoise of
+///   "fastfiz"  0.075 m/s, aim 0.125 degrees, elevation 0.1 degrees, offset 0.5 mm both ways: the default of
+///   class GaussianNoise of
 ///              FastFiz (Noise.h), the simulator of the computational pool championships
-///   "ai3603"   0.1 m/s, aim and elevation 0.1 degrees, offset 0.003 ball radii both ways: noise_std of class PoolEnv of the
+///   "ai3603"   0.1 m/s, aim and elevation 0.1 degrees, offset 0.003 ball radii both ways: noise_std of class
+///   PoolEnv of the
 ///              course AI3603 (SJTU-RL2/AI3603-Billiards)
 /// @param R  radius of the ball that is struck [m], for those given in millimetres
 /// @throws std::invalid_argument for another name, or a radius that is not more than 0
 Noise noise_by_name(std::string_view name, double R);
 
-/// The strike that a player makes who means `cue`. A pure function: shot `index` of a seed always has the same errors, and they are
-/// those that a sweep with `--vary cue.speed=normal(sd)` and so on draws (keys cue.speed, cue.aim_deg, cue.elevation_deg,
-/// cue.offset.side, cue.offset.height).
+/// The strike that a player makes who means `cue`. A pure function: shot `index` of a seed always has the
+/// same errors, and they are those that a sweep with `--vary cue.speed=normal(sd)` and so on draws (keys
+/// cue.speed, cue.aim_deg, cue.elevation_deg, cue.offset.side, cue.offset.height).
 ///
-/// The result is a strike that a scene takes (legal_strike): a negative speed becomes 0, an elevation below 0 the level cue, and an
-/// offset beyond the rim goes straight towards the centre until it is on it. So the errors at such an end are not normal any more.
+/// The result is a strike that a scene takes (legal_strike): a negative speed becomes 0, an elevation below 0
+/// the level cue, and an offset beyond the rim goes straight towards the centre until it is on it. So the
+/// errors at such an end are not normal any more.
 /// @throws std::invalid_argument for a number that is not finite, or a negative standard deviation
 Cue with_noise(const Cue& cue, const Noise& sd, std::uint64_t seed, std::uint64_t index);
 

@@ -1,9 +1,10 @@
-// Rules of games: what is legal, and what came of a shot. Pure functions of a state, of the balls and of a record.
+// Rules of games: what is legal, and what came of a shot.
+// Pure functions of a state, of the balls and of a record.
 //
-// Eight-ball and nine-ball: World Pool-Billiard Association, The Rules of Play, effective 15 March 2016 ("WPA").
-// Three-cushion: Union Mondiale de Billard, World rules of carom billiard ("UMB").
-// Snooker: World Professional Billiards and Snooker Association, Official rules, section 3 ("WPBSA").
-// Sum to three: the game of that name of pooltool 0.6.0 and LightZero's zoo.
+// Eight-ball and nine-ball: World Pool-Billiard Association, The Rules of Play, effective 15 March 2016
+// ("WPA"). Three-cushion: Union Mondiale de Billard, World rules of carom billiard ("UMB"). Snooker: World
+// Professional Billiards and Snooker Association, Official rules, section 3 ("WPBSA"). Sum to three: the game
+// of that name of pooltool 0.6.0 and LightZero's zoo.
 //
 // What no record shows is not judged: feet, touched balls, double hits, pushes, time, misses of snooker.
 #pragma once
@@ -40,7 +41,8 @@ constexpr auto names_of(BallOn) {
 /// More points than any game has, and fewer than an int holds.
 inline constexpr int kMostPoints = 1000000000;
 
-/// All that a game remembers between two shots, beside where the balls lie. Players are 0 and 1. A game reads only what is its own.
+/// All that a game remembers between two shots, beside where the
+/// balls lie. Players are 0 and 1. A game reads only what is its own.
 struct State {
     Game game = Game::kEightBall;
     int turn = 0;                        ///< whose shot it is
@@ -61,8 +63,8 @@ struct State {
 /// A new game. @param first  the player who begins  @param target  as State::target
 State new_game(Game game, int first = 0, int target = 0);
 
-/// What a player says before a shot. Snooker: `ball` is the nominated colour or free ball; without one it is the ball that is hit
-/// first.
+/// What a player says before a shot. Snooker: `ball` is the nominated
+/// colour or free ball; without one it is the ball that is hit first.
 struct Call {
     std::string ball;       ///< id; "" for none
     std::string pocket;     ///< id, "p1", ...
@@ -82,8 +84,8 @@ struct Legal {
 };
 
 /// @param balls  ids of the balls on the table. The cue ball need not be among them while it is in hand.
-/// Ids are those of racks: cue, 1 to 15; white, yellow, red; snooker has reds with numbers. @throws std::invalid_argument where the
-/// game has no ball left to play
+/// Ids are those of racks: cue, 1 to 15; white, yellow, red; snooker has reds with numbers. @throws
+/// std::invalid_argument where the game has no ball left to play
 Legal legal(const State& state, std::span<const std::string> balls);
 
 enum class Foul : std::uint8_t {
@@ -164,24 +166,25 @@ struct Verdict {
 };
 
 /// What came of a shot. @param state  before it
-/// @throws std::invalid_argument for a record that does not end at rest, in which no cue strikes, without the game's balls, or for a
-/// game that is over
+/// @throws std::invalid_argument for a record that does not end at rest, in which no cue strikes, without the
+/// game's balls, or for a game that is over
 Verdict judge(const State& state, const Record& record, const Call& call = {});
 
 /// The ball that the player strikes whose turn it is: "cue", or of three-cushion "white" or "yellow".
 const char* cue_ball(const State& state);
 
-/// Whether the cue ball may be placed there before the next shot: it is in hand there, lies on the table between the noses, and
-/// overlaps no ball. @param record  of the shot before
+/// Whether the cue ball may be placed there before the next shot: it is in hand there, lies on the table
+/// between the noses, and overlaps no ball. @param record  of the shot before
 /// @throws std::invalid_argument for an option with balls that the record does not have
 bool may_place(const Record& record, const Option& option, const Vec2& place);
 
-/// The table before the next shot, without a cue: what is gone is gone, what is respotted is back, the cue ball is placed.
+/// The table before the next shot, without a cue: what is gone is gone, what is respotted is back, the cue
+/// ball is placed.
 /// @param scene   that of the record
 /// @param option  one of the verdict's; not one that racks anew
 /// @param place   of the cue ball: needed where it is gone, allowed where it is in hand
-/// @throws std::invalid_argument for a place that is missing or not allowed (may_place), for a new rack, for a game that is over, and
-/// for an option or a scene with other balls than the record's
+/// @throws std::invalid_argument for a place that is missing or not allowed (may_place), for a new rack, for
+/// a game that is over, and for an option or a scene with other balls than the record's
 Scene table_after(const Scene& scene, const Record& record, const Option& option,
                   const std::optional<Vec2>& place = std::nullopt);
 

@@ -38,7 +38,8 @@ struct Shot {
     bool fell(int ball) const;  ///< into a pocket
     bool left(int ball) const;  ///< the table
     bool gone(int ball) const { return fell(ball) || left(ball); }
-    /// Balls that were driven to a cushion after `time`: they met one that they were not frozen to, fell, or left the table.
+    /// Balls that were driven to a cushion after `time`: they met
+    /// one that they were not frozen to, fell, or left the table.
     std::vector<int> driven_after(double time) const;
 };
 
@@ -48,7 +49,8 @@ Shot shot_of(const Record& record);
 /// Index of a ball, or -1.
 int index_of(const Record& record, std::string_view id);
 
-/// How far a ball is at most in the direction `along` (a unit vector) until `time`: the greatest along * position [m].
+/// How far a ball is at most in the direction `along` (a unit
+/// vector) until `time`: the greatest along * position [m].
 double farthest(const Record& record, int ball, const Vec2& along, double time);
 
 }  // namespace carom::games

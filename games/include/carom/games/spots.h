@@ -19,7 +19,8 @@ struct Lying {
     double gap = 0.0;           ///< [m] how far others have to stay away; 0: they may touch it
 };
 
-/// Spots on the long axis: the head string, the middle and the foot string at a quarter, a half and three quarters of the length.
+/// Spots on the long axis: the head string, the middle and the foot
+/// string at a quarter, a half and three quarters of the length.
 Vec2 head_spot(const Table& table);
 Vec2 center_spot(const Table& table);
 /// The colours of snooker, from the highest value, 7, down to 2.
@@ -35,33 +36,38 @@ constexpr auto names_of(InHand) {
 }
 /// y of the head string [m]; behind it lies what is nearer to the head rail, y = the table's corner.
 double head_string(const Table& table);
-/// Whether a ball with its centre there is in the area: of kHeadString behind the string and not on it, of kD in the D or on its lines.
+/// Whether a ball with its centre there is in the area: of kHeadString
+/// behind the string and not on it, of kD in the D or on its lines.
 bool in_area(const Table& table, InHand area, const Vec2& place);
 
 /// Whether a ball of radius R may lie there: it overlaps none, and keeps the gap of each.
 bool is_free(const Vec2& place, double R, std::span<const Lying> others);
 
-/// Whether a ball of radius R that moves straight from one place to another meets none of them; one that it only grazes is met.
+/// Whether a ball of radius R that moves straight from one place
+/// to another meets none of them; one that it only grazes is met.
 bool is_clear(const Vec2& from, const Vec2& to, double R, std::span<const Lying> others);
 
-/// The free place nearest to `from` on the line from there along `direction` (a unit vector), at most `reach` away; nothing
-/// where all of it is blocked. A ball that is in the way is touched exactly (to rounding, and never overlapped), or at its gap.
+/// The free place nearest to `from` on the line from there along `direction` (a unit
+/// vector), at most `reach` away; nothing where all of it is blocked. A ball that is
+/// in the way is touched exactly (to rounding, and never overlapped), or at its gap.
 std::optional<Vec2> nearest_free(const Vec2& from, const Vec2& direction, double reach, double R,
                                  std::span<const Lying> others);
 
-/// [m] What a spotted ball keeps away from the cue ball (WPA 1.4), and a snooker colour from every ball: half a millimetre, which
-/// the eye sees.
+/// [m] What a spotted ball keeps away from the cue ball (WPA 1.4), and a
+/// snooker colour from every ball: half a millimetre, which the eye sees.
 inline constexpr double kSpotGap = 5e-4;
 
-/// A pool ball on the long string: on `spot` or as near to it as can be, towards the foot rail; where that is all blocked, towards
-/// the head rail (WPA 1.4). @throws std::invalid_argument where the whole string is blocked
+/// A pool ball on the long string: on `spot` or as near to it as can be,
+/// towards the foot rail; where that is all blocked, towards the head rail
+/// (WPA 1.4). @throws std::invalid_argument where the whole string is blocked
 Vec2 spot_on_long_string(const Table& table, const Vec2& spot, double R, std::span<const Lying> others);
 
 /// The radius of the D [m], whose middle is the spot of the brown.
 double radius_of_d(const Table& table);
 
-/// A snooker colour: its own spot; or the free spot of the highest colour; or as near to its own spot as can be, towards the top
-/// (foot) cushion, or the other way where there is no room. `others` may have any gap; a spot is occupied where they are touched.
+/// A snooker colour: its own spot; or the free spot of the highest colour; or as near to
+/// its own spot as can be, towards the top (foot) cushion, or the other way where there
+/// is no room. `others` may have any gap; a spot is occupied where they are touched.
 Vec2 spot_snooker(const Table& table, std::string_view colour, double R, std::span<const Lying> others);
 
 }  // namespace carom::games

@@ -45,7 +45,8 @@ enum class ImpactStatus : unsigned char {
 /// What is wrong, in words; "" for kOk and kNotApproaching.
 const char* describe(ImpactStatus status) noexcept;
 
-/// How an impact by tolerance was solved (tolerance.h); kNone from every other kernel and where nothing was computed.
+/// How an impact by tolerance was solved (tolerance.h); kNone
+/// from every other kernel and where nothing was computed.
 enum class ToleranceMethod : unsigned char {
     kNone,
     kClosedFrictionless,  ///< no friction between the balls: one formula

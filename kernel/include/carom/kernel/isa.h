@@ -1,4 +1,5 @@
-// The choice of the instruction set at run time. All instruction sets give the same bits; they differ in speed only.
+// The choice of the instruction set at run time. All instruction
+// sets give the same bits; they differ in speed only.
 #pragma once
 
 namespace carom::kernel {
@@ -26,8 +27,9 @@ Isa best_isa() noexcept;
 enum class KernelKind : unsigned char { kMarch, kSummedMarch, kTolerance, kToleranceBatch, kContactPhase };
 inline constexpr int kKernelKinds = 5;
 
-/// What Isa::kFastest stands for here: the available one that was measured to be fastest on this kind of processor
-/// (lab/notes/2026-11-ladder.md), and the widest one on processors that were not measured. Never kFastest.
+/// What Isa::kFastest stands for here: the available one that was measured
+/// to be fastest on this kind of processor (lab/notes/2026-11-ladder.md),
+/// and the widest one on processors that were not measured. Never kFastest.
 Isa fastest_isa(KernelKind kind) noexcept;
 /// The row of measurements that holds for this processor: "AMD Zen 5"; null where it was not measured.
 const char* measured_processor() noexcept;
@@ -42,8 +44,8 @@ struct IsaChoice {
     char problem[160];
 };
 
-/// The instruction set that CAROM_ISA in the environment names; where it is unset or empty, Isa::kFastest. An unknown or
-/// unavailable name is a problem and never replaced by another.
+/// The instruction set that CAROM_ISA in the environment names; where it is unset or empty, Isa::kFastest. An
+/// unknown or unavailable name is a problem and never replaced by another.
 IsaChoice isa_from_environment() noexcept;
 
 }  // namespace carom::kernel

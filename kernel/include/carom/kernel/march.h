@@ -14,24 +14,26 @@ namespace carom::kernel {
 /// about 40 the march gains energy by construction (hard case H24).
 ///
 /// @param n  substeps N >= 1; fewer is kBadParameter.
-/// The number of steps is bounded: the status of an impact that has not ended after kMarchStepLimit * n steps is
-/// kStepLimit.
+/// The number of steps is bounded: the status of an impact that has not ended after kMarchStepLimit * n steps
+/// is kStepLimit.
 using MarchFunction = void (*)(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
                                ImpactResult& result) noexcept;
 
 /// The march built for one instruction set (which must be available). All give the same bits.
 MarchFunction march_function(Isa isa) noexcept;
 
-/// The same march without visiting every step: the Euler sequence is summed exactly over blocks of up to 1024 steps.
-/// Status and step count are those of march_function(). No velocity, R w among them, differs by more than
-/// kSummedDifference of the approach speed plus kSummedRounding * n of the largest speed that goes in, which is what the
-/// published march itself may round. Where rounding decides (ties of the last step, chatter near stick), and for few
-/// substeps, it is the published march, bit for bit. All instruction sets give the same bits.
+/// The same march without visiting every step: the Euler sequence is summed exactly over blocks of up to 1024
+/// steps. Status and step count are those of march_function(). No velocity, R w among them, differs by more
+/// than kSummedDifference of the approach speed plus kSummedRounding * n of the largest speed that goes in,
+/// which is what the published march itself may round. Where rounding decides (ties of the last step, chatter
+/// near stick), and for few substeps, it is the published march, bit for bit. All instruction sets give the
+/// same bits.
 MarchFunction summed_march_function(Isa isa) noexcept;
 
 inline constexpr double kSummedDifference = 1e-10, kSummedRounding = 0x1p-53;
 
-/// An impact of v_n > 0 ends after N + 1 to about N + 31 steps; only degenerate parameters come near this bound.
+/// An impact of v_n > 0 ends after N + 1 to about N + 31
+/// steps; only degenerate parameters come near this bound.
 inline constexpr long kMarchStepLimit = 64;
 
 }  // namespace carom::kernel

@@ -14,35 +14,36 @@ namespace carom::kernel {
 inline constexpr double kTightestTolerance = 1e-13;
 inline constexpr double kLoosestTolerance = 1e-1;
 
-/// Friction coefficients above this are kBadParameter here. Up to this value no ball can stick to the cloth during an
-/// impact, as the equations that are solved assume.
+/// Friction coefficients above this are kBadParameter here. Up to this value no ball can stick to the cloth
+/// during an impact, as the equations that are solved assume.
 inline constexpr double kLargestFriction = 1.0;
 
 /// The mass of one ball may be this multiple of the other's: so far the bound on the error is tested.
 inline constexpr double kLargestMassRatio = 10.0;
 
-/// [-] What an impulse does to a ball of mass m, as a share of what it does to one of two equal balls with the reduced
-/// mass that m and `other` have: 2 other/(m + other), from 0 to 2. The friction of the pressed ball on the cloth acts
-/// with it: its product with mu_s may be kLargestFriction at most.
+/// [-] What an impulse does to a ball of mass m, as a share of what it does to one of two equal balls with
+/// the reduced mass that m and `other` have: 2 other/(m + other), from 0 to 2. The friction of the pressed
+/// ball on the cloth acts with it: its product with mu_s may be kLargestFriction at most.
 constexpr double impulse_share(double m, double other) {
     return 2.0 / (1.0 + m / other);
 }
 
-/// Solves one impact between balls of one radius; the masses may differ (docs/reference/physics.md, equation 12).
+/// Solves one impact between balls of one radius; the masses
+/// may differ (docs/reference/physics.md, equation 12).
 ///
-/// @param tolerance  largest error of any component of v and of R w after the impact, as a share of the approach speed;
-/// a tolerance looser than 1e-3 is solved as 1e-3. Rounding adds a few units in the last place of the largest speed
-/// before the impact.
-/// `result.steps` is the number of evaluations of the slip directions over the impact (sweeps), 1 for a
-/// closed form; `result.method` is what was used.
+/// @param tolerance  largest error of any component of v and of R w after the impact, as a share of the
+/// approach speed; a tolerance looser than 1e-3 is solved as 1e-3. Rounding adds a few units in the last
+/// place of the largest speed before the impact. `result.steps` is the number of evaluations of the slip
+/// directions over the impact (sweeps), 1 for a closed form; `result.method` is what was used.
 using ToleranceFunction = void (*)(const Ball& ball1, const Ball& ball2, const ImpactParams& params,
                                    double tolerance, ImpactResult& result) noexcept;
 
 /// The kernel built for one instruction set (which must be available). All give the same bits.
 ToleranceFunction tolerance_function(Isa isa) noexcept;
 
-/// Solves every impact of a batch; the bound holds for each. All instruction sets give the same bits, whatever
-/// the length of the batch and the place of an impact in it; they need not be the bits of ToleranceFunction.
+/// Solves every impact of a batch; the bound holds for each. All instruction
+/// sets give the same bits, whatever the length of the batch and the place of
+/// an impact in it; they need not be the bits of ToleranceFunction.
 using ToleranceBatchFunction = void (*)(const ImpactBatch& batch, double tolerance,
                                         const ImpactBatchResult& result) noexcept;
 

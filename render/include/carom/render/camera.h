@@ -1,4 +1,5 @@
-// A perspective camera. Lengths in m, table frame (z up). Pixels: x to the right, y down, pixel centres at +0.5.
+// A perspective camera. Lengths in m, table frame (z up).
+// Pixels: x to the right, y down, pixel centres at +0.5.
 #pragma once
 
 #include <optional>
@@ -24,7 +25,8 @@ struct Camera {
     /// Distance along the view direction [m].
     double depth(const Vec3& point) const;
 
-    /// The pixel at which a point appears; it may lie outside the image. Empty if the point is not in front of the eye.
+    /// The pixel at which a point appears; it may lie outside the
+    /// image. Empty if the point is not in front of the eye.
     std::optional<Vec2> project(const Vec3& point) const;
 
     /// Pixels per metre perpendicular to the view direction, at the depth of the point.
@@ -39,7 +41,8 @@ struct Bounds {
     double top = 0.0;  ///< greatest height of the contents [m]
 };
 
-/// A camera far above the box, which fills the image; its long side is parallel to the longer side of the image.
+/// A camera far above the box, which fills the image; its
+/// long side is parallel to the longer side of the image.
 Camera top_camera(const Bounds& bounds, FrameSize size);
 
 }  // namespace carom::render

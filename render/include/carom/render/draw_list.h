@@ -46,7 +46,8 @@ using Rgba = std::array<float, 4>;  ///< sRGB and opacity, 0..1
 
 enum class LineLayer : std::uint8_t { kUnderBalls, kOverBalls };
 
-/// A straight line in the table frame [m] with a width in pixels and round ends. Nearer parts of the table hide it.
+/// A straight line in the table frame [m] with a width in
+/// pixels and round ends. Nearer parts of the table hide it.
 struct DrawLine {
     Vec3 a{0.0, 0.0, 0.0}, b{0.0, 0.0, 0.0};
     float width = 2.0F;
@@ -73,8 +74,9 @@ struct DrawList {
     std::vector<DrawBox> boxes;
     /// Samples per pixel of the table, which is redrawn only when the camera or the table changes
     int table_samples = 16;
-    /// For a camera that is different in each frame: the table is drawn with one sample per pixel, and then its edges
-    /// are smoothed by the share of each pixel that they cut off. The mesh should be made with Edges::kSharp.
+    /// For a camera that is different in each frame: the table is drawn with one
+    /// sample per pixel, and then its edges are smoothed by the share of each
+    /// pixel that they cut off. The mesh should be made with Edges::kSharp.
     bool camera_moves = false;
 };
 

@@ -26,7 +26,8 @@ class KeptImage {
 /// For those who make something of one image after the other: where it may differ from the one before.
 class ChangedBoxes {
   public:
-    /// Boxes outside of which the image is equal to the one of the last call; the whole image if nothing is known.
+    /// Boxes outside of which the image is equal to the one
+    /// of the last call; the whole image if nothing is known.
     std::vector<PixelBox> next(const KeptImage& image);
 
     /// The same for an image that may show anything, and the next call knows nothing of it.

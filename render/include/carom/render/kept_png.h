@@ -9,7 +9,8 @@
 
 namespace carom::render {
 
-/// Encodes as 8-bit RGB. The bytes depend on the pixels alone: not on the images before, nor on which encoder makes them.
+/// Encodes as 8-bit RGB. The bytes depend on the pixels alone:
+/// not on the images before, nor on which encoder makes them.
 class KeptPng {
   public:
     KeptPng();
@@ -17,8 +18,8 @@ class KeptPng {
     KeptPng(KeptPng&&) noexcept;
     KeptPng& operator=(KeptPng&&) noexcept;
 
-    /// Encodes anew only the pieces of the picture that may differ from the last image. `bytes` is overwritten and its memory
-    /// is reused. @throws RenderError for an image without pixels
+    /// Encodes anew only the pieces of the picture that may differ from the last image. `bytes` is
+    /// overwritten and its memory is reused. @throws RenderError for an image without pixels
     void encode(const KeptImage& image, std::vector<std::uint8_t>& bytes);
 
     /// The same for an image of which nothing is known.

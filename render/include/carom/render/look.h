@@ -1,6 +1,6 @@
-// How a table and its balls look, for all that paint them. The build makes the same constants, with the same names, for the
-// shaders and for the pages (render/look.cmake), so each stands on a line of its own. A colour is a screen value: its square is
-// the radiance that is reflected.
+// How a table and its balls look, for all that paint them. The build makes the same constants, with the same
+// names, for the shaders and for the pages (render/look.cmake), so each stands on a line of its own. A colour
+// is a screen value: its square is the radiance that is reflected.
 #pragma once
 
 #include <array>

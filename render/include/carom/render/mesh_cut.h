@@ -14,8 +14,9 @@ using Corners = std::vector<MeshVertex>;
 
 enum class Axis : std::uint8_t { kX, kY };
 
-/// The parts of a polygon below and above the plane at which the coordinate [m, relative to TableMesh::origin] has the
-/// value `at`; a part may be empty. Two polygons with a common edge get the same new corner on it, bit for bit.
+/// The parts of a polygon below and above the plane at which the coordinate [m,
+/// relative to TableMesh::origin] has the value `at`; a part may be empty. Two
+/// polygons with a common edge get the same new corner on it, bit for bit.
 std::pair<Corners, Corners> cut(const Corners& polygon, Axis axis, float at);
 
 }  // namespace carom::render

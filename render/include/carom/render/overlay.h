@@ -18,7 +18,8 @@ struct Overlay {
     bool any() const { return trails || events || spin || ghost || clock || margin; }
 };
 
-/// "trails,clock" ("trails=ball": in the colours of the balls), or "all" or "" (none). @throws RenderError that names an unknown overlay and lists the known ones
+/// "trails,clock" ("trails=ball": in the colours of the balls), or "all" or "" (none). @throws RenderError
+/// that names an unknown overlay and lists the known ones
 Overlay parse_overlay(std::string_view list);
 
 }  // namespace carom::render

@@ -24,7 +24,8 @@ class Renderer {
     /// pixels are the same as those of a complete drawing.
     void draw(const DrawList& list);
 
-    /// Sets a function that is called after every finished pass over the table; it may throw to stop. By default it is empty.
+    /// Sets a function that is called after every finished pass over
+    /// the table; it may throw to stop. By default it is empty.
     void on_table(std::function<void(int done, int total)> pass);
 
     /// Copies the pixels of the last draw().

@@ -47,14 +47,16 @@ struct SequenceOptions {
     std::function<double(long k)> frame_cost_ms;
     /// Samples per pixel of the table, which is drawn once per camera; not used if the camera moves
     int table_samples = 16;
-    /// zlib level 0..9: libpng encodes every frame as a whole. Default: only what changed is encoded (kept_png.h)
+    /// zlib level 0..9: libpng encodes every frame as a whole. Default: only what changed is encoded
+    /// (kept_png.h)
     std::optional<int> libpng_level;
     Backend backend = Backend::kAuto;
-    /// Number of threads that encode and write. 1: everything runs on the calling thread, so that the timings do not
-    /// disturb each other. 0: one per core, or 1 with an empty pattern, which is used for measurements.
+    /// Number of threads that encode and write. 1: everything runs on the
+    /// calling thread, so that the timings do not disturb each other. 0: one
+    /// per core, or 1 with an empty pattern, which is used for measurements.
     int jobs = 0;
-    /// Skip frames whose file is there, a whole PNG. A comment in each says of which picture and instant it is. Frames of other
-    /// pictures are drawn anew; where there are others only, it is an error.
+    /// Skip frames whose file is there, a whole PNG. A comment in each says of which picture and instant it
+    /// is. Frames of other pictures are drawn anew; where there are others only, it is an error.
     bool resume = false;
     RawSink raw;  ///< instead of PNG files; the pattern is not used
     RawFormat raw_format = RawFormat::kRgb;
@@ -78,9 +80,11 @@ double frame_time(double from, long k, double fps);
 /// @throws RenderError unless fps > 0 and both times are finite
 long frame_count(double from, double to, double fps);
 
-/// Renders and writes the frames (to a temporary name, then renamed). Creates the folder of the pattern if its
-/// parent exists. Frames with these numbers that are there go first, and behind them those of other pictures that carom drew; one
-/// frame by itself leaves the others. Another run with the same pattern is refused meanwhile. Skipped frames (`resume`) have no timing. Memory does not grow with the number of frames.
+/// Renders and writes the frames (to a temporary name, then renamed). Creates the folder of the pattern if
+/// its parent exists. Frames with these numbers that are there go first, and behind them those of other
+/// pictures that carom drew; one frame by itself leaves the others. Another run with the same pattern is
+/// refused meanwhile. Skipped frames (`resume`) have no timing. Memory does not grow with the number of
+/// frames.
 /// @throws RenderError naming the file; finished frames stay, and no incomplete file is left
 std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOptions& options);
 
@@ -91,9 +95,9 @@ std::string frame_path(const std::string& pattern, long k);
 /// Whether the pattern has a place for the number of a frame.
 bool is_numbered(const std::string& pattern);
 
-/// Writes a contact sheet: columns x rows pictures of the shot, row by row, each with its clock. Their times are
-/// evenly spaced from `from` to `to`, both included. The sheet is as wide as options.size, and each picture has its
-/// shape; the height of the sheet follows. pattern, frame, jobs and raw are not used.
+/// Writes a contact sheet: columns x rows pictures of the shot, row by row, each with its clock. Their times
+/// are evenly spaced from `from` to `to`, both included. The sheet is as wide as options.size, and each
+/// picture has its shape; the height of the sheet follows. pattern, frame, jobs and raw are not used.
 /// @throws RenderError
 void render_sheet(const Record& record, const SequenceOptions& options, int columns, int rows,
                   const std::string& path);

@@ -19,7 +19,8 @@ enum class Material : std::uint8_t {
     kInlay,    ///< diamonds
     kFloor,
     kShade,  ///< black, blended over the cloth; u is the opacity
-    kChalk,  ///< white, blended over the cloth; u is the opacity, v the distance from the middle in half widths
+    /// white, blended over the cloth; u is the opacity, v the distance from the middle in half widths
+    kChalk,
 };
 
 struct MeshVertex {
@@ -52,12 +53,12 @@ struct TableMesh {
     Lamp lamp;
 };
 
-/// kRounded: noses and rails have small bevels. kSharp: they have none, because strips that are thinner than a pixel
-/// would flicker under a camera that moves.
+/// kRounded: noses and rails have small bevels. kSharp: they have none, because
+/// strips that are thinner than a pixel would flicker under a camera that moves.
 enum class Edges : std::uint8_t { kRounded, kSharp };
 
-/// Makes the mesh. `visited`: positions that balls reach; they decide on which side of an open cushion its body
-/// lies, and which part of an unbounded cloth is shown. R: ball radius [m].
+/// Makes the mesh. `visited`: positions that balls reach; they decide on which side of an open cushion its
+/// body lies, and which part of an unbounded cloth is shown. R: ball radius [m].
 TableMesh make_table_mesh(const Table& table, double R, const std::vector<Vec2>& visited,
                           Edges edges = Edges::kRounded);
 

@@ -19,7 +19,8 @@
 namespace carom::tools {
 namespace {
 
-/// The converged runs must agree within this part of the target; otherwise differences from them are not called errors.
+/// The converged runs must agree within this part of the target;
+/// otherwise differences from them are not called errors.
 constexpr double kAgreement = 0.1;
 
 /// One setting: how to run it once, and what it gave.

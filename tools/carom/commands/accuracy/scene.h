@@ -76,8 +76,8 @@ double gain_of(const Plan& plan, const Record& record);
 /// The loosest power of ten that keeps gain x tolerance x kFlight within the target; nothing where that is
 /// below the tightest tolerance, which is where double precision ends.
 std::optional<double> deserved_tolerance(double gain, double target);
-/// [m] A relative error t of the speed after an impact gives a position error of t times the way to the next impact, which is
-/// about this long at most.
+/// [m] A relative error t of the speed after an impact gives a position error
+/// of t times the way to the next impact, which is about this long at most.
 inline constexpr double kFlight = 1.0;
 
 /// A plan of the same scene with another setting; exactly one of the two.

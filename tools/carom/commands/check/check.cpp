@@ -36,7 +36,8 @@ std::string kernel_line(const Plan& plan) {
                        name(physics.cloth_slip));
 }
 
-/// Which instruction set each kernel of the plan runs on. Of kernels that are not in the plan nothing is said.
+/// Which instruction set each kernel of the plan runs on.
+/// Of kernels that are not in the plan nothing is said.
 std::string isa_line(const Plan& plan) {
     const auto with = [&plan](std::string_view text) {
         return fmt::format("{} (available: {})", text, kernel::available_isas());

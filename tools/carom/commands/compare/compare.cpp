@@ -24,8 +24,8 @@ using Json = nlohmann::ordered_json;
 
 struct CompareArgs {
     std::string a, b;
-    /// [m] More than the default tolerance of impacts leaves (3.3e-5 in the snooker break, less in all other scenes that come with
-    /// carom, beside 1e-12), and less than one sees or measures on a table.
+    /// [m] More than the default tolerance of impacts leaves (3.3e-5 in the snooker break, less in all other
+    /// scenes that come with carom, beside 1e-12), and less than one sees or measures on a table.
     double tolerance = 1e-4;
     bool json = false;
 };
@@ -198,7 +198,8 @@ std::string difference_text(const ComparedShot& a, const ComparedShot& b, const 
     return out + "\n" + conclusion(d, tolerance) + "\n";
 }
 
-/// A shot that cannot be computed is bad input: the exit status of a failure, 1, is the answer that two shots differ.
+/// A shot that cannot be computed is bad input: the exit status
+/// of a failure, 1, is the answer that two shots differ.
 Record shot_to_compare(const std::string& path) {
     try {
         return read_shot(path, {});

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
-/// Where the square of |d0 + s b + s^2 c| may be largest inside of 0 < s < 1: the roots of its derivative, a cubic, by halving
-/// the pieces in which that only rises or only falls.
+/// Where the square of |d0 + s b + s^2 c| may be largest inside of 0 < s < 1: the roots of its derivative, a
+/// cubic, by halving the pieces in which that only rises or only falls.
 std::vector<double> turning_points(const Vec3& d0, const Vec3& b, const Vec3& c) {
     const double g0 = d0.dot(b), g1 = b.dot(b) + 2.0 * d0.dot(c), g2 = 3.0 * b.dot(c), g3 = 2.0 * c.dot(c);
     const auto slope = [&](double s) { return g0 + s * (g1 + s * (g2 + s * g3)); };

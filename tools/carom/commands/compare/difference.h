@@ -69,7 +69,8 @@ struct ShotDifference {
     bool same_bits = false;                   ///< the hashes are the same
     std::vector<std::string> only_a, only_b;  ///< balls that the other shot does not have
     EventDifference events;                   ///< of the balls that both have
-    /// [s] So long places are compared: to the end of the longer shot, or to that of one which was stopped while balls moved.
+    /// [s] So long places are compared: to the end of the longer
+    /// shot, or to that of one which was stopped while balls moved.
     double until = 0.0;
     std::vector<BallDifference> balls;  ///< those that both have, in the order of a
 

@@ -1,5 +1,6 @@
-// carom describe: the program described for others to read, a man page, a page of the documents, and completions for bash and
-// zsh. They are written from the table of options that is parsed, so that they cannot differ from it.
+// carom describe: the program described for others to read, a man page, a page
+// of the documents, and completions for bash and zsh. They are written from the
+// table of options that is parsed, so that they cannot differ from it.
 #include <fmt/format.h>
 
 #include <list>

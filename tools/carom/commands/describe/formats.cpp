@@ -173,7 +173,8 @@ std::string line_of(const Key& key, const std::string& standard) {
                        meaning_text(key));
 }
 
-/// The rows of a table, a line each; of the parts of a list, the first one with the name of the list in front.
+/// The rows of a table, a line each; of the parts of a
+/// list, the first one with the name of the list in front.
 template <class T, std::size_t kRows>
 std::string lines_of(const Field<T> (&fields)[kRows], const T& standard, const char* list = nullptr) {
     std::string text;

@@ -1,4 +1,5 @@
-// The formats of files, described for programs and people from the tables of their keys (carom/engine/field.h).
+// The formats of files, described for programs and people from the tables of their keys
+// (carom/engine/field.h).
 #pragma once
 
 #include <string>
@@ -8,16 +9,17 @@
 
 namespace carom::tools {
 
-/// record.schema.json beside this file, and docs/reference/scene_format.md as they were when the program was built.
+/// record.schema.json beside this file, and docs/reference/scene_format.md
+/// as they were when the program was built.
 const std::vector<PageFile>& describe_files();
 
 /// A JSON Schema of scene files: docs/reference/scene.schema.json.
 std::string scene_schema();
-/// A JSON Schema of record files: docs/reference/record.schema.json. Its fixed text stands beside this file, with null for what comes
-/// from the tables.
+/// A JSON Schema of record files: docs/reference/record.schema.json. Its fixed
+/// text stands beside this file, with null for what comes from the tables.
 std::string record_schema();
-/// The page of scene files: docs/reference/scene_format.md, its tables between the marks <!-- begin NAME --> and <!-- end NAME -->
-/// written anew.
+/// The page of scene files: docs/reference/scene_format.md, its tables
+/// between the marks <!-- begin NAME --> and <!-- end NAME --> written anew.
 std::string scene_format();
 
 }  // namespace carom::tools

@@ -20,8 +20,8 @@ class Gltf {
     /// Appends an object to a list of the file ("nodes", "meshes", ...), and returns its number.
     std::size_t add(const char* list, Json object);
 
-    /// Appends numbers as an accessor with least and greatest values. `type`: "SCALAR", "VEC2", "VEC3", "VEC4"; `target`: what a
-    /// GPU uses it for (34962 vertices), or 0. @returns its number
+    /// Appends numbers as an accessor with least and greatest values. `type`: "SCALAR", "VEC2", "VEC3",
+    /// "VEC4"; `target`: what a GPU uses it for (34962 vertices), or 0. @returns its number
     std::size_t add_floats(const std::vector<float>& values, const char* type, int target = 0);
     std::size_t add_indices(const std::vector<std::uint32_t>& indices);
     /// Appends a PNG file as an image. @returns the number of a texture that shows it

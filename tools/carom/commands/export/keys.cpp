@@ -12,7 +12,8 @@ namespace {
 
 /// [m] Places that differ by less are one: rounding of the engine, far below that of floats.
 constexpr double kSamePlace = 1e-9;
-/// [rad] between two keys of a rotation, and how far a constant rate between them may be off; [-] keys of one piece of motion.
+/// [rad] between two keys of a rotation, and how far a constant
+/// rate between them may be off; [-] keys of one piece of motion.
 constexpr double kLargestTurn = 0.5, kLargestError = 0.005, kMostKeys = 1e5;
 
 /// One segment between the instants at which it is in force.
@@ -36,7 +37,8 @@ std::vector<Piece> pieces_of(const Record& record, int ball) {
         // Where a segment ends by itself before the next one begins, the ball stays as it is.
         for (const auto& [a, b] : {std::pair(s.start, own_end), std::pair(own_end, to)}) {
             if (!(static_cast<float>(b) > static_cast<float>(a))) continue;
-            // The state at its end is that just before: at the end itself the next segment is in force, or the floor.
+            // The state at its end is that just before: at the end
+            // itself the next segment is in force, or the floor.
             double before = std::nextafter(b, a);
             while (a == s.start && before > a && before - s.start >= floor)
                 before = std::nextafter(before, a);
@@ -121,7 +123,8 @@ std::vector<RotationKey> rotation_keys(const Record& record, int ball) {
         const double fastest = std::max(piece.first.spin.norm(), piece.last.spin.norm());
         if (fastest == 0.0) continue;
         const double lasts = piece.to - piece.from;
-        // While the rate changes by a in each second, a turn at a constant rate between two keys h apart is off by a h^2 / 8 at most.
+        // While the rate changes by a in each second, a turn at a constant
+        // rate between two keys h apart is off by a h^2 / 8 at most.
         const double change = (piece.last.spin - piece.first.spin).norm();
         const double count = std::ceil(std::clamp(
             std::max(fastest * lasts / kLargestTurn, std::sqrt(change * lasts / (8.0 * kLargestError))), 1.0,

@@ -1,4 +1,5 @@
-// The motion of a ball as keys of an animation, in the axes of glTF: x to the right, y up, z towards the player (-y of the table).
+// The motion of a ball as keys of an animation, in the axes of glTF:
+// x to the right, y up, z towards the player (-y of the table).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -25,8 +26,9 @@ struct PositionKey {
     std::array<float, 3> before{}, place{}, after{};
 };
 
-/// Two keys bound each piece of motion, and a cubic Hermite curve between them is that parabola. Pieces shorter than a float can
-/// tell are left out; a place that jumps, as into a pocket, has a second key one float later. One key: the ball never moves.
+/// Two keys bound each piece of motion, and a cubic Hermite curve between them is that
+/// parabola. Pieces shorter than a float can tell are left out; a place that jumps, as
+/// into a pocket, has a second key one float later. One key: the ball never moves.
 std::vector<PositionKey> position_keys(const Record& record, int ball);
 
 /// The same for programs that join keys by straight lines: `fps` keys a second while the ball moves.
@@ -37,8 +39,8 @@ struct RotationKey {
     std::array<float, 4> q{};
 };
 
-/// At the ends of every piece of motion, and so many between that the ball turns by half a radian at most and a constant rate
-/// between two keys is off by 0.005.
+/// At the ends of every piece of motion, and so many between that the ball turns
+/// by half a radian at most and a constant rate between two keys is off by 0.005.
 std::vector<RotationKey> rotation_keys(const Record& record, int ball);
 
 }  // namespace carom::tools

@@ -89,7 +89,8 @@ class Sphere {
         std::vector<std::uint32_t> indices;
         for (int j = 0; j <= kRows; ++j) {
             for (int i = 0; i <= kSpherePieces; ++i) {
-                // Each triangle at a pole has a corner there of its own, in the middle of its part of the texture.
+                // Each triangle at a pole has a corner there of its
+                // own, in the middle of its part of the texture.
                 const double column = i + (j == 0 || j == kRows ? 0.5 : 0.0);
                 const double phi = 2.0 * std::numbers::pi * column / kSpherePieces,
                              theta = std::numbers::pi * j / kRows;

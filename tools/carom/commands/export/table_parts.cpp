@@ -104,8 +104,8 @@ bool has_holes(Material material) {
     return material == Material::kCloth || material == Material::kWood;
 }
 
-/// Cuts triangles along the sides of the squares around all holes, through the whole table, so that neighbours keep their corners in
-/// common; only what lies in a square is then cut along the circle.
+/// Cuts triangles along the sides of the squares around all holes, through the whole table, so that
+/// neighbours keep their corners in common; only what lies in a square is then cut along the circle.
 class HoleCutter {
   public:
     explicit HoleCutter(const render::TableMesh& mesh) : mesh_(mesh) {

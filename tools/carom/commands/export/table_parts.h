@@ -15,8 +15,8 @@ struct TablePart {
     std::vector<std::uint32_t> indices;  ///< three a triangle
 };
 
-/// The solid parts but the floor, with the holes of pockets cut out of cloth and wood, which the renderer's shaders do; and the
-/// marks on the cloth.
+/// The solid parts but the floor, with the holes of pockets cut out of cloth
+/// and wood, which the renderer's shaders do; and the marks on the cloth.
 std::map<render::Material, TablePart> table_parts(const render::TableMesh& mesh);
 
 }  // namespace carom::tools

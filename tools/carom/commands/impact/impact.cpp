@@ -1,5 +1,6 @@
-// carom impact: reads one impact from each line of standard input and writes its result to a line of standard output. Every
-// result is flushed, so that another program can send an impact through a pipe and wait for the result.
+// carom impact: reads one impact from each line of standard input and writes
+// its result to a line of standard output. Every result is flushed, so that
+// another program can send an impact through a pipe and wait for the result.
 #include <unistd.h>
 
 #include <cerrno>
@@ -24,8 +25,8 @@ struct ImpactArgs {
     std::string cloth_slip = "consistent";
 };
 
-/// Reads lines of bounded length from standard input. std::getline cannot be used: it neither returns on SIGINT nor limits
-/// the length.
+/// Reads lines of bounded length from standard input. std::getline
+/// cannot be used: it neither returns on SIGINT nor limits the length.
 class LineReader {
   public:
     enum class Got : unsigned char { kLine, kTooLong, kEnd };

@@ -1,4 +1,5 @@
-// Reads one line of carom impact, which is JSON, and computes the answer, which is JSON too. "id" is copied to the answer.
+// Reads one line of carom impact, which is JSON, and computes
+// the answer, which is JSON too. "id" is copied to the answer.
 #include "commands/impact/impact_line.h"
 
 #include <fmt/core.h>
@@ -270,7 +271,8 @@ Vec2 unit_normal(const Json& line) {
     if (!(std::abs(length - 1.0) <= kUnitSlack)) {
         throw LineError(fmt::format("\"normal\": expected a vector of length 1, this one has {}", length));
     }
-    // A vector that is a unit vector up to rounding is used as it is, so that the result has the bits that the caller expects.
+    // A vector that is a unit vector up to rounding is used as it
+    // is, so that the result has the bits that the caller expects.
     if (std::abs(length - 1.0) <= 4.0 * std::numeric_limits<double>::epsilon()) return {n[0], n[1]};
     return {n[0] / length, n[1] / length};
 }

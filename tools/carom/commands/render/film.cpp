@@ -23,9 +23,9 @@
 namespace carom::tools {
 namespace {
 
-// Colours of Y4M frames are those of ITU-R BT.709, which the stream cannot say. WebP and GIF are given RGB: the first has other weights, the
-// second a palette. The palette is made of the first ten frames, because ffmpeg keeps in memory what it makes one of; dots at fixed places
-// stay equal from frame to frame.
+// Colours of Y4M frames are those of ITU-R BT.709, which the stream cannot say. WebP and GIF are given RGB:
+// the first has other weights, the second a palette. The palette is made of the first ten frames, because
+// ffmpeg keeps in memory what it makes one of; dots at fixed places stay equal from frame to frame.
 #define CAROM_BT709 "-vf setparams=colorspace=bt709:color_primaries=bt709:color_trc=bt709 -pix_fmt yuv420p"
 constexpr FilmKind kKinds[] = {
     {".mp4", "mp4", render::RawFormat::kY4m,

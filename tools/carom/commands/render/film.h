@@ -40,10 +40,12 @@ class Film {
     Film(const Film&) = delete;
     Film& operator=(const Film&) = delete;
 
-    /// Gives ffmpeg the next bytes. May be called from another thread. @throws Interrupted, std::runtime_error if ffmpeg failed
+    /// Gives ffmpeg the next bytes. May be called from another thread.
+    /// @throws Interrupted, std::runtime_error if ffmpeg failed
     void write(const std::uint8_t* bytes, std::size_t count);
 
-    /// Waits until ffmpeg is done and names the film. @throws Interrupted, std::runtime_error if ffmpeg failed
+    /// Waits until ffmpeg is done and names the film. @throws
+    /// Interrupted, std::runtime_error if ffmpeg failed
     void commit();
 
   private:

@@ -170,8 +170,9 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     return options;
 }
 
-/// Tells the margin bar what the simulation of each frame cost: the sum over the events between the frame and the next one.
-/// A record that was not profiled has no costs; its bar shows drawing, reading back and encoding only.
+/// Tells the margin bar what the simulation of each frame cost: the sum over the
+/// events between the frame and the next one. A record that was not profiled has
+/// no costs; its bar shows drawing, reading back and encoding only.
 void set_simulation_costs(const Record& record, render::SequenceOptions& options) {
     if (record.costs.empty()) return;
     // Events before the first and after the last frame that is shown belong to frames that are not shown.

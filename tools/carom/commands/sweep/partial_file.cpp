@@ -46,7 +46,8 @@ PartialFile::PartialFile(const std::string& path, std::uint64_t id, const Seen& 
     take_up(seen);
 }
 
-// Others may be able to make files in the folder, and they can tell the name: it has to be a file, and no link to another one.
+// Others may be able to make files in the folder, and they can
+// tell the name: it has to be a file, and no link to another one.
 void PartialFile::open(bool direct) {
     const int flags = direct ? O_WRONLY | O_CREAT | O_TRUNC : O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW;
     const int fd = ::open(name_.c_str(), flags | O_CLOEXEC, 0666);

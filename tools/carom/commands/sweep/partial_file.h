@@ -10,10 +10,12 @@
 
 namespace carom::tools {
 
-/// Lines are appended to `path`.<id>.part, and commit() renames it to `path`. Whoever opens the same path and
-/// id again continues after the complete lines; another id is another file. A lock keeps two programs from writing one file.
+/// Lines are appended to `path`.<id>.part, and commit() renames it to `path`.
+/// Whoever opens the same path and id again continues after the complete lines;
+/// another id is another file. A lock keeps two programs from writing one file.
 ///
-/// If `path` is not a regular file (/dev/null, a pipe, the process's own stream), it is written to directly, and the work cannot be continued later.
+/// If `path` is not a regular file (/dev/null, a pipe, the process's own
+/// stream), it is written to directly, and the work cannot be continued later.
 /// Every failure is a std::runtime_error that names the file and the reason.
 class PartialFile {
   public:

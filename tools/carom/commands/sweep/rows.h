@@ -24,10 +24,11 @@ struct SweepRows {
     Outcomes outcomes{};
 };
 
-/// Plays shots first, first + 1, ... and writes their rows. A row depends on the variation and the number of its shot only; a shot
-/// with invalid values and one that fails have a row, too. @throws Interrupted
+/// Plays shots first, first + 1, ... and writes their rows. A row depends on the variation and the number of
+/// its shot only; a shot with invalid values and one that fails have a row, too. @throws Interrupted
 SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa);
-/// The same, shared out among threads. @throws Interrupted, std::system_error where the system gives no threads
+/// The same, shared out among threads. @throws Interrupted,
+/// std::system_error where the system gives no threads
 SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa,
                     int threads);
 

@@ -9,12 +9,13 @@
 
 namespace carom::tools {
 
-/// A JSON object in a file that is replaced as a whole: whoever reads it finds a complete one. Its keys are those of
-/// docs/guide/clusters.md.
+/// A JSON object in a file that is replaced as a whole: whoever reads it
+/// finds a complete one. Its keys are those of docs/guide/clusters.md.
 class SweepStatus {
   public:
     /// @param path  empty: nothing is written
-    /// @param first, last, from  shots first to last - 1 are wanted, and those before `from` are there already
+    /// @param first, last, from  shots first to last - 1 are wanted, and those before `from` are there
+    /// already
     SweepStatus(std::string path, std::string output, std::uint64_t first, std::uint64_t last,
                 std::uint64_t from);
 

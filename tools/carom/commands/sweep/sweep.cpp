@@ -1,7 +1,8 @@
 // carom sweep: simulates many shots of one scene and writes one row for each shot.
 //
-// A row depends only on the scene, the rules, the seed and its number. The engine plays a block of shots on all threads, and their
-// rows are written in order: if the program is killed, the file contains the first rows of the whole table.
+// A row depends only on the scene, the rules, the seed and its number. The engine
+// plays a block of shots on all threads, and their rows are written in order: if
+// the program is killed, the file contains the first rows of the whole table.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -101,8 +102,8 @@ struct RowsThere {
     }
 };
 
-/// The shot at which an incomplete file of an earlier run is continued. Its last row is computed again: if another build gives
-/// another row, the file is not continued.
+/// The shot at which an incomplete file of an earlier run is continued. Its last row is computed again: if
+/// another build gives another row, the file is not continued.
 std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRange& range,
                       const RowsThere& there) {
     if (file.lines() == 0) return range.first;
@@ -120,8 +121,8 @@ std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRan
     return range.first + rows;
 }
 
-/// Runs the shots from `from` on, block by block, and writes their rows. The next block is played while one is waited for and
-/// written, so that no thread stands idle.
+/// Runs the shots from `from` on, block by block, and writes their rows. The next block is played while one
+/// is waited for and written, so that no thread stands idle.
 Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& range, std::uint64_t from,
                     SweepStatus& status) {
     Outcomes outcomes{};
