@@ -18,9 +18,9 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "a command is missing: simulate, render, view, export, compare, margin, accuracy, sweep, check, "
+         "no command given: expected simulate, render, view, export, compare, margin, accuracy, sweep, check, "
          "impact or describe; see carom --help"},
-        {{"accuracy"}, "accuracy: a scene file is required; see --help"},
+        {{"accuracy"}, "accuracy: no scene file given; see --help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
         {{"simulate"}, "SCENE is required; see carom simulate --help"},
@@ -49,7 +49,7 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         {{"render", scene, "--png-level", "1"}, "--png-level"},
         {{"render", scene, "--png-writer", "paint"}, "paint"},
         {{"render", scene, "--raw", "--y4m"}, "--raw"},
-        {{"render", scene, "--y4m", "--sheet", "2x2"}, "--y4m goes with neither"},
+        {{"render", scene, "--y4m", "--sheet", "2x2"}, "--y4m cannot be combined"},
         {{"render", scene, "--camera", "from the moon"}, "from the moon"},
         {{"margin", scene, "--repeat", "0"}, "--repeat"},
         {{"margin", scene, "--sweep"}, "--sweep"},

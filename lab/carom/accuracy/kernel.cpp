@@ -315,7 +315,7 @@ void add_accuracy_kernel(Options& accuracy) {
         "kernel", "One impact: time and error of the march, of the tolerance kernel, of closed forms", run);
     command.option("--count", &args.count, "N", "Seeded random impacts").in(1, 1000000);
     command.option("--seed", &args.seed, "S", "Seed of the random impacts");
-    add_repeat(command, args.repeat, "Interleaved rounds; minimum, median and maximum are over them");
+    add_repeat(command, args.repeat, "Interleaved rounds; times are minimum, median and maximum over them");
     command.option("--most-substeps", &args.most_substeps, "N", "Largest N of the march").in(10, 100000);
     add_reports(command, args.csv, args.json);
     add_plot(command, args.plot);

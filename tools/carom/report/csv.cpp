@@ -11,7 +11,7 @@
 namespace carom::tools {
 namespace {
 
-/// 1e9 rows are more than 100 GB, which is taken for a typing error.
+/// 1e9 rows are more than 100 GB: taken for a typing error.
 constexpr double kMostRows = 1e9;
 
 }  // namespace
@@ -39,7 +39,8 @@ void write_samples_csv(const Record& record, double dt, const std::string& path)
     OutputFile file(path);
     const double rows = (record.duration / dt + 1.0) * static_cast<double>(record.tracks.size());
     if (!(rows <= kMostRows)) {
-        throw UsageError(fmt::format("--sample-dt {}: that would be more than {:.0f} rows", dt, kMostRows));
+        throw UsageError(
+            fmt::format("--sample-dt {}: that is more than {:.0f} rows; use a larger step", dt, kMostRows));
     }
     file.write("time,ball,state,x,y,z,vx,vy,vz,wx,wy,wz\n");
     for (long k = 0; static_cast<double>(k) * dt <= record.duration; ++k) {
