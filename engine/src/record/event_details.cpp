@@ -53,7 +53,7 @@ BallAtEvent around(const Record& record, std::size_t index, int ball) {
         return state_of(record, ball, *segment, std::max(0.0, time - segment->start));
     };
     if (end - first == all) return {ball, state(first + rank - 1), state(first + rank)};
-    return {ball, state(first - 1), state(std::max(first, end) - 1)};
+    return {ball, state(first - 1), state(std::max(first, end) - 1), rank == 0, rank == all - 1};
 }
 
 /// Sets the point and the normal of what ball a meets.
@@ -171,12 +171,21 @@ EventDetails details_of(const Record& record, std::size_t event) {
     if (of.partner == Partner::kCushion) d.diamond = diamond(record.table, e, d.point);
     const bool impact = of.phase == EventPhase::kImpact && of.partner != Partner::kPocket;
     if (!impact && of.phase != EventPhase::kStrike) return d;
-    d.impulse = record.size(e.a).m * (a.after.velocity - a.before.velocity).norm();
+    const auto known = [&](auto member, std::size_t count) {
+        return std::all_of(d.balls.begin(), d.balls.begin() + static_cast<std::ptrdiff_t>(count),
+                           [member](const BallAtEvent& ball) { return ball.*member; });
+    };
+    const bool whole =
+        known(&BallAtEvent::before_known, d.balls.size()) && known(&BallAtEvent::after_known, d.balls.size());
+    if (whole) d.impulse = record.size(e.a).m * (a.after.velocity - a.before.velocity).norm();
     if (!impact) return d;
-    const Vec3 other = of.partner == Partner::kBall ? d.balls[1].before.velocity : Vec3::Zero();
-    const Vec3 v = a.before.velocity - other;
-    d.closing = -v.dot(d.normal);
-    d.cut = std::atan2(v.cross(d.normal).norm(), d.closing);
+    const bool pair = of.partner == Partner::kBall;
+    if (known(&BallAtEvent::before_known, pair ? 2 : 1)) {
+        const Vec3 v = a.before.velocity - (pair ? d.balls[1].before.velocity : Vec3::Zero());
+        d.closing = -v.dot(d.normal);
+        d.cut = std::atan2(v.cross(d.normal).norm(), d.closing);
+    }
+    if (!whole) return d;
     d.lost = 0.0;
     // ball_energy() is in J over the mass of a ball without a mass of its own.
     for (const BallAtEvent& ball : d.balls)

@@ -11,18 +11,19 @@
 
 namespace carom {
 
-/// A ball just before and just after an event.
+/// A ball just before and just after an event. The record does not tell apart some events of one instant,
+/// such as a blow from above and the cloth below: then a state is that before, or after, all of them.
 struct BallAtEvent {
     int ball = -1;
     BallState before, after;
+    bool before_known = true, after_known = true;  ///< whether it is that of this event alone
 };
 
-/// NaN stands for whatever an event of this kind does not have.
+/// NaN stands for whatever an event of this kind does not have, or the record does not tell.
 struct EventDetails {
     static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-    /// Event::a, then Event::b if it is a ball; for a cluster all its balls, with a and b first. If a ball
-    /// has several events at one instant that share a motion, `before` and `after` are those of the instant.
+    /// Event::a, then Event::b if it is a ball; for a cluster all its balls, with a and b first.
     std::vector<BallAtEvent> balls;
     /// Where ball a touches what it meets, at the height of the nose for a cushion or a jaw [m].
     Vec3 point = Vec3::Constant(kNone);

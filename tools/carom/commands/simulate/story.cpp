@@ -19,10 +19,12 @@ constexpr std::size_t kMostLines = 24;
 // [-] Contacts of the struck ball that a long shot is told by.
 constexpr int kStruckContacts = 3;
 
+/// ", cut 31 deg, 2.1 m/s"
 std::string contact(const EventDetails& d, Units units) {
+    if (std::isnan(d.closing)) return "";
     const double cut = d.cut * 180.0 / std::numbers::pi;
-    if (cut < 0.5) return fmt::format("full, {}", speed_text(d.closing, units));
-    return fmt::format("cut {:.0f} deg, {}", cut, speed_text(d.closing / std::cos(d.cut), units));
+    if (cut < 0.5) return fmt::format(", full, {}", speed_text(d.closing, units));
+    return fmt::format(", cut {:.0f} deg, {}", cut, speed_text(d.closing / std::cos(d.cut), units));
 }
 
 /// "cue meets 1, cut 31 deg, 2.1 m/s"
@@ -39,11 +41,11 @@ std::string sentence(const Record& record, std::size_t index, Units units) {
         case EventType::kBallBall: {
             // The one that moves meets the other.
             const bool other_moves = a.before.velocity.norm() < d.balls[1].before.velocity.norm();
-            return fmt::format("{} meets {}, {}", other_moves ? met : ball, other_moves ? ball : met,
+            return fmt::format("{} meets {}{}", other_moves ? met : ball, other_moves ? ball : met,
                                contact(d, units));
         }
         case EventType::kBallCluster:
-            return fmt::format("{} meets {}: {} at once, {}", ball, met, counted(d.balls.size(), "ball"),
+            return fmt::format("{} meets {}: {} at once{}", ball, met, counted(d.balls.size(), "ball"),
                                contact(d, units));
         case EventType::kBallCushion: {
             const std::string place = std::isnan(d.diamond) ? "" : fmt::format(", diamond {:.1f}", d.diamond);
@@ -56,7 +58,7 @@ std::string sentence(const Record& record, std::size_t index, Units units) {
         case EventType::kBallOut:
             return fmt::format("{} leaves the table, {}", ball, speed(a.after));
         case EventType::kBallCloth:
-            return fmt::format("{} comes down on the cloth", ball);
+            return fmt::format("{} lands", ball);
         case EventType::kSlideRoll:
             return fmt::format("{} rolls, {}", ball, speed(a.after));
         case EventType::kRollStop:
@@ -97,21 +99,23 @@ bool is_end(const Event& event) {
 class Crowd {
   public:
     void add(const Event& event) {
-        if (balls_ + walls_ == 0) from_ = event.time;
-        ++(kind(event.type).partner == Partner::kBall ? balls_ : walls_);
+        if (balls_ + walls_ + landings_ == 0) from_ = event.time;
+        const Partner met = kind(event.type).partner;
+        ++(met == Partner::kBall ? balls_ : met == Partner::kNone ? landings_ : walls_);
     }
     std::string told() {
-        if (balls_ + walls_ == 0) return "";
-        std::string text = fmt::format("{:>9.3f} s  then ", from_);
-        if (balls_ > 0) text += counted(balls_, "contact") + " between balls";
-        if (balls_ > 0 && walls_ > 0) text += " and ";
-        if (walls_ > 0) text += counted(walls_, "contact") + " with cushions and jaws";
+        std::vector<std::string> parts;
+        if (balls_ > 0) parts.push_back(counted(balls_, "contact") + " between balls");
+        if (walls_ > 0) parts.push_back(counted(walls_, "contact") + " with cushions and jaws");
+        if (landings_ > 0) parts.push_back(counted(landings_, "landing"));
+        if (parts.empty()) return "";
+        std::string text = fmt::format("{:>9.3f} s  then {}\n", from_, fmt::join(parts, ", "));
         *this = {};
-        return text + "\n";
+        return text;
     }
 
   private:
-    std::size_t balls_ = 0, walls_ = 0;
+    std::size_t balls_ = 0, walls_ = 0, landings_ = 0;
     double from_ = 0.0;
 };
 
