@@ -237,7 +237,8 @@ void add_simulate(Options& program) {
     command.option("--sample-dt", &args.sample_dt, "S", "Time between samples in s (default: none)");
     command.option("--until", &args.until, "S",
                    "Stop at this time in s at the latest (default: the scene's end)");
-    command.flag("--list", args.list, "Tell every event, not only the landmarks of a long shot");
+    command.flag("--list", args.list,
+                 "Tell every event, not only the landmarks of a long shot (default: off)");
     command.option("--units", &args.units, "UNITS", "Units of what is printed; files are always in SI")
         .one_of({kUnits[0], kUnits[1]});
     command.flag("--hash", args.hash,
