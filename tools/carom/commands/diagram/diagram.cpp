@@ -62,6 +62,7 @@ int run(const DiagramArgs& args) {
     OutputFile file(args.output);
     file.write(draw_diagram(shots, style, format));
     file.commit();
+    print(fmt::format("{}: {}\n", harmless(args.output), counted(shots.size(), "shot")));
     return kOk;
 }
 

@@ -262,6 +262,7 @@ int run_next(const NextArgs& args) {
     else
         said += "# The struck ball is gone: place it as a [[ball]], and add a [cue].\n";
     write_text(args.output, said + scene_text(next));
+    print(fmt::format("{}: {}\n", harmless(args.output), counted(next.ball.size(), "ball")));
     return kOk;
 }
 
