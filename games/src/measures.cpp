@@ -5,8 +5,13 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "carom/engine/event_details.h"
 #include "carom/engine/frozen.h"

@@ -1,7 +1,9 @@
 // carom diagram: files that other programs open, and what it refuses.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "cli.h"
 

@@ -1,9 +1,11 @@
 // carom judge and carom next: a match from the shell, and states that are refused.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "carom/engine/scene.h"
 #include "cli.h"

@@ -1,5 +1,7 @@
 // Stands in for drawing.cpp in a build without cairo.
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "commands/diagram/drawing.h"
 
