@@ -90,18 +90,11 @@ std::string result_json(const Record& record) {
     return all.dump() + "\n";
 }
 
-const char* reason(StopReason stopped) {
-    constexpr const char* kReasons[] = {"everything is at rest", "stopped at its time",
-                                        "stopped at its number of events",
-                                        "nothing more happens, but balls move for ever"};
-    return kReasons[static_cast<int>(stopped)];
-}
-
 std::string summary(const Record& record, const std::string& scene) {
     fmt::memory_buffer out;
     const auto line = std::back_inserter(out);
     fmt::format_to(line, "{}: {}, {:.4f} s, {}; {}\n\nevents\n", scene, counted(record.tracks.size(), "ball"),
-                   record.duration, counted(record.events.size(), "event"), reason(record.stopped));
+                   record.duration, counted(record.events.size(), "event"), words(record.stopped).sentence);
     std::array<long, kEventTypes> counts{};
     for (const Event& event : record.events) ++counts[static_cast<std::size_t>(event.type)];
     for (int type = 0; type < kEventTypes; ++type) {
