@@ -93,20 +93,13 @@ std::string result_json(const Record& record) {
     return all.dump() + "\n";
 }
 
-const char* reason(StopReason stopped) {
-    constexpr const char* kReasons[] = {"everything is at rest", "stopped at its time",
-                                        "stopped at its number of events",
-                                        "nothing more happens, but balls move for ever"};
-    return kReasons[static_cast<int>(stopped)];
-}
-
 std::string summary(const Record& record, const std::string& scene, const SimulateArgs& args) {
     fmt::memory_buffer out;
     const auto line = std::back_inserter(out);
     const Units units = units_of(args.units);
     const Unit length = length_unit(units);
     fmt::format_to(line, "{}: {}, {:.4f} s, {}; {}\n\n", scene, counted(record.tracks.size(), "ball"),
-                   record.duration, counted(record.events.size(), "event"), reason(record.stopped));
+                   record.duration, counted(record.events.size(), "event"), words(record.stopped).sentence);
     fmt::format_to(line, "{}", args.list ? all_events(record, units) : story(record, units));
     fmt::format_to(line, "\npocketed\n");
     long pocketed = 0;
