@@ -18,7 +18,8 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "no command given: expected simulate, render, view, export, compare, margin, accuracy, sweep, check, "
+         "no command given: expected simulate, render, view, diagram, next, judge, export, compare, margin, "
+         "accuracy, sweep, check, "
          "impact or describe; see carom --help"},
         {{"accuracy"}, "accuracy: no scene file given; see --help"},
         {{"fly"}, "fly"},
@@ -143,7 +144,7 @@ TEST(CliUsage, AClosedOutputIsAnErrorAndGetsNoFilesNumber) {
         {"/bin/sh", "-c", "exec \"$0\" simulate \"$1\" -o \"$2\" >&-", CAROM_PROGRAM, scene, record});
     EXPECT_EQ(result.status, 1);
     EXPECT_EQ(read_file(record).substr(0, 10), "{\"format\":");
-    EXPECT_FALSE(contains(read_file(record), "balls at the end"));
+    EXPECT_FALSE(contains(read_file(record), "final positions"));
 }
 
 TEST(CliIsa, UnknownAndUnavailableAreErrors) {

@@ -5,10 +5,6 @@
 
 namespace carom {
 
-/// Locks an open file that `name` names, for itself. Every
-/// failure is a std::runtime_error that begins with the name.
-void lock_file(int fd, const std::string& name);
-
 /// Files that a program works on, as long as it lives: an empty file beside them,
 /// which is removed at the end. One that a killed program left is taken over.
 class FileLock {

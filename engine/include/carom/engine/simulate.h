@@ -66,15 +66,18 @@ struct BallOutcome {
     bool operator==(const BallOutcome&) const = default;
 };
 
+/// The ball that the cue strikes, or else the first one that moves at the start; or -1.
+int struck_ball(const Scene& scene);
+
 /// What became of a shot, without a record: final places and what the events come to.
 struct Outcome {
     StopReason stopped = StopReason::kAtRest;
     double duration = 0.0;    ///< [s]
     std::int64_t events = 0;  ///< as many as the record would have
     int clusters = 0;         ///< of these events
-    int struck = -1;  ///< the ball that the cue strikes, or else the first one that moves at the start; or -1
-    int first_hit = -1;  ///< the ball that it meets first: in a cluster the nearest one; or -1
-    int contacts = 0;    ///< balls that it meets, each of them once
+    int struck = -1;          ///< struck_ball()
+    int first_hit = -1;       ///< the ball that it meets first: in a cluster the nearest one; or -1
+    int contacts = 0;         ///< balls that it meets, each of them once
     /// Its contacts with cushions and jaws before the second of them, or all; not
     /// with one that it was frozen to from the start and has not left (still_frozen)
     int approach_cushions = 0;
