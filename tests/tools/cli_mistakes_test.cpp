@@ -132,7 +132,7 @@ TEST_F(Mistakes, ResumeKnowsWhichShotFramesAreOf) {
         return carom(all);
     };
     folder_.write("f1.png", "of nobody");
-    EXPECT_TRUE(contains(render({"--resume"}).err, "nothing says which shot the frames there are of"));
+    EXPECT_TRUE(contains(render({"--resume"}).err, "nothing says which shot the existing frames show"));
     fs::remove(folder_.file("f1.png"));
     ASSERT_EQ(render({"--resume"}).status, 0);  // all of it
     ASSERT_EQ(render({}).status, 0);
@@ -143,7 +143,7 @@ TEST_F(Mistakes, ResumeKnowsWhichShotFramesAreOf) {
         other.push_back("--resume");
         const ProcessResult result = render(other);
         EXPECT_EQ(result.status, 1) << other[0];
-        EXPECT_TRUE(contains(result.err, "of another shot, camera, overlay or size; render without --resume"))
+        EXPECT_TRUE(contains(result.err, "show another shot, camera, overlay or size; render without --resume"))
             << result.err;
     }
     std::ofstream(scene_, std::ios::app) << "[balls]\nmu_r = 0.02\n";
