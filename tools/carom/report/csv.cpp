@@ -42,7 +42,7 @@ void write_events_csv(const Record& record, const std::string& path) {
         }
         event_row(record, i, numbers);
         for (const double number : numbers) row += std::isnan(number) ? "," : fmt::format(",{}", number);
-        // Names of cushions hold commas.
+        // Names of cushions contain commas.
         row += fmt::format(",\"{}\",", met_name(record, event));
         if (event.type == EventType::kBallCluster) {
             const char* between = "";

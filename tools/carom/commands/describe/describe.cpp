@@ -291,10 +291,9 @@ std::string zsh_completion(const Options& program) {
 
 std::string measures_text() {
     std::string out =
-        "Measures of a shot, for carom sweep --measure. An expression joins them with numbers, texts in\n"
-        "quotes, and, or, not, == != < <= > >=, in, near, + - * /, as in\n"
-        "  \"9\" in pocketed and not scratch\n"
-        "  cue near (0.6, 1.2, 0.05)      at rest within 5 cm of this place\n\n";
+        "Measures of a shot, for carom sweep --measure. An expression joins them with numbers, texts "
+        "in\nquotes, and, or, not, == != < <= > >=, in, near, + - * /, as in\n  \"9\" in pocketed and not "
+        "scratch\n  cue near (0.6, 1.2, 0.05)      at rest within 5 cm of this place\n\n";
     for (const games::MeasureInfo& m : games::measures()) {
         const std::string call =
             *m.arguments == 0 ? std::string(m.name) : fmt::format("{}({})", m.name, m.arguments);
@@ -305,12 +304,12 @@ std::string measures_text() {
 
 std::string events_text() {
     std::string out =
-        "Columns of carom simulate --events, behind time, type, a, b and what --profile adds. A column is\n"
-        "empty if an event of its kind has no such number.\n\n";
+        "Columns of carom simulate --events, after time, type, a, b and what --profile adds. A column "
+        "is\nempty if its kind of event has no such number.\n\n";
     for (const EventColumn& column : event_columns())
         out += fmt::format("  {:<14}{:<7}{}\n", column.name, column.unit, column.what);
     return out + fmt::format("  {:<21}{}\n  {:<21}{}\n", "met", "what ball a meets, by its name", "cluster",
-                             "all balls of a cluster, with ; between them");
+                             "all balls of a cluster, separated by ;");
 }
 
 // ---- the command -----------------------------------------------------------------------------------------

@@ -1,5 +1,4 @@
-// Shots as a drawing for a page of a book: the table to scale, the balls where they begin, the paths they
-// take.
+// Shots as a drawing for a printed page: the table to scale, the balls where they begin, the paths they take.
 #pragma once
 
 #include <optional>
@@ -25,10 +24,10 @@ struct DiagramStyle {
     Units units = Units::kMetric;
 };
 
-/// The formats, by the ending of the file's name.
+/// The formats, by file extension.
 inline constexpr const char* kDiagramFormats[] = {".svg", ".pdf", ".png"};
 
-/// Whether this build can draw: it was made with cairo.
+/// Whether this build can draw: it was built with cairo.
 bool can_draw_diagrams();
 
 /// @param format  one of kDiagramFormats  @return the file's bytes  @throws std::runtime_error

@@ -1,4 +1,4 @@
-// The table that a sweep writes: its header, and a row for each shot.
+// The table that a sweep writes: its header, and one row per shot.
 #pragma once
 
 #include <array>
@@ -24,11 +24,11 @@ struct SweepRows {
     Outcomes outcomes{};
 };
 
-/// Plays shots first, first + 1, ... and writes their rows. A row depends on the variation and the number of
-/// its shot only; a shot with invalid values and one that fails have a row, too. @throws Interrupted
+/// Plays shots first, first + 1, ... and writes their rows. A row depends only on the variation and the
+/// number of its shot; invalid and failed shots have a row, too. @throws Interrupted
 SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa);
-/// The same, shared out among threads. @throws Interrupted,
-/// std::system_error where the system gives no threads
+/// The same, shared among threads. @throws Interrupted, std::system_error if the system cannot start the
+/// threads
 SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa,
                     int threads);
 
