@@ -9,10 +9,10 @@
 
 namespace carom::tools {
 
-/// The scripts of pages that only reports use, which the build puts into the program.
+/// The scripts of pages that only reports use, embedded in the program by the build.
 const std::vector<PageFile>& lab_page_files();
 
-// Each command is a folder, which adds itself to the table of options.
+// Each command is a folder, and adds itself to the table of options.
 void add_bench_kernel(Options& bench);
 void add_bench_render(Options& bench);
 void add_bench_shot(Options& bench);

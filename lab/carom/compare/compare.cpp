@@ -28,7 +28,8 @@ void add_lab_compare(Options& program) {
     auto [command, args] =
         program.command<PictureArgs>("compare", "The paths of two shots in one picture", run);
     command.argument("A", args.a, "Scene file (TOML) or record (.json)").required = true;
-    command.argument("B", args.b, "Scene file or record to compare with; its paths are dashed").required = true;
+    command.argument("B", args.b, "Scene file or record to compare with; its paths are dashed").required =
+        true;
     add_plot(command, args.plot);
     command.rows.back().required = true;
 }
