@@ -10,13 +10,13 @@
 #include <variant>
 #include <vector>
 
+#include "base/statistics.h"
+
 namespace carom::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// [-] Of the normal distribution: 95 % lie within.
-constexpr double kZ = 1.959963984540054;
 // [lines] Texts of a measure that a summary names, the most frequent first.
 constexpr std::size_t kTexts = 8;
 // Beyond this many different texts the rest is counted together, so that memory has a limit.
@@ -31,19 +31,6 @@ std::vector<std::pair<std::string, std::size_t>> by_frequency(
 }
 
 }  // namespace
-
-Share share_of(std::size_t part, std::size_t whole) {
-    if (whole == 0) return {0.0, 0.0, 1.0};
-    const double n = static_cast<double>(whole), p = static_cast<double>(part) / n, z2 = kZ * kZ / n;
-    const double middle = (p + 0.5 * z2) / (1.0 + z2);
-    const double half = kZ * std::sqrt(p * (1.0 - p) / n + 0.25 * z2 / n) / (1.0 + z2);
-    return {p, std::max(0.0, middle - half), std::min(1.0, middle + half)};
-}
-
-std::string share_text(const Share& share) {
-    return fmt::format("{:6.2f} %  ({:.2f} to {:.2f})", 100.0 * share.value, 100.0 * share.low,
-                       100.0 * share.high);
-}
 
 void Tally::add(const games::MeasureValue& value) {
     ++shots_;
