@@ -414,7 +414,7 @@ def test_a_run_that_cannot_go_on_is_truncated_too():
 def test_the_record_is_the_shot_and_the_picture_the_table():
     env = carom.gym.make_env("Position", hashes=True, render_mode="rgb_array", size=(64, 36))
     env.reset(seed=3)
-    with pytest.raises(RuntimeError, match="no shot"):
+    with pytest.raises(RuntimeError, match="no shot since reset"):
         env.record()
     *_, info = env.step(np.array([0.3, 0.8, 0.1, 0.2, -0.4], np.float32))
     record = env.record()
@@ -452,11 +452,11 @@ def test_reset_takes_a_scene_and_says_what_is_wrong():
     refused(
         ValueError,
         lambda **options: env.reset(options=options),
-        ({"xz": 1}, "there is no 'xz'; there are scene, xy"),
+        ({"xz": 1}, "'xz' is unknown; use scene, xy"),
         ({"xy": np.zeros((3, 2))}, r"xy has the shape \(3, 2\)"),
         ({"xy": [[0.5, 0.5], [0.5, 0.51]]}, "table 0 cannot be played: "),
         ({"xy": each[0], "scene": scene}, "give one"),
-        ({"scene": "draw.toml"}, "no carom.Scene"),
+        ({"scene": "draw.toml"}, "expected scene to be a carom.Scene"),
         ({"scene": carom.Scene.load(SOURCE / "scenes/eight_ball_break.toml")}, "the scene has a ball"),
     )
     wrong = [

@@ -140,7 +140,7 @@ def test_what_does_not_fit_is_refused(draw_scene):
     refused(
         ValueError,
         functools.partial(carom.simulate_many, draw_scene),
-        (dict(), "nothing that says how many shots"),
+        (dict(), "the number of shots is unknown"),
         (dict(cue=np.zeros((3, 4))), r"cue: expected the shape \(n, 5\), not \(3, 4\)"),
         (dict(cue=np.zeros((3, 5)), shots=4), "cue: 3 values for 4 shots"),
         (dict(xy=np.zeros((3, two + 1, 2))), "xy: expected the shape"),

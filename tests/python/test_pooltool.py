@@ -68,17 +68,17 @@ def test_a_system_that_was_not_simulated_is_the_same_shot(tmp_path):
     ("change", "message"),
     [
         (lambda s: s["balls"]["1"].pop("params"), "balls.1.params is missing; expected a System as pooltool 0.6.0 saves it in .json"),
-        (lambda s: s["balls"]["1"]["params"].update(R="big"), "balls.1.params.R is no number"),
-        (lambda s: s["balls"]["1"]["params"].update(m=float("nan")), "balls.1.params.m is no number"),
-        (lambda s: s["balls"]["1"]["params"].update(u_s=0.3), "balls.cue.params differ from those of other balls in more than R and m"),
-        (lambda s: s["balls"]["1"]["state"].update(s=9), "balls.1.state.s is 9, and states of motion are 0 to 4"),
+        (lambda s: s["balls"]["1"]["params"].update(R="big"), "balls.1.params.R is not a number"),
+        (lambda s: s["balls"]["1"]["params"].update(m=float("nan")), "balls.1.params.m is not a number"),
+        (lambda s: s["balls"]["1"]["params"].update(u_s=0.3), "balls.cue.params differs from other balls in more than R and m"),
+        (lambda s: s["balls"]["1"]["state"].update(s=9), "balls.1.state.s is 9, but states of motion are 0 to 4"),
         (lambda s: s["balls"]["1"]["state"].update(rvw=[[0, 0], [0, 0, 0], [0, 0, 0]]), r"balls.1.state.rvw\[0\] has 2 numbers instead of 3"),
         (lambda s: s["balls"]["1"]["state"].update(rvw=[[0, 0, 0]]), "balls.1.state.rvw has 1 rows instead of 3"),
         (lambda s: s.update(balls={}), "balls has no ball on the table"),
-        (lambda s: s.update(balls=[]), "balls is no object"),
-        (lambda s: s.update(events={}), "events is no list"),
+        (lambda s: s.update(balls=[]), "balls is not an object"),
+        (lambda s: s.update(events={}), "events is not a list"),
         (lambda s: s["cue"].update(a=0.9), "cue.offset is"),
-        (lambda s: s["cue"].update(cue_ball_id=3), "cue.cue_ball_id is no text"),
+        (lambda s: s["cue"].update(cue_ball_id=3), "cue.cue_ball_id is not a string"),
         (lambda s: s["table"].pop("cushion_segments"), "table.cushion_segments is missing"),
     ],
 )
@@ -94,10 +94,10 @@ def test_what_is_no_system_is_named(change, message, tmp_path):
 
 def test_what_is_no_file_or_no_json_is_named(tmp_path):
     (tmp_path / "a.json").write_text('{"cue": {},\n "balls": }')
-    with pytest.raises(carom.SceneError, match=r"a.json:2:11: is no JSON"):
+    with pytest.raises(carom.SceneError, match=r"a.json:2:11: is not JSON"):
         pooltool.load(tmp_path / "a.json")
     (tmp_path / "b.msgpack").write_bytes(b"\x85\xa3cue\xff")
-    with pytest.raises(carom.SceneError, match="not UTF-8; pooltool writes it where the name of a file ends in .json"):
+    with pytest.raises(carom.SceneError, match="not UTF-8; pooltool writes JSON if the name of the file ends in .json"):
         pooltool.load(tmp_path / "b.msgpack")
     with pytest.raises(carom.SceneError, match="none.json: cannot be read: No such file"):
         pooltool.load(tmp_path / "none.json")

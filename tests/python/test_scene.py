@@ -71,9 +71,9 @@ def test_numpy_is_written_as_numbers():
     ("tree", "message"),
     [
         ({"cue": {"speed": None}}, "scene: cue.speed is None; leave the key out"),
-        ({"cue": {"speed": 1j}}, "scene: cue.speed has the type complex; write numbers, texts, lists and dicts"),
+        ({"cue": {"speed": 1j}}, "scene: cue.speed has the type complex; use numbers, strings, lists and dicts"),
         ({"cue": {"speed": 2**63}}, "scene: cue.speed is beyond 64 bits; write a smaller number"),
-        ({3: {}}, "scene: the scene has the key 3; keys are texts"),
+        ({3: {}}, "scene: the scene has the key 3; use strings as keys"),
     ],
 )
 def test_what_toml_does_not_have_is_refused(tree, message):
