@@ -55,9 +55,12 @@ HEADERS = {
     "vector": r"std::vector<",
 }
 # The standard itself says that the second brings the first.
-BROUGHT = {"exception": {"stdexcept"}, "string_view": {"string"}, "utility": {"algorithm", "map", "memory", "optional", "tuple", "vector"}}
+BROUGHT = {
+    "exception": {"stdexcept"}, "string_view": {"string"},
+    "utility": {"algorithm", "map", "memory", "optional", "tuple", "vector"}}
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-FOLDERS = [ROOT / folder for folder in ("kernel/include", "engine/include", "render/include", "capi/include", "kernel", "kernel/src", "lab", "lab/carom",
+FOLDERS = [ROOT / folder for folder in ("kernel/include", "engine/include", "render/include", "capi/include",
+                                        "kernel", "kernel/src", "lab", "lab/carom",
                                         "engine/src", "render/src", "capi/src", "tools/carom", "tests")]
 INCLUDE = re.compile(r'^#include [<"]([^>"]+)[>"]', re.MULTILINE)
 NO_CODE = re.compile(r'//[^\n]*|"(?:[^"\\\n]|\\.)*"')
@@ -96,7 +99,8 @@ def add(text, headers):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--fix", action="store_true")
     parser.add_argument("files", type=pathlib.Path, nargs="+")
     arguments = parser.parse_args()

@@ -12,8 +12,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release") / "carom"
-PAGES = {"command-line": "command_line.md", "scene-schema": "scene.schema.json", "record-schema": "record.schema.json",
-         "scene-format": "scene_format.md"}
+PAGES = {"command-line": "command_line.md", "scene-schema": "scene.schema.json",
+         "record-schema": "record.schema.json", "scene-format": "scene_format.md"}
 
 for what, name in PAGES.items():
     path = ROOT / "docs/reference" / name
@@ -22,5 +22,6 @@ for what, name in PAGES.items():
         continue
     # A change that the program does not know yet would be lost.
     if name == "scene_format.md" and path.stat().st_mtime > PROGRAM.stat().st_mtime:
-        sys.exit(f"renew_formats: {path.relative_to(ROOT)} is newer than {PROGRAM}; build carom_program first")
+        sys.exit(
+            f"renew_formats: {path.relative_to(ROOT)} is newer than {PROGRAM}; build carom_program first")
     path.write_text(printed)

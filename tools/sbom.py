@@ -40,7 +40,9 @@ def libraries(build):
     """Shared libraries that the program and libcarom.so name themselves (not what these ask for in turn)."""
     found = set()
     for binary in [build / "carom", *sorted(build.glob("capi/libcarom.so"))]:
-        needed = set(re.findall(r"\(NEEDED\).*\[(.*)\]", output_of("readelf", "-d", str(binary), env={**os.environ, "LC_ALL": "C"})))
+        needed = set(re.findall(
+            r"\(NEEDED\).*\[(.*)\]",
+            output_of("readelf", "-d", str(binary), env={**os.environ, "LC_ALL": "C"})))
         for name, path in re.findall(r"^\s*(\S+) (?:=> )?(\S*)", output_of("ldd", str(binary)), re.M):
             if name in needed and path.startswith("/"):
                 found.add(os.path.realpath(path))
@@ -50,7 +52,9 @@ def libraries(build):
 def owners(paths):
     """path -> package. dpkg may know a file by its name before /usr was merged."""
     names = {name: path for path in paths for name in (path, path.removeprefix("/usr"))}
-    text = subprocess.run(["dpkg-query", "-S", *sorted(names)], text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout
+    text = subprocess.run(
+        ["dpkg-query", "-S", *sorted(names)], text=True, stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL).stdout
     found = {}
     for line in text.splitlines():
         package, separator, name = line.partition(": ")
@@ -66,12 +70,15 @@ def distribution():
 
 def component(package, linked):
     name, version, source, architecture, homepage = output_of(
-        "dpkg-query", "-W", "-f=${Package}|${Version}|${source:Package}|${Architecture}|${Homepage}\n", package).splitlines()[0].split("|")
+        "dpkg-query", "-W", "-f=${Package}|${Version}|${source:Package}|${Architecture}|${Homepage}\n",
+        package).splitlines()[0].split("|")
     vendor, distro = distribution()
     purl = f"pkg:deb/{vendor}/{name}@{version.replace('+', '%2B').replace(':', '%3A')}?arch={architecture}&distro={distro}"
-    entry = {"type": "library", "bom-ref": purl, "name": name, "version": version, "purl": purl, "scope": "required",
-             "properties": [{"name": "carom:debian-source", "value": source},
-                            {"name": "carom:used-as", "value": "shared library" if linked else "headers, or what the compiler links in"}]}
+    entry = {"type": "library", "bom-ref": purl, "name": name, "version": version, "purl": purl,
+             "scope": "required", "properties": [{"name": "carom:debian-source", "value": source},
+                            {
+                                "name": "carom:used-as", "value": "shared library" if linked
+                                else "headers, or what the compiler links in"}]}
     if homepage:
         entry["externalReferences"] = [{"type": "website", "url": homepage}]
     return entry
@@ -85,23 +92,27 @@ def bom(build, version, archives):
         sys.exit("sbom: no package owns " + ", ".join(orphans[:5]))
     shared = {owner[path] for path in linked}
     components = [component(package, package in shared) for package in sorted(set(owner.values()))]
-    own = {"type": "application", "bom-ref": f"pkg:generic/carom@{version}", "name": "carom", "version": version, "purl": f"pkg:generic/carom@{version}",
+    own = {"type": "application", "bom-ref": f"pkg:generic/carom@{version}", "name": "carom",
+           "version": version, "purl": f"pkg:generic/carom@{version}",
            "licenses": [{"license": {"id": "Apache-2.0"}}]}
     if archives:
         own["components"] = [{"type": "file", "bom-ref": f"file:{path.name}", "name": path.name,
                               "hashes": [{"alg": "SHA-256", "content": hashlib.sha256(path.read_bytes()).hexdigest()}]} for path in archives]
-    document = {"$schema": "http://cyclonedx.org/schema/bom-1.6.schema.json", "bomFormat": "CycloneDX", "specVersion": "1.6", "version": 1,
-                "metadata": {"component": own}, "components": components,
-                "dependencies": [{"ref": own["bom-ref"], "dependsOn": [entry["bom-ref"] for entry in components]}]}
+    document = {"$schema": "http://cyclonedx.org/schema/bom-1.6.schema.json", "bomFormat": "CycloneDX",
+                "specVersion": "1.6", "version": 1, "metadata": {"component": own}, "components": components,
+                "dependencies": [
+                    {"ref": own["bom-ref"], "dependsOn": [entry["bom-ref"] for entry in components]}]}
     if "SOURCE_DATE_EPOCH" in os.environ:
         time = datetime.datetime.fromtimestamp(int(os.environ["SOURCE_DATE_EPOCH"]), datetime.timezone.utc)
         document["metadata"]["timestamp"] = time.strftime("%Y-%m-%dT%H:%M:%SZ")
-    document["serialNumber"] = "urn:uuid:" + str(uuid.uuid5(uuid.NAMESPACE_URL, json.dumps(document, sort_keys=True)))
+    document["serialNumber"] = "urn:uuid:" + str(
+        uuid.uuid5(uuid.NAMESPACE_URL, json.dumps(document, sort_keys=True)))
     return document
 
 
 if __name__ == "__main__":
     if len(sys.argv) < 3:
         sys.exit(__doc__)
-    made = bom(pathlib.Path(sys.argv[1]).resolve(), sys.argv[2], [pathlib.Path(path) for path in sys.argv[3:]])
+    made = bom(
+        pathlib.Path(sys.argv[1]).resolve(), sys.argv[2], [pathlib.Path(path) for path in sys.argv[3:]])
     print(json.dumps(made, indent=1, ensure_ascii=False))

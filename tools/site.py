@@ -20,10 +20,15 @@ def navigation():
     index = (ROOT / "docs/README.md").read_text()
     paths = list(dict.fromkeys(re.findall(r"\]\(((?:%s)/[a-z0-9_-]+\.md)" % "|".join(SECTIONS), index, re.I)))
     paths.append(C_INTERFACE)
-    notes = [f"lab/{path}" for path in re.findall(r"\]\((notes/[a-z0-9_-]+\.md)\)", (ROOT / "lab/README.md").read_text())]
-    sections = [{name.capitalize(): [f"docs/{path}" for path in paths if path.startswith(name + "/")]} for name in SECTIONS]
+    notes = [
+        f"lab/{path}"
+        for path in re.findall(r"\]\((notes/[a-z0-9_-]+\.md)\)", (ROOT / "lab/README.md").read_text())]
+    sections = [
+        {name.capitalize(): [f"docs/{path}" for path in paths if path.startswith(name + "/")]}
+        for name in SECTIONS]
     return [{"carom": "README.md"}, {"Documents": "docs/README.md"}, *sections,
-            {"Laboratory": ["lab/README.md", *notes]}, {"Contributing": "CONTRIBUTING.md"}, {"What is asserted": "tests/README.md"}, {"Changes": "CHANGELOG.md"}, {"Security": "SECURITY.md"}]
+            {"Laboratory": ["lab/README.md", *notes]}, {"Contributing": "CONTRIBUTING.md"},
+            {"What is asserted": "tests/README.md"}, {"Changes": "CHANGELOG.md"}, {"Security": "SECURITY.md"}]
 
 
 def configure(path):
@@ -33,7 +38,9 @@ def configure(path):
         "docs_dir": "pages",
         "nav": navigation(),
         "use_directory_urls": False,
-        "theme": {"name": "material", "font": False, "features": ["navigation.sections", "navigation.top", "search.highlight"]},
+        "theme": {
+            "name": "material", "font": False,
+            "features": ["navigation.sections", "navigation.top", "search.highlight"]},
         "plugins": ["search"],
         "markdown_extensions": ["tables", "fenced_code", "sane_lists", {"toc": {"permalink": True}}],
     }, indent=1))
@@ -75,7 +82,9 @@ def check(folder):
             target = (path.parent / urllib.parse.unquote(url.path)).resolve() if url.path else path
             if target.is_dir():
                 target /= "index.html"
-            if not target.is_file() or (url.fragment and target in pages and url.fragment not in pages[target].anchors):
+            if not target.is_file() or (
+                url.fragment and target in pages and url.fragment not in pages[target].anchors
+            ):
                 dead.add(f"{path.relative_to(root)}: {link}")
     for line in sorted(dead):
         print(f"site: a dead link in {line}", file=sys.stderr)

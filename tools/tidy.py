@@ -105,7 +105,8 @@ class Tidy:
         source = folder / "sources.cpp"
         source.write_text("".join(
             f'#include "{file}"  // NOLINT(bugprone-suspicious-include): on purpose\n' for file in group.files))
-        arguments = ["clang++", *group.flags.meaning, *(word for include in group.flags.includes for word in include),
+        arguments = ["clang++", *group.flags.meaning,
+                     *(word for include in group.flags.includes for word in include),
                      "-c", str(source)]
         database = [{"directory": str(folder), "file": str(source), "arguments": arguments}]
         (folder / "compile_commands.json").write_text(json.dumps(database, indent=1))
@@ -126,7 +127,8 @@ class Tidy:
             self.report(result)
             self.checked += len(group.files)
             seconds = time.monotonic() - self.start
-            print(f"lint: {self.checked} of {self.total} files through clang-tidy, {seconds:.0f} s", flush=True)
+            print(
+                f"lint: {self.checked} of {self.total} files through clang-tidy, {seconds:.0f} s", flush=True)
 
     def take_apart(self, group, blamed, output):
         """Files in which a clash shows are checked one by one, the others together again."""
@@ -157,7 +159,8 @@ class Tidy:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("files", type=pathlib.Path, nargs="+")
     arguments = parser.parse_args()
@@ -169,7 +172,8 @@ def main():
               "; name .cpp files (headers are checked with the sources that include them)", file=sys.stderr)
         return 2
     # The longest first, so that no processor is idle at the end: by size, which is near enough.
-    groups = sorted(groups_of(files, flags), key=lambda group: -sum(file.stat().st_size for file in group.files))
+    groups = sorted(
+        groups_of(files, flags), key=lambda group: -sum(file.stat().st_size for file in group.files))
     count = sum(len(group.files) for group in groups)
     tidy = Tidy((arguments.build / "tidy").resolve(), count)
     print(f"lint: clang-tidy; files: {count}, runs: {len(groups)}", flush=True)

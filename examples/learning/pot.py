@@ -53,7 +53,8 @@ class Tables(VecEnv):  # type: ignore[misc, unused-ignore]  # without stable-bas
         over = terminated | truncated
         rows: list[dict[str, Any]] = [{} for _ in over]
         for row in np.flatnonzero(over).tolist():
-            rows[row] = {"terminal_observation": infos["final_obs"][row], "TimeLimit.truncated": bool(truncated[row])}
+            rows[row] = {
+                "terminal_observation": infos["final_obs"][row], "TimeLimit.truncated": bool(truncated[row])}
         return observations, rewards, over, rows
 
     def close(self) -> None:
@@ -80,7 +81,9 @@ def score(act: Callable[[NDArray[np.float32]], Actions], shots: int, seed: int) 
     part, z = float((rewards > 0).mean()), 1.96
     middle = (part + z * z / (2 * shots)) / (1 + z * z / shots)
     wide = z * math.sqrt(part * (1 - part) / shots + z * z / (4 * shots * shots)) / (1 + z * z / shots)
-    return {"potted": part, "low": middle - wide, "high": middle + wide, "reward": float(rewards.mean()), "shots": shots}
+    return {
+        "potted": part, "low": middle - wide, "high": middle + wide, "reward": float(rewards.mean()),
+        "shots": shots}
 
 
 def train(steps: int, seed: int) -> Any:
@@ -123,17 +126,21 @@ def picture(model: Any, path: str) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--steps", type=int, default=400_000, help="shots to learn from")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--shots", type=int, default=4000, help="shots to count pots in, on layouts that were not learned from")
+    parser.add_argument(
+        "--shots", type=int, default=4000,
+        help="shots to count pots in, on layouts that were not learned from")
     parser.add_argument("--model", help="where the model goes, as .zip")
     parser.add_argument("--report", help="where the figures go, as .json")
     parser.add_argument("--picture", help="where a picture of nine shots goes; needs matplotlib")
     asked = parser.parse_args(arguments)
     random = np.random.default_rng(asked.seed)
     unseen = 2**31 + asked.seed
-    by_chance = score(lambda seen: random.uniform(-1, 1, (len(seen), 5)).astype(np.float32), asked.shots, unseen)
+    by_chance = score(
+        lambda seen: random.uniform(-1, 1, (len(seen), 5)).astype(np.float32), asked.shots, unseen)
     print(f"random:  {by_chance['potted']:.3f} potted", flush=True)
     model = train(asked.steps, asked.seed)
     trained = score(lambda seen: np.asarray(model.predict(seen, deterministic=True)[0]), asked.shots, unseen)

@@ -28,7 +28,8 @@ def best_aim(scene: carom.Scene, ball: str) -> tuple[float, float]:
         raise ValueError(f"no aim pots ball {ball}")
     starts, ends = edges[::2], edges[1::2] - 1
     widest = int(np.argmax(ends - starts))
-    return float(aims[starts[widest]] + aims[ends[widest]]) / 2, float(aims[ends[widest]] - aims[starts[widest]])
+    return float(aims[starts[widest]] + aims[ends[widest]]) / 2, float(
+        aims[ends[widest]] - aims[starts[widest]])
 
 
 def main() -> int:

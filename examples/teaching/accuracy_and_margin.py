@@ -22,10 +22,12 @@ import numpy as np
 # %%
 shots = {
     "a cut": carom.Scene(
-        ball=[{"id": "cue", "position": [0.635, 0.6]}, {"id": "1", "position": [0.66, 1.4]}], cue={"speed": 2, "aim_deg": 90, "offset": [0, 0]}
+        ball=[{"id": "cue", "position": [0.635, 0.6]}, {"id": "1", "position": [0.66, 1.4]}],
+        cue={"speed": 2, "aim_deg": 90, "offset": [0, 0]}
     ),
     "eight-ball break": carom.Scene(
-        ball=[{"id": "cue", "position": [0.6, 0.5]}], rack={"game": "eight_ball"}, cue={"speed": 8, "aim_deg": 90.1}
+        ball=[{"id": "cue", "position": [0.6, 0.5]}], rack={"game": "eight_ball"},
+        cue={"speed": 8, "aim_deg": 90.1}
     ),
 }
 report = carom.accuracy(shots["a cut"], march=(100, 1000, 10000, 100000), runs=1)

@@ -55,7 +55,8 @@ def rolls_again(states: Numbers) -> Numbers:
 
 def rebound(speed: float, angle: Numbers, side: float) -> Numbers:
     """The angle to the cushion's normal [degrees] at which the ball rolls away."""
-    after = carom.kernel.ball_cushion(rolling(speed, angle, side), [-1.0, 0.0], e_c=E_C, f_c=F_C, height=NOSE * R)
+    after = carom.kernel.ball_cushion(
+        rolling(speed, angle, side), [-1.0, 0.0], e_c=E_C, f_c=F_C, height=NOSE * R)
     x, y = rolls_again(after).T
     out: Numbers = np.degrees(np.arctan2(y, -x))
     return out
@@ -85,7 +86,8 @@ for side in (-0.8, 0.0, 0.8):
     after = carom.kernel.ball_cushion(states, [-1.0, 0.0], e_c=E_C, f_c=F_C, height=NOSE * R)
     v, w = han(states[:, 1], states[:, 2])
     assert np.abs(after[:, 1] - v).max() < 1e-12 and np.abs(after[:, 2] - w).max() < 1e-9
-straight = rolls_again(carom.kernel.ball_cushion(rolling(2.0, np.zeros(1), 0.0), [-1.0, 0.0], e_c=E_C, f_c=F_C, height=NOSE * R))
+straight = rolls_again(
+    carom.kernel.ball_cushion(rolling(2.0, np.zeros(1), 0.0), [-1.0, 0.0], e_c=E_C, f_c=F_C, height=NOSE * R))
 kept = float(-straight[0, 0] / 2.0)
 assert abs(kept - 0.55) < 0.02
 running, none, reverse = (rebound(2.0, angle[:31], side) for side in (-0.8, 0.0, 0.8))
@@ -104,7 +106,9 @@ aim = float(np.degrees(np.arctan2(*(image - start)[::-1])))
 figure, axes = plt.subplots(figsize=(9, 5), layout="constrained")
 ends: dict[str, float] = {}
 for side, name, color in ((0.4, "left", "tab:red"), (0.0, "none", "white"), (-0.4, "right", "tab:blue")):
-    record = carom.simulate(carom.Scene(ball=[{"id": "cue", "position": start.tolist()}], cue={"speed": 2.5, "aim_deg": aim, "offset": [side, 0.1], "end_mass": 0}))
+    record = carom.simulate(carom.Scene(
+        ball=[{"id": "cue", "position": start.tolist()}],
+        cue={"speed": 2.5, "aim_deg": aim, "offset": [side, 0.1], "end_mass": 0}))
     if side == 0:
         carom.plot.table(record, trails=False, at=0.0, ax=axes)
     times = np.linspace(0, record.duration, 4000)

@@ -24,7 +24,8 @@ def scene(speed: float, height: float, gap: float, **balls: float) -> carom.Scen
     """The cue ball at y = 0 and another one `gap` m away, surface to surface."""
     there = {"id": "1", "position": [0.0, gap + 2 * R]}
     cue = {"speed": speed, "aim_deg": 90, "offset": [0.0, height]}
-    return carom.Scene(table={"cushion": []}, balls=balls, ball=[{"id": "cue", "position": [0.0, 0.0]}, there], cue=cue)
+    return carom.Scene(
+        table={"cushion": []}, balls=balls, ball=[{"id": "cue", "position": [0.0, 0.0]}, there], cue=cue)
 
 
 def slide(v: float, rw: float, most: float) -> tuple[float, float, float]:

@@ -33,7 +33,8 @@ def scene(cut: float, **balls: float) -> carom.Scene:
 def deflection(record: carom.Record) -> float:
     """The angle [degrees] between +y and the direction in which the cue ball rolls after the impact."""
     hit = next(e.time for e in record.event_list() if e.type == "ball_ball")
-    rolls = next(e.time for e in record.event_list() if e.type == "slide_roll" and e.a == "cue" and e.time > hit)
+    rolls = next(
+        e.time for e in record.event_list() if e.type == "slide_roll" and e.a == "cue" and e.time > hit)
     x, y, _ = record.states(rolls)[0, 1]
     return float(np.degrees(np.arctan2(abs(x), y)))
 

@@ -37,7 +37,8 @@ def formula(v: float, cut: Numbers, roll: float, side: Numbers) -> Numbers:
     """Throw [degrees]."""
     along, upward = slips(v, cut, roll, side)
     u = np.maximum(np.hypot(along, upward), 1e-12)
-    return np.degrees(np.arctan(np.minimum(friction(u), 2 / (1 + E_B) / 7 * u / (v * np.cos(cut))) * along / u))
+    return np.degrees(
+        np.arctan(np.minimum(friction(u), 2 / (1 + E_B) / 7 * u / (v * np.cos(cut))) * along / u))
 
 
 def thrown(v: float, cut: Numbers, roll: float, side: Numbers, model: str) -> Numbers:
@@ -50,7 +51,8 @@ def thrown(v: float, cut: Numbers, roll: float, side: Numbers, model: str) -> Nu
     states[:, 0, 2, 0] = -roll * v / R
     states[:, 0, 2, 2] = -side * v * np.sin(cut) / R  # outside english turns clockwise here
     slip = np.hypot(*slips(v, cut, roll, side))
-    after = carom.kernel.ball_ball(states, model=model, mu_b=friction(slip), e_b=E_B, mu_s=0.2, tolerance=1e-9)
+    after = carom.kernel.ball_ball(
+        states, model=model, mu_b=friction(slip), e_b=E_B, mu_s=0.2, tolerance=1e-9)
     x, y = after[:, 1, 1, 0], after[:, 1, 1, 1]
     return np.degrees(np.arctan2(line[:, 0] * y - line[:, 1] * x, line[:, 0] * x + line[:, 1] * y))
 

@@ -42,8 +42,9 @@ def measure_shots(program, folder, count):
         for seed in range(1, count + 1):
             scene = folder / "shot.toml"
             scene.write_text(shot(kind, seed))
-            result = json.loads(run(program, "accuracy", str(scene), "--json", "--repeat", "3", "--target", str(TARGET),
-                                    "--march", ",".join(map(str, MARCH)), "--tolerance", ",".join(TOLERANCES)))
+            result = json.loads(run(program, "accuracy", str(scene), "--json", "--repeat", "3", "--target",
+                                    str(TARGET), "--march", ",".join(map(str, MARCH)), "--tolerance",
+                                    ",".join(TOLERANCES)))
             shots.append({"class": kind, "seed": seed, **result})
             progress(kind, seed, count)
     return shots
@@ -94,7 +95,9 @@ NOISE = (
     ("march N=10000", lambda t: physics(t, "substeps = 10000")),
     ("march N=1000", lambda t: physics(t, "substeps = 1000")),
     ("cue ball 1e-4 m off (a very good camera)", lambda t: physics(moved(t, 1e-4), TIGHT)),
-    ("ball-ball friction a tenth more", lambda t: physics(balls(t, "mu_b_fit = [0.0109461, 0.1188, 1.088]"), TIGHT)),
+    (
+        "ball-ball friction a tenth more",
+        lambda t: physics(balls(t, "mu_b_fit = [0.0109461, 0.1188, 1.088]"), TIGHT)),
     ("restitution 0.95 -> 0.94", lambda t: physics(balls(t, "e_b = 0.94"), TIGHT)),
     ("model inelastic (closed form)", lambda t: physics(t, 'ball_ball = "inelastic"')),
 )
@@ -116,10 +119,13 @@ def measure_noise(program, folder, count):
             if kind != "break":
                 continue
             for model in CLUSTERS:
-                best = min((final(program, scene, physics(text, f'clusters = "{model}"')) for _ in range(3)), key=lambda r: r[1])
+                best = min(
+                    (final(program, scene, physics(text, f'clusters = "{model}"')) for _ in range(3)),
+                    key=lambda r: r[1])
                 near = final(program, scene, physics(moved(text, 1e-9), f'clusters = "{model}"'))[0]
-                clusters.append({"seed": seed, "model": model, "ns": best[1], "cluster_ns": best[2], "events": best[3],
-                                 "apart": apart(reference, best[0]), "twin": apart(best[0], near) / 1e-9})
+                clusters.append({"seed": seed, "model": model, "ns": best[1], "cluster_ns": best[2],
+                                 "events": best[3], "apart": apart(reference, best[0]),
+                                 "twin": apart(best[0], near) / 1e-9})
     return rows, clusters
 
 
@@ -178,7 +184,8 @@ def collapse(shots):
         for r in s["rows"]:
             if not s["converged"] or r["method"] != "tolerance" or r["error_max"] <= 10 * s["agreement"] or not r["error_max"]:
                 continue
-            points.append((s["gain"], float(r["setting"]), r["error_max"] / (s["gain"] * float(r["setting"]))))
+            points.append(
+                (s["gain"], float(r["setting"]), r["error_max"] / (s["gain"] * float(r["setting"]))))
     return points
 
 
@@ -208,7 +215,8 @@ def e4(shots):
     print("| setting | mean us | within 1 mm | worst (m) |\n|---|---|---|---|")
     pairs = adaptive_rows(shots)
     judged = [s for s, _ in pairs]
-    fixed = [(" ".join(k), rows_of(judged, k)) for k in (("march", "N=1000"), ("march", "N=10000"), ("tolerance", "0.001"),
+    fixed = [(" ".join(k), rows_of(judged, k)) for k in (("march", "N=1000"), ("march", "N=10000"),
+                                                        ("tolerance", "0.001"),
                                                         ("tolerance", "1e-06"), ("tolerance", "1e-12"))]
     for title, rows in fixed + [("tolerance by gain", [r for _, r in pairs])]:
         print(f"| {title} | {statistics.mean(r['ns'] for r in rows) / 1e3:.1f} | "
@@ -223,10 +231,12 @@ def e4(shots):
 def e5(noise, clusters):
     print("\n### E5: what disturbs a shot, by its final distance (median, largest; m)\n")
     print("| disturbance | cut | break |\n|---|---|---|")
-    cells = {title: {k: [r["apart"] for r in noise if r["class"] == k and r["noise"] == title] for k in ("cut", "break")}
+    cells = {title: {
+        k: [r["apart"] for r in noise if r["class"] == k and r["noise"] == title] for k in ("cut", "break")}
              for title, _ in NOISE}
     for title in sorted(cells, key=lambda t: median(cells[t]["break"])):
-        print(f"| {title} | " + " | ".join(f"{median(v):.1e}, {max(v):.1e}" for v in cells[title].values()) + " |")
+        print(f"| {title} | " + " | ".join(
+            f"{median(v):.1e}, {max(v):.1e}" for v in cells[title].values()) + " |")
     print("\n### The cluster models on the same breaks\n")
     print("| model | us a break | of it in the map | events | final distance from compliant (m) | gain |\n|---|---|---|---|---|---|")
     for model in CLUSTERS:
@@ -244,7 +254,8 @@ def draw_pareto(plt, shots, folder):
             for setting in settings(judged):
                 if setting[0] == method:
                     rows = rows_of(judged, setting)
-                    points.append((median(r["ns"] for r in rows) / 1e3, 100 * sum(map(same, rows)) / len(rows),
+                    points.append((median(r["ns"] for r in rows) / 1e3,
+                                   100 * sum(map(same, rows)) / len(rows),
                                    max(median(r["error_max"] for r in rows), 1e-16)))
             x = [p[0] for p in points]
             axes[0][column].plot(x, [p[1] for p in points], "o-", color=colour, label=method)
@@ -268,7 +279,9 @@ def draw_gain(plt, shots, folder):
         own = [s for s in shots if s["class"] == kind]
         left.plot([s["ball_hits"] for s in own], [s["gain"] for s in own], ".", color=colour, label=kind)
         points = collapse(own)
-        right.plot([p[0] * p[1] for p in points], [p[0] * p[1] * p[2] for p in points], ".", markersize=3, color=colour)
+        right.plot(
+            [p[0] * p[1] for p in points], [p[0] * p[1] * p[2] for p in points], ".", markersize=3,
+            color=colour)
     slope, start = fit_of_gain(shots)
     most = max(s["ball_hits"] for s in shots)
     left.plot([0, most], [10 ** start, 10 ** (start + slope * most)], "k--", linewidth=0.8)
@@ -288,10 +301,13 @@ def draw_gain(plt, shots, folder):
 
 def draw_noise(plt, noise, folder):
     figure, axes = plt.subplots(figsize=(9, 5))
-    title_of = sorted({r["noise"] for r in noise}, key=lambda t: median(r["apart"] for r in noise if r["noise"] == t and r["class"] == "break"))
+    title_of = sorted(
+        {r["noise"] for r in noise},
+        key=lambda t: median(r["apart"] for r in noise if r["noise"] == t and r["class"] == "break"))
     for kind, colour, shift in (("cut", COLOURS[1], -0.15), ("break", COLOURS[0], 0.15)):
         for i, title in enumerate(title_of):
-            values = sorted(max(r["apart"], 1e-17) for r in noise if r["noise"] == title and r["class"] == kind)
+            values = sorted(
+                max(r["apart"], 1e-17) for r in noise if r["noise"] == title and r["class"] == kind)
             axes.plot([values[0], values[-1]], [i + shift] * 2, color=colour, linewidth=1)
             axes.plot(median(values), i + shift, "o", color=colour, label=kind if i == 0 else None)
     axes.set_yticks(range(len(title_of)))
@@ -312,7 +328,8 @@ def save(plt, figure, path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=100, help="shots of each class (default: 100)")
     parser.add_argument("--noise-count", type=int, default=25, help="shots of E5 (default: 25)")
     parser.add_argument("--program", default="build/release/carom")

@@ -13,9 +13,9 @@ import re
 import subprocess
 import tempfile
 
-RUNGS = ["baseline", "fewer square roots", "rsqrt newton", "branch hints", "branch order", "unconditional roots", "masks",
-         "two stages", "precomputed", "fma", "packed blocks", "simd loop", "simd ssa", "combined", "reduced state", "packed",
-         "carried roots", "decoupled roots", "summed"]
+RUNGS = ["baseline", "fewer square roots", "rsqrt newton", "branch hints", "branch order",
+         "unconditional roots", "masks", "two stages", "precomputed", "fma", "packed blocks", "simd loop",
+         "simd ssa", "combined", "reduced state", "packed", "carried roots", "decoupled roots", "summed"]
 
 
 def cachegrind(program, rung, isa, calls):
@@ -44,7 +44,8 @@ def perf(program, rung, isa, calls):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--one-rung", required=True)
     parser.add_argument("--json")
     parser.add_argument("--perf", action="store_true")
@@ -58,9 +59,10 @@ def main():
                 continue
             steps = many[0] - few[0]
             per = {k: (many[1][k] - few[1][k]) / steps for k in many[1]}
-            row = {"name": rung, "isa": isa, "instructions": per["Ir"], "loads": per["Dr"], "stores": per["Dw"],
-                   "l1_misses": per["D1mr"] + per["D1mw"], "last_level_misses": per["DLmr"] + per["DLmw"],
-                   "branches": per["Bc"] + per["Bi"], "mispredicted": per["Bcm"] + per["Bim"]}
+            row = {"name": rung, "isa": isa, "instructions": per["Ir"], "loads": per["Dr"],
+                   "stores": per["Dw"], "l1_misses": per["D1mr"] + per["D1mw"],
+                   "last_level_misses": per["DLmr"] + per["DLmw"], "branches": per["Bc"] + per["Bi"],
+                   "mispredicted": per["Bcm"] + per["Bim"]}
             if args.perf:
                 row["perf"] = perf(args.one_rung, rung, isa, 2000)
             rows.append(row)

@@ -67,27 +67,32 @@ def self_costs(path, counted):
 
 
 def measure(probe, args, folder):
-    command = ["valgrind", "--tool=callgrind", "--toggle-collect=carom::simulate(*", "--dump-before=*carom::Resolver::resolve(*",
-               "--compress-strings=no", f"--branch-sim={'yes' if args.branches else 'no'}", f"--callgrind-out-file={folder}/out", str(probe)]
-    command += ["gas", str(args.balls), str(args.events)] if args.shot in ("gas", "gas compliant") else [args.shot, str(args.seed)]
+    command = ["valgrind", "--tool=callgrind", "--toggle-collect=carom::simulate(*",
+               "--dump-before=*carom::Resolver::resolve(*", "--compress-strings=no", f"--branch-sim={'yes' if args.branches else 'no'}", f"--callgrind-out-file={folder}/out", str(probe)]
+    command += ["gas", str(args.balls), str(args.events)] if args.shot in ("gas", "gas compliant") else [
+        args.shot, str(args.seed)]
     env = dict(os.environ)
     env.setdefault("CAROM_ISA", "v3")
     run = subprocess.run(command, capture_output=True, text=True, env=env)
     if run.returncode != 0:
         sys.exit(f"callgrind_shot.py: {' '.join(command)} failed:\n{run.stderr[-2000:]}")
     files = sorted(folder.glob("out*"), key=lambda f: int(f.suffix[1:] or 0) if f.suffix else 1 << 30)
-    return run.stdout.split("\n")[:-1], [self_costs(f, ["Bcm", "Bim"] if args.branches else ["Ir"]) for f in files]
+    return run.stdout.split("\n")[:-1], [
+        self_costs(f, ["Bcm", "Bim"] if args.branches else ["Ir"]) for f in files]
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("shot", nargs="?", default="eight_ball_break",
                         help="a name of carom-lab bench shot, or gas (default: eight_ball_break)")
     parser.add_argument("--seed", type=int, default=0, help="of the shot (default: 0, the one of scenes/)")
     parser.add_argument("--balls", type=int, default=16, help="of the gas (default: 16)")
     parser.add_argument("--events", type=int, default=300, help="of the gas (default: 300)")
-    parser.add_argument("--functions", type=int, default=0, metavar="N", help="print the N dearest functions too")
-    parser.add_argument("--branches", action="store_true", help="count mispredicted branches (default: instructions)")
+    parser.add_argument(
+        "--functions", type=int, default=0, metavar="N", help="print the N dearest functions too")
+    parser.add_argument(
+        "--branches", action="store_true", help="count mispredicted branches (default: instructions)")
     parser.add_argument("--build", default="build/release", help="build folder (default: build/release)")
     parser.add_argument("--json", metavar="FILE", help="write the counts")
     args = parser.parse_args()
@@ -96,12 +101,15 @@ def main():
     build = pathlib.Path(args.build)
     if not (build / "CMakeCache.txt").exists():
         sys.exit(f"callgrind_shot.py: {build} is no build folder; run cmake --preset release first")
-    subprocess.run(["cmake", "--build", str(build), "--target", "carom_shot_probe"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        ["cmake", "--build", str(build), "--target", "carom_shot_probe"], check=True,
+        stdout=subprocess.DEVNULL)
     with tempfile.TemporaryDirectory() as folder:
         kinds, dumps = measure(build / "tools" / "measure" / "carom_shot_probe", args, pathlib.Path(folder))
     # One dump before the first round (set-up, first detection), then one a round; the last one holds the end of the run.
     if len(dumps) < len(kinds) + 1:
-        sys.exit(f"callgrind_shot.py: {len(kinds)} rounds but {len(dumps)} dumps; is it still Resolver::resolve?")
+        sys.exit(
+            f"callgrind_shot.py: {len(kinds)} rounds but {len(dumps)} dumps; is it still Resolver::resolve?")
     dumps = [d for d in dumps if sum(d.values())]
     rows = collections.defaultdict(lambda: [0, collections.Counter()])
     total = collections.Counter()

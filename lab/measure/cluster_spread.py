@@ -63,8 +63,8 @@ def write_scene(folder, model, gap, stop):
 def places(carom, folder, model, gap, count):
     """Per shot the list of (x, y) of all balls at STOP."""
     table = folder / f"{model}_{gap}.csv"
-    run([carom, "sweep", write_scene(folder, model, gap, True), "--vary", "cue.aim_deg=uniform(89.8,90.2)", "--vary",
-         "cue.speed=uniform(8,10)", "--seed", "1", "--count", str(count), "-o", table])
+    run([carom, "sweep", write_scene(folder, model, gap, True), "--vary", "cue.aim_deg=uniform(89.8,90.2)",
+         "--vary", "cue.speed=uniform(8,10)", "--seed", "1", "--count", str(count), "-o", table])
     with open(table, newline="") as stream:
         rows = list(csv.DictReader(stream))
     balls = [name[:-2] for name in rows[0] if name.endswith(".x") and not name.startswith(("cue.", "rack."))]
@@ -74,7 +74,8 @@ def places(carom, folder, model, gap, count):
 
 def farthest(one, two):
     """Per shot the largest distance of a ball between two tables [m]."""
-    return [max(((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2) ** 0.5 for a, b in zip(p, q)) for p, q in zip(one, two)]
+    return [
+        max(((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2) ** 0.5 for a, b in zip(p, q)) for p, q in zip(one, two)]
 
 
 def costs(carom, folder, repeats):
@@ -94,10 +95,13 @@ def draw(plt, results, output):
         middle = [1e3 * statistics.median(d) for d in moved]
         axes.plot(GAPS[1:], [max(m, 1e-12) for m in middle], "o-", color=COLOURS[model],
                   label=f"{model}: against its own touching rack")
-        axes.fill_between(GAPS[1:], [max(1e3 * min(d), 1e-12) for d in moved], [max(1e3 * max(d), 1e-12) for d in moved],
-                          color=COLOURS[model], alpha=0.2, linewidth=0)
+        axes.fill_between(GAPS[1:], [max(1e3 * min(d), 1e-12) for d in moved],
+                          [max(1e3 * max(d), 1e-12) for d in moved], color=COLOURS[model], alpha=0.2,
+                          linewidth=0)
     for other in MODELS[1:]:
-        apart = [1e3 * statistics.median(farthest(results["compliant"][gap], results[other][gap])) for gap in GAPS[1:]]
+        apart = [
+            1e3 * statistics.median(farthest(results["compliant"][gap], results[other][gap]))
+            for gap in GAPS[1:]]
         axes.plot(GAPS[1:], apart, "--", color=COLOURS[other], label=f"{other} against compliant, same gap")
     axes.set_xscale("log")
     axes.set_yscale("log")
@@ -110,7 +114,8 @@ def draw(plt, results, output):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("carom", help="the program")
     parser.add_argument("-o", "--output", required=True, help="the figure, a PNG")
     parser.add_argument("--count", type=int, default=40, help="breaks per model and gap (default 40)")
@@ -125,7 +130,9 @@ def main():
 
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        results = {model: {gap: places(args.carom, folder, model, gap, args.count) for gap in GAPS} for model in MODELS}
+        results = {
+            model: {gap: places(args.carom, folder, model, gap, args.count) for gap in GAPS}
+            for model in MODELS}
         times = costs(args.carom, folder, args.repeats)
     base = min(times["sequential"])
     for model in MODELS:

@@ -118,9 +118,11 @@ def build(folder, isa, step_error, stable, debug=False):
     law.write_text(text)
     (folder / "probe.cpp").write_text(PROBE)
     program = folder / "probe"
-    subprocess.run(["g++", "-std=c++20", "-O3", "-w", *(["-g"] if debug else []), *([f"-march=x86-64-{isa}"] if isa != "scalar" else []),
-                    f"-DCAROM_ISA_NAMESPACE={isa}", "-ffp-contract=off", "-fno-math-errno", f"-I{ROOT}/kernel/include", f"-I{src}",
-                    f"-I{ROOT}/kernel", f"-I{ROOT}/tools/carom", "-o", str(program), str(folder / "probe.cpp"),
+    subprocess.run(["g++", "-std=c++20", "-O3", "-w", *(["-g"] if debug else []),
+                    *([f"-march=x86-64-{isa}"] if isa != "scalar" else []),
+                    f"-DCAROM_ISA_NAMESPACE={isa}", "-ffp-contract=off", "-fno-math-errno",
+                    f"-I{ROOT}/kernel/include", f"-I{src}", f"-I{ROOT}/kernel", f"-I{ROOT}/tools/carom", "-o",
+                    str(program), str(folder / "probe.cpp"),
                     *[str(src / s) for s in SOURCES]], check=True)
     return program
 
@@ -150,7 +152,9 @@ def parts(folder, isa, longest):
     counts, steps = [], []
     for maps in (10, 20):
         out = folder / "callgrind"
-        run_ = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", program, "maps", str(longest), str(maps)],
+        run_ = subprocess.run([
+            "valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", program, "maps", str(longest),
+            str(maps)],
                               check=True, capture_output=True, text=True)
         steps.append(int(run_.stdout))
         costs, file, names = collections.Counter(), None, {}
@@ -177,25 +181,30 @@ def parts(folder, isa, longest):
     total, per_step = sum(per.values()), (steps[1] - steps[0]) / 10
     print(f"\ninstructions of one map: {total:.0f}, {total / per_step:.0f} a step")
     moved = sum(v for k, v in per.items() if k in GATHER)
-    print(f"moving numbers (loads, stores, shuffles: {', '.join(sorted(GATHER))}): {100 * moved / total:.0f} %")
+    print(
+        f"moving numbers (loads, stores, shuffles: {', '.join(sorted(GATHER))}): {100 * moved / total:.0f} %")
     for name, cost in sorted(per.items(), key=lambda x: -x[1]):
         if cost > 0.01 * total:
             print(f"  {name:<20}{cost / per_step:8.0f} a step {100 * cost / total:5.1f} %")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--isa", default="v3", choices=["scalar", "v3", "v4"])
-    parser.add_argument("--rounds", type=int, default=200, help="maps that are timed, each beside one baseline impact")
-    parser.add_argument("--parts", action="store_true", help="count instructions by part (valgrind; not for v4)")
+    parser.add_argument(
+        "--rounds", type=int, default=200, help="maps that are timed, each beside one baseline impact")
+    parser.add_argument(
+        "--parts", action="store_true", help="count instructions by part (valgrind; not for v4)")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         _, truth = racks(build(folder, args.isa, "1e-8", "4.8"), 1 / 1280)
         print(f"{'step error [V]':>14}{'longest':>9}{'stable to':>10}{'steps':>7}{'impacts':>9}{'median':>8}{'us':>6}"
               f"{'racks: steps':>14}{'error, median':>15}{'largest':>10}")
-        for step_error, longest, stable in [("1e-4", 12, "4.8"), ("1e-4", 8, "4.8"), ("1e-4", 4, "4.8"), ("1e-3", 12, "4.8"),
-                                            ("1e-3", 4, "4.8"), ("1e-2", 4, "4.8"), ("1e-4", 12, "7.0"), ("1e-2", 4, "7.0")]:
+        for step_error, longest, stable in [("1e-4", 12, "4.8"), ("1e-4", 8, "4.8"), ("1e-4", 4, "4.8"),
+                                            ("1e-3", 12, "4.8"), ("1e-3", 4, "4.8"), ("1e-2", 4, "4.8"),
+                                            ("1e-4", 12, "7.0"), ("1e-2", 4, "7.0")]:
             program = build(folder, args.isa, step_error, stable)
             steps, ratio, median, ns = run(program, "time", 1 / longest, args.rounds).split()
             many, motion = racks(program, 1 / longest)

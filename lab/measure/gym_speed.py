@@ -56,7 +56,8 @@ def vector(game, tables, rounds):
         rows.append((ours, plain, judged))
     count = tables * STEPS
     rates = [count / min(column) for column in zip(*rows)]
-    return *rates, statistics.median(plain / judged for _, plain, judged in rows), statistics.median(plain / ours for ours, plain, _ in rows)
+    return *rates, statistics.median(plain / judged for _, plain, judged in rows), statistics.median(
+        plain / ours for ours, plain, _ in rows)
 
 
 def single(game, rounds):
@@ -96,7 +97,9 @@ def over_pooltool(shots):
         balls = {name: pt.Ball.create(name, xy=tuple(place)) for name, place in zip(("cue", "1"), places)}
         system = pt.System(cue=pt.Cue(cue_ball_id="cue"), table=pt.Table.default(), balls=balls)
         side, height = 0.5 * action[3:] / np.sqrt(2)
-        system.cue.set_state(V0=3.15 + 2.85 * action[2], phi=np.degrees(np.arctan2(action[1], action[0])) % 360, a=side, b=height)
+        system.cue.set_state(
+            V0=3.15 + 2.85 * action[2], phi=np.degrees(np.arctan2(action[1], action[0])) % 360, a=side,
+            b=height)
         pt.simulate(system, inplace=True)
         fallen = [name for name, ball in system.balls.items() if ball.state.s == pt.constants.pocketed]
         reward = -1.0 if "cue" in fallen else float("1" in fallen)
@@ -111,16 +114,22 @@ def over_pooltool(shots):
 
 def pooltool_rate(shots):
     with side_by_side_shots.pooltool_environment() as python:
-        out = subprocess.run([python, __file__, "--inside", "--shots", str(shots)], check=True, capture_output=True, text=True).stdout
+        out = subprocess.run(
+            [python, __file__, "--inside", "--shots", str(shots)], check=True, capture_output=True,
+            text=True).stdout
     return json.loads(out.strip().splitlines()[-1])
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--package", default=str(ROOT / "build" / "release" / "python"), help="folder of the built package")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument(
+        "--package", default=str(ROOT / "build" / "release" / "python"), help="folder of the built package")
     parser.add_argument("--games", nargs="*", help="some of them by name (default: all)")
     parser.add_argument("--rounds", type=int, default=15)
-    parser.add_argument("--pooltool", action="store_true", help="also an environment over pooltool 0.6.0; downloads some hundred megabytes")
+    parser.add_argument(
+        "--pooltool", action="store_true",
+        help="also an environment over pooltool 0.6.0; downloads some hundred megabytes")
     parser.add_argument("--shots", type=int, default=300, help="of pooltool (default: 300)")
     parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
     args = parser.parse_args()
@@ -128,7 +137,9 @@ def main():
         over_pooltool(args.shots)
         return
     sys.path.insert(0, args.package)
-    model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine())
+    model = next(
+        (line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")),
+        platform.machine())
     print(f"{model}, Python {platform.python_version()}, CAROM_ISA={os.environ.get('CAROM_ISA', '(the widest)')}")
     print(f"{'game':<16}{'tables':>7}{'steps/s':>12}{'plain batch':>14}{'judged batch':>14}   medians of the ratios")
     import carom.gym

@@ -71,8 +71,9 @@ LOOPS = [
 def assembly(cxx, source, level, folder):
     path = pathlib.Path(folder) / "probe.cpp"
     path.write_text(source)
-    command = [cxx, "-std=c++20", "-O3", f"-march=x86-64-{level}", "-ffp-contract=off", "-DCAROM_LOOP_MARKS", "-w",
-               f"-I{ROOT}/kernel/include", f"-I{ROOT}/kernel/src", f"-I{ROOT}/kernel", "-S", "-o", "-", str(path)]
+    command = [cxx, "-std=c++20", "-O3", f"-march=x86-64-{level}", "-ffp-contract=off", "-DCAROM_LOOP_MARKS",
+               "-w", f"-I{ROOT}/kernel/include", f"-I{ROOT}/kernel/src", f"-I{ROOT}/kernel", "-S", "-o", "-",
+               str(path)]
     if source != PLAIN:  # as lab/ladder/CMakeLists.txt builds it
         command.append("-fno-math-errno")
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
@@ -81,8 +82,9 @@ def assembly(cxx, source, level, folder):
 def arm_assembly(source, folder):
     path = pathlib.Path(folder) / "probe.cpp"
     path.write_text(source)
-    command = ["clang++", "--target=aarch64-linux-gnu", "-mcpu=apple-m1", "-std=c++20", "-O3", "-ffp-contract=off", "-w",
-               "-DCAROM_LOOP_MARKS", f"-I{ROOT}/kernel/include", f"-I{ROOT}/kernel/src", f"-I{ROOT}/kernel", "-S", "-o", "-", str(path)]
+    command = ["clang++", "--target=aarch64-linux-gnu", "-mcpu=apple-m1", "-std=c++20", "-O3",
+               "-ffp-contract=off", "-w", "-DCAROM_LOOP_MARKS", f"-I{ROOT}/kernel/include",
+               f"-I{ROOT}/kernel/src", f"-I{ROOT}/kernel", "-S", "-o", "-", str(path)]
     run = subprocess.run(command, capture_output=True, text=True)
     return [line.replace("//", "#") if "LLVM-MCA" in line else line for line in run.stdout.splitlines()]
 
@@ -126,7 +128,9 @@ def body(lines):
 
 
 def simulate(code, cpu, triple="x86_64-linux-gnu"):
-    command = ["llvm-mca", f"-mtriple={triple}", f"-mcpu={cpu}", "-iterations=300", "-bottleneck-analysis", "-register-file-stats"]
+    command = [
+        "llvm-mca", f"-mtriple={triple}", f"-mcpu={cpu}", "-iterations=300", "-bottleneck-analysis",
+        "-register-file-stats"]
     run = subprocess.run(command, input="\n".join(code) + "\n", capture_output=True, text=True)
     if run.returncode != 0:
         return None
@@ -142,12 +146,14 @@ def simulate(code, cpu, triple="x86_64-linux-gnu"):
         "throughput_bound": number(r"Block RThroughput:\s+([\d.]+)"),
         "resource_pressure": number(r"Resource Pressure\s+\[ ([\d.]+)%"),
         "data_dependencies": number(r"Data Dependencies:\s+\[ ([\d.]+)%"),
-        "fp_registers_used": number(r"JFPRegisterFile.*|Zn3FpPRF[\s\S]*?Max number of mappings used:\s+(\d+)"),
+        "fp_registers_used": number(
+            r"JFPRegisterFile.*|Zn3FpPRF[\s\S]*?Max number of mappings used:\s+(\d+)"),
     }
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cxx", nargs="+", default=["g++"])
     parser.add_argument("--cpu", nargs="+", default=["znver3"])
     parser.add_argument("--json")
@@ -159,7 +165,9 @@ def main():
             for name, source, level, steps in LOOPS:
                 code = body(assembly(cxx, source, level, folder))
                 if len(code) < SHORTEST:
-                    print(f"{name:<22}{cxx:<12} the compiler moved most of the loop out of line: left out", file=sys.stderr)
+                    print(
+                        f"{name:<22}{cxx:<12} the compiler moved most of the loop out of line: left out",
+                        file=sys.stderr)
                     continue
                 for cpu in args.cpu:
                     r = simulate(code, cpu)

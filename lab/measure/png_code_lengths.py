@@ -17,7 +17,8 @@ PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/relea
 WIDTH, HEIGHT = 1920, 1080
 SEGMENT = 64  # pixels; no run leaves its segment
 LONGEST = 12  # bits of a code
-FILTER, END, RUNS = 4, 256, 257  # the byte before every row (Paeth), the end of the data, the first code of a run
+# the byte before every row (Paeth), the end of the data, the first code of a run
+FILTER, END, RUNS = 4, 256, 257
 BREAK = "eight_ball_break"
 FRAMES = {
     "top": [BREAK],
@@ -33,7 +34,9 @@ FRAMES = {
 }
 
 # What deflate calls a length of 3 to 258: for each of its 29 codes the shortest length, and the bits that follow the code.
-BASE = [3, 4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 17, 19, 23, 27, 31, 35, 43, 51, 59, 67, 83, 99, 115, 131, 163, 195, 227, 258]
+BASE = [
+    3, 4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 17, 19, 23, 27, 31, 35, 43, 51, 59, 67, 83, 99, 115, 131, 163, 195,
+    227, 258]
 EXTRA = [0] * 8 + [1] * 4 + [2] * 4 + [3] * 4 + [4] * 4 + [5] * 4 + [0]
 CODE_OF_RUN = np.array([0] + [max(i for i in range(29) if BASE[i] <= 3 * n) for n in range(1, SEGMENT + 1)])
 EXTRA_OF_RUN = np.array(EXTRA)[CODE_OF_RUN]
@@ -113,7 +116,8 @@ def main():
     usable[: END + 1] = True
     usable[RUNS + CODE_OF_RUN[1:]] = True
     frames = [(name, image) for name, words in FRAMES.items() for image in frames_of(*words)]
-    level_1 = [len(zlib.compress(np.pad(i.reshape(HEIGHT, -1), ((0, 0), (1, 0))).tobytes(), 1)) for _, i in frames]
+    level_1 = [
+        len(zlib.compress(np.pad(i.reshape(HEIGHT, -1), ((0, 0), (1, 0))).tobytes(), 1)) for _, i in frames]
     counts = [Counts(image) for _, image in frames]
     lengths = np.full(CODES, 8)
     for _ in range(6):  # which form a run takes depends on the lengths, and they on it

@@ -57,19 +57,24 @@ def beside_rail(args, folder, speed):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--carom", default="build/release/carom")
     parser.add_argument("--table", default="nine_foot")
     parser.add_argument("--pocket", default="fall", choices=["fall", "at_once"])
-    parser.add_argument("--step", type=float, default=1.0, help="[mm] between neighbouring lines (default: 1.0)")
+    parser.add_argument(
+        "--step", type=float, default=1.0, help="[mm] between neighbouring lines (default: 1.0)")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         print(f"{args.table}, pocket = \"{args.pocket}\": window in mm against the speed\n")
-        print("| to the long rail | " + " | ".join(f"{s} m/s" for s in SPEEDS) + " |\n|" + "---|" * (1 + len(SPEEDS)))
+        print("| to the long rail | " + " | ".join(
+            f"{s} m/s" for s in SPEEDS) + " |\n|" + "---|" * (1 + len(SPEEDS)))
         for angle in (45, 20, 10, 5):
-            print(f"| {angle} deg | " + " | ".join(f"{window(args, folder, angle, s):g}" for s in SPEEDS) + " |", flush=True)
-        print("| beside the rail, of 24 | " + " | ".join(str(beside_rail(args, folder, s)) for s in SPEEDS) + " |")
+            print(f"| {angle} deg | " + " | ".join(
+                f"{window(args, folder, angle, s):g}" for s in SPEEDS) + " |", flush=True)
+        print("| beside the rail, of 24 | " + " | ".join(
+            str(beside_rail(args, folder, s)) for s in SPEEDS) + " |")
 
 
 if __name__ == "__main__":

@@ -41,7 +41,8 @@ def import_cost(module, rounds, package):
     best = 1e9
     for _ in range(rounds):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        subprocess.run([sys.executable, "-c", f"import {module}"], check=True, env={**os.environ, "PYTHONPATH": package})
+        subprocess.run(
+            [sys.executable, "-c", f"import {module}"], check=True, env={**os.environ, "PYTHONPATH": package})
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         best = min(best, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
     return best
@@ -60,7 +61,8 @@ class Engine:
         names = (ctypes.c_char_p * len(keys))(*[key.encode() for key in keys])
         batch = ctypes.c_void_p()
         pointer = values.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
-        if self.c.carom_simulate_many(self.scene, ctypes.c_size_t(values.shape[1]), ctypes.c_size_t(len(keys)), names, pointer,
+        if self.c.carom_simulate_many(self.scene, ctypes.c_size_t(values.shape[1]),
+                                      ctypes.c_size_t(len(keys)), names, pointer,
                                       ctypes.c_double(-1.0), 1, 0, ctypes.byref(batch)) != 0:
             raise RuntimeError("the library plays no batch")
         self.c.carom_batch_free(batch)
@@ -85,7 +87,8 @@ def batches(library, rounds):
         out = carom.Shots.empty(n, len(scene.ids))
         rows = []
         for _ in range(rounds):
-            rows.append((timed(lambda: engine.play(keys, values)), timed(lambda: carom.simulate_many(scene, cue=cue)),
+            rows.append((timed(lambda: engine.play(keys, values)),
+                         timed(lambda: carom.simulate_many(scene, cue=cue)),
                          timed(lambda: carom.simulate_many(scene, cue=cue, out=out))))
         rates = [n / min(column) for column in zip(*rows)]
         print(f"{name:<18}{n:>8}" + "".join(f"{rate:>12.0f}/s" for rate in rates)
@@ -102,19 +105,24 @@ def one_shot(rounds):
     record = carom.simulate(scene)
     times = np.linspace(0, record.duration, 453)
     balls = len(record.ids)
-    for work, words in ((lambda: record.states(times), "states"), (lambda: record.orientations(times), "orientations")):
+    for work, words in (
+        (lambda: record.states(times), "states"), (lambda: record.orientations(times), "orientations")
+    ):
         print(f"{words} of {balls} balls at 453 times: {1e3 * each(work, rounds):.3f} ms")
     print(f"Scene.load: {1e6 * each(lambda: carom.Scene.load(ROOT / 'scenes/draw.toml'), rounds):.0f} us")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--package", default=str(ROOT / "build" / "release" / "python"))
     parser.add_argument("--library", default=str(ROOT / "build" / "release" / "capi" / "libcarom.so"))
     parser.add_argument("--rounds", type=int, default=15)
     args = parser.parse_args()
     sys.path.insert(0, args.package)
-    model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine())
+    model = next(
+        (line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")),
+        platform.machine())
     print(f"{model}, Python {platform.python_version()}, CAROM_ISA={os.environ.get('CAROM_ISA', '(the fastest)')}")
     for module in ("numpy", "carom"):
         print(f"import {module}: {import_cost(module, args.rounds, args.package):.3f} CPU s")

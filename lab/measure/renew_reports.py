@@ -47,7 +47,9 @@ class Renewal:
 
     def machine(self):
         commit = self.call("git", "describe", "--always", "--dirty").strip()
-        cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown")
+        cpu = next(
+            (line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")),
+            "unknown")
         compiler = self.call("c++", "--version").split("\n")[0]
         load, cores = os.getloadavg()[0], os.cpu_count()
         text = f"{datetime.date.today()}, commit {commit}, {cpu}, {cores} cores, {compiler}; load when this began: {load:.1f}."
@@ -79,7 +81,9 @@ class Renewal:
         text = "| method | setting | us (minimum, median) | kernel | clusters | final error (m) | outcome |\n|---|---|---|---|---|---|---|\n"
         for r in result["rows"]:
             share = lambda x: "" if x is None else f"{100 * x:.0f} %"  # noqa: E731
-            same = [w for w, k in (("order", "same_order"), ("first contact", "same_first_contact"), ("pockets", "same_pocketed"))
+            same = [w for w, k in (
+                ("order", "same_order"), ("first contact", "same_first_contact"),
+                ("pockets", "same_pocketed"))
                     if r[k] is False]
             error = "-" if r["error_max"] is None else f"{r['error_max']:.1e}"
             text += (f"| {r['method']} | {r['setting']} | {r['ns'] / 1e3:.1f}, {r['ns_median'] / 1e3:.1f} | {share(r['kernel_share'])} | "
@@ -94,8 +98,9 @@ class Renewal:
         return self.scene(THROW, "accuracy_throw.svg")
 
     def experiments(self):
-        out = self.call(sys.executable, ROOT / "lab/measure/accuracy_experiments.py", "--program", self.build / "carom", "--count",
-                        20 if self.quick else 100, "--noise-count", 5 if self.quick else 25, "--images", NOTE_IMAGES)
+        out = self.call(sys.executable, ROOT / "lab/measure/accuracy_experiments.py", "--program",
+                        self.build / "carom", "--count", 20 if self.quick else 100, "--noise-count",
+                        5 if self.quick else 25, "--images", NOTE_IMAGES)
         return re.sub("^### ", "#### ", out.strip(), flags=re.M) + "\n"
 
     def detectors(self):
@@ -107,14 +112,17 @@ class Renewal:
         for size in ("1280x720", "1920x1080"):
             for fps in (60, 120, 240):
                 plot = ["--plot", image("margin_break.svg")] if (size, fps) == ("1280x720", 60) else []
-                m = json.loads(self.carom("margin", BREAK, "--json", "--fps", fps, "--size", size, "--repeat", 1 if self.quick else 3,
+                m = json.loads(self.carom("margin", BREAK, "--json", "--fps", fps, "--size", size, "--repeat",
+                                          1 if self.quick else 3,
                                           *plot))
                 s = m["stages"]
                 text += (f"| {size} | {fps} | {m['budget_ms']:.2f} | {m['total']['p50']:.2f} | {m['total']['p99']:.2f} | "
                          f"{m['worst']['ms']:.2f} | {m['missed']} of {m['frames']} | {m['missed_without_files']} | "
                          f"{s['simulate']['p99']:.3f} | {s['draw']['p50']:.2f} | {s['readback']['p50']:.2f} | {s['encode']['p50']:.2f} | "
                          f"{s['write']['p50']:.2f} | {100 * m['serial']['share']:.1f} % |\n")
-        m = json.loads(self.carom("margin", BREAK, "--json", "--no-render", "--repeat", 9, "--plot", image("margin_simulation.svg")))
+        m = json.loads(self.carom(
+            "margin", BREAK, "--json", "--no-render", "--repeat", 9, "--plot",
+            image("margin_simulation.svg")))
         t, s = m["timing"], m["stages"]["simulate"]
         return (text + f"\nms. Simulation alone (`--no-render --repeat 9`): its worst frame takes {s['max']:.3f} ms, p99 {s['p99']:.3f} ms. "
                 f"Timing itself: {t['simulate_timed_ms']:.3f} ms with, {t['simulate_ms']:.3f} ms without ({100 * t['share']:+.1f} %), "
@@ -122,15 +130,21 @@ class Renewal:
 
     def sweep(self):
         text = ""
-        for more, figure, title in ((["--no-render"], "margin_sweep.svg", "Simulation only"), ([], "margin_sweep_drawn.svg", "Drawn at 720p")):
-            result = json.loads(self.carom("margin", BREAK, "--sweep", "--json", "--repeat", 1 if self.quick else 3, "--plot",
+        for more, figure, title in ((["--no-render"], "margin_sweep.svg", "Simulation only"), (
+            [], "margin_sweep_drawn.svg", "Drawn at 720p"
+        )):
+            result = json.loads(self.carom("margin", BREAK, "--sweep", "--json", "--repeat",
+                                           1 if self.quick else 3, "--plot",
                                            image(figure), *more))
             rates = sorted({r["fps"] for r in result["rows"]})
-            text += f"{title}: frames missed (worst frame in % of its time)\n\n| setting | " + " | ".join(f"{f:g} fps" for f in rates)
+            text += f"{title}: frames missed (worst frame in % of its time)\n\n| setting | " + " | ".join(
+                f"{f:g} fps" for f in rates)
             text += " | real time up to |\n|---" + "|---" * (len(rates) + 1) + "|\n"
             for f in result["frontier"]:
-                rows = [r for r in result["rows"] if (r["method"], r["setting"]) == (f["method"], f["setting"])]
-                cells = " | ".join(f"{r['missed']} ({100 * r['worst_ms'] / r['budget_ms']:.0f} %)" for r in rows)
+                rows = [
+                    r for r in result["rows"] if (r["method"], r["setting"]) == (f["method"], f["setting"])]
+                cells = " | ".join(
+                    f"{r['missed']} ({100 * r['worst_ms'] / r['budget_ms']:.0f} %)" for r in rows)
                 text += f"| {f['method']} {f['setting']} | {cells} | {'-' if f['fps'] is None else format(f['fps'], 'g') + ' fps'} |\n"
             text += "\n"
         return text
@@ -148,11 +162,16 @@ def lab_note(name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default=str(ROOT / "build/release"))
     parser.add_argument("--quick", action="store_true", help="fewer impacts, shots and repeats")
-    parser.add_argument("--accuracy", type=lab_note, default="lab/notes/2026-11-accuracy_experiments.md", help="note to write (%(default)s)")
-    parser.add_argument("--margins", type=lab_note, default="lab/notes/2026-11-margins.md", help="note to write (%(default)s)")
+    parser.add_argument(
+        "--accuracy", type=lab_note, default="lab/notes/2026-11-accuracy_experiments.md",
+        help="note to write (%(default)s)")
+    parser.add_argument(
+        "--margins", type=lab_note, default="lab/notes/2026-11-margins.md",
+        help="note to write (%(default)s)")
     names = sorted({*ACCURACY, *MARGINS})
     parser.add_argument("--only", nargs="+", choices=names, help="renew these only (default: all)")
     options = parser.parse_args()

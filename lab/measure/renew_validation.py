@@ -43,22 +43,29 @@ def summary(all_rows):
         groups.setdefault((row["title"], row["variant"]), []).append(row)
         if row["keys"] and row["keys"] != row["variant"]:
             keys[(row["variant"], f"`{row['preset']}` with `{row['keys']}`")] = None
-    lines = ["| case | what | trust | variant | model | free | within | worst |", "|---|---|---|---|---|---|---|---|"]
+    lines = [
+        "| case | what | trust | variant | model | free | within | worst |",
+        "|---|---|---|---|---|---|---|---|"]
     last = None
     for (title, variant), group in groups.items():
         ids = [group[0]["case"], group[-1]["case"]]
-        what = [ids[0] if ids[0] == ids[1] else f"{ids[0]} to {ids[1]}", title, group[0]["trust"]] if title != last else ["", "", ""]
+        what = [
+            ids[0] if ids[0] == ids[1] else f"{ids[0]} to {ids[1]}", title,
+            group[0]["trust"]] if title != last else ["", "", ""]
         last = title
         free = "yes" if all(r["free_of_fit"] for r in group) else "no"
         within = f"{sum(r['within'] for r in group)} of {len(group)}"
-        lines.append("| " + " | ".join([*what, variant, group[0]["model"], free, within, worst(group)]) + " |")
+        lines.append(
+            "| " + " | ".join([*what, variant, group[0]["model"], free, within, worst(group)]) + " |")
     return "\n".join(lines) + "\n\n" + "".join(f"* {name}: {what}\n" for name, what in keys)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--carom", default=str(ROOT / "build/release/carom-lab"))
-    parser.add_argument("--check", action="store_true", help="write nothing, and fail where something is stale")
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing, and fail where something is stale")
     args = parser.parse_args()
     new = {}
     with tempfile.TemporaryDirectory() as folder:
@@ -66,12 +73,13 @@ def main():
             rows, figure = validate(args.carom, folder, case)
             new[f"docs/images/validation_{case or 'all'}.svg"] = figure
     # The last ones are all rows.
-    page, found = re.subn(r"(<!-- begin summary -->\n).*?(<!-- end summary -->)", lambda m: m[1] + summary(rows) + m[2],
-                          (ROOT / PAGE).read_text(), flags=re.S)
+    page, found = re.subn(r"(<!-- begin summary -->\n).*?(<!-- end summary -->)",
+                          lambda m: m[1] + summary(rows) + m[2], (ROOT / PAGE).read_text(), flags=re.S)
     if found != 1:
         sys.exit(f"renew_validation: {PAGE} has the marks of the table {found} times")
     new[PAGE] = page
-    stale = [name for name, text in new.items() if not (ROOT / name).exists() or (ROOT / name).read_text() != text]
+    stale = [
+        name for name, text in new.items() if not (ROOT / name).exists() or (ROOT / name).read_text() != text]
     if args.check and stale:
         sys.exit(f"stale: {', '.join(stale)}; run lab/measure/renew_validation.py")
     for name in stale:

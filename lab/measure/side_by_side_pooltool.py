@@ -41,7 +41,9 @@ def time_original():
             return Name(name, (), {"__init__": lambda self, *args, **named: None})
 
     base = pathlib.Path(importlib.util.find_spec("pooltool").submodule_search_locations[0])
-    for package in ("pooltool", "pooltool.physics", "pooltool.physics.resolve", "pooltool.physics.resolve.ball_ball"):
+    for package in (
+        "pooltool", "pooltool.physics", "pooltool.physics.resolve", "pooltool.physics.resolve.ball_ball"
+    ):
         module = types.ModuleType(package)
         module.__path__ = [str(base.joinpath(*package.split(".")[1:]))]
         sys.modules[package] = module
@@ -57,7 +59,8 @@ def time_original():
     for case in cases:
         i, p = case["in"], case["params"]
         rvw1, rvw2 = (np.array([i[f"r{b}"], i[f"v{b}"], i[f"w{b}"]]) for b in (1, 2))
-        calls.append((rvw1, rvw2, p["R"], p["m"], p["u_s1"], p["u_s2"], p["u_b"], p["e_b"], case["out_N1000"]))
+        calls.append(
+            (rvw1, rvw2, p["R"], p["m"], p["u_s1"], p["u_s2"], p["u_b"], p["e_b"], case["out_N1000"]))
 
     def run(call):
         return original.collide_balls(*[a.copy() if hasattr(a, "copy") else a for a in call[:8]], None, 1000)
@@ -80,7 +83,8 @@ def time_original():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--carom", default=str(ROOT / "build" / "release" / "carom-lab"))
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
@@ -96,10 +100,12 @@ def main():
         subprocess.run(pip + NEEDED, check=True)
         theirs, ours = [], []
         for _ in range(args.rounds):
-            out = subprocess.run([python, __file__, "--inside"], check=True, capture_output=True, text=True).stdout
+            out = subprocess.run(
+                [python, __file__, "--inside"], check=True, capture_output=True, text=True).stdout
             theirs.append(json.loads(out.strip().splitlines()[-1]))
-            bench = subprocess.run([args.carom, "bench", "kernel", "--json", "--cloth-slip", "as_published", "--random", "50",
-                                    "--repeat", "3", "--no-growth"], check=True, capture_output=True, text=True).stdout
+            bench = subprocess.run([args.carom, "bench", "kernel", "--json", "--cloth-slip", "as_published",
+                                    "--random", "50", "--repeat", "3",
+                                    "--no-growth"], check=True, capture_output=True, text=True).stdout
             ours.append(json.loads(bench))
     original = min(t["ns"] for t in theirs)
     print(f"numba original: {original:.0f} ns an impact; off the published results by {theirs[0]['difference']:.1e} m/s")

@@ -49,7 +49,8 @@ def shards(plan):
         start = time.process_time()
         sweep.run(plan, folder, threads=1)
         seconds = time.process_time() - start
-        return seconds, sum(entry.stat().st_size for entry in os.scandir(folder) if entry.name.endswith(".parquet"))
+        return seconds, sum(
+            entry.stat().st_size for entry in os.scandir(folder) if entry.name.endswith(".parquet"))
 
 
 def table(plan, path):
@@ -58,7 +59,9 @@ def table(plan, path):
         csv = os.path.join(folder, "t.csv")
         words = [word for rule in plan.vary for word in ("--vary", rule)]
         before = children()
-        subprocess.run([PROGRAM, "sweep", path, *words, "--count", str(plan.shots), "--jobs", "1", "-o", csv], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(
+            [PROGRAM, "sweep", path, *words, "--count", str(plan.shots), "--jobs", "1", "-o", csv],
+            check=True, stdout=subprocess.DEVNULL)
         return children() - before, os.path.getsize(csv)
 
 

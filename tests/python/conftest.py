@@ -24,7 +24,8 @@ BAD_SCENES = sorted((SOURCE / "tests/data/bad_scenes").glob("*.toml"))
 def carom_program(*arguments: object, text: str | None = None, binary: bool = False):
     """What the program prints. Its own tests are elsewhere; here it is what Python has to agree with."""
     program = os.environ.get("CAROM_PROGRAM", SOURCE / "build/release/carom")
-    return subprocess.run([program, *map(str, arguments)], check=True, capture_output=True, text=not binary, input=text).stdout
+    return subprocess.run(
+        [program, *map(str, arguments)], check=True, capture_output=True, text=not binary, input=text).stdout
 
 
 def rows_of(path):
@@ -65,8 +66,11 @@ def stuck_scene(speed):
     """Balls of different mass that come to rest against each other, for which there is no model, if the first one moves to the right."""
     import carom
 
-    balls = [{"id": "a", "position": [0, 0], "velocity": [speed, 0]}, {"id": "b", "position": [0.2, 0], "mass": 0.34}]
-    return carom.Scene(table={"cushion": []}, balls={"mu_b": 0, "e_b": 0}, physics={"clusters": "sequential"}, ball=balls)
+    balls = [
+        {"id": "a", "position": [0, 0], "velocity": [speed, 0]},
+        {"id": "b", "position": [0.2, 0], "mass": 0.34}]
+    return carom.Scene(
+        table={"cushion": []}, balls={"mu_b": 0, "e_b": 0}, physics={"clusters": "sequential"}, ball=balls)
 
 
 def program_sweep(folder, scene, rules, count, seed):

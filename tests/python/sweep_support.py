@@ -33,7 +33,9 @@ def break_plan(shots, shard):
 
 def stamps(folder):
     """For every file of a shard what changes when it is written again."""
-    return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in pathlib.Path(folder).glob("*.parquet")}
+    return {
+        path.name: (path.stat().st_ino, path.stat().st_mtime_ns)
+        for path in pathlib.Path(folder).glob("*.parquet")}
 
 
 def contents(folder):
@@ -47,7 +49,8 @@ def unfinished(folder):
 def worker(plan, shard, folder, **options):
     """A process of its own that makes a shard."""
     code = f"from carom import sweep; print(sweep.run_shard({str(plan)!r}, {shard}, {str(folder)!r})['played'])"
-    return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
+    return subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
 
 
 def wait_for(what):

@@ -15,7 +15,8 @@ from pettingzoo.test import api_test, seed_test  # noqa: E402
 NAMES = ["EightBall", "NineBall", "Snooker"]
 
 
-@pytest.mark.parametrize("options", [{}, {"aim": "ball", "elevation_deg": (0.0, 3.0)}], ids=["plain", "options"])
+@pytest.mark.parametrize(
+    "options", [{}, {"aim": "ball", "elevation_deg": (0.0, 3.0)}], ids=["plain", "options"])
 @pytest.mark.parametrize("name", NAMES)
 def test_pettingzoo_accepts_the_game(name, options, capsys):
     with warnings.catch_warnings():
@@ -43,7 +44,9 @@ def test_games_between_random_players_end(name):
     ends, phases, fouls = [], 0, set()
     for seed in range(4):
         random = np.random.default_rng(seed)
-        turns = play(env, seed, lambda agent, _: random.uniform(-1, 1, env.action_space(agent).shape).astype(np.float32))
+        turns = play(
+            env, seed, lambda agent,
+            _: random.uniform(-1, 1, env.action_space(agent).shape).astype(np.float32))
         assert not env.agents and env.state_of_the_game.over
         last = {agent: reward for agent, reward, *_ in turns[-2:]}
         assert sorted(last.values()) == [-1.0, 1.0] and last[f"player_{env.state_of_the_game.winner}"] == 1.0
@@ -76,11 +79,14 @@ def test_the_cue_ball_in_hand_lies_where_the_action_says_or_beside_what_is_in_th
         agent, area = env.agent_selection, env.state_of_the_game.in_hand
         corners = [np.array([x, y, 0, 0, 0], np.float32) for x in (-1, 0, 1) for y in (-1, 0.3, 1)]
         wanted = [env._free_place(corner[:2].astype(float)) for corner in corners]
-        assert all(carom.games.may_place(env._record, env._option, place) for place in wanted) and len(set(wanted)) == 9, area
+        assert all(
+            carom.games.may_place(env._record, env._option, place)
+            for place in wanted) and len(set(wanted)) == 9, area
         if area == "anywhere":
             # On another ball: beside it, no farther than it takes.
             other = next(i for i, place in enumerate(env._xy) if i != cue and not np.isnan(place[0]))
-            low, high = np.array(env._game.table.corner) + env._game.radii[cue], np.array([env._game.table.width, env._game.table.length]) - 2 * env._game.radii[cue]
+            low, high = np.array(env._game.table.corner) + env._game.radii[cue], np.array(
+                [env._game.table.width, env._game.table.length]) - 2 * env._game.radii[cue]
             place = env._free_place(2 * (env._xy[other] - low) / high - 1)
             assert np.hypot(*(place - env._xy[other])) < 4 * env._game.radii[cue]
         env.step(corners[4])
@@ -93,7 +99,8 @@ def test_the_cue_ball_in_hand_lies_where_the_action_says_or_beside_what_is_in_th
 def test_rings_cover_the_plane_once():
     rings = np.concatenate([match._ring(k) for k in range(6)])
     assert len(np.unique(rings, axis=0)) == len(rings) and (np.diff((rings * rings).sum(1)) >= 0).all()
-    assert {tuple(p) for p in rings} == {(i, j) for i in range(-5, 6) for j in range(-5, 6) if i * i + j * j <= 25}
+    assert {tuple(p) for p in rings} == {
+        (i, j) for i in range(-5, 6) for j in range(-5, 6) if i * i + j * j <= 25}
 
 
 def test_calls_are_numbers_of_the_action():
@@ -127,8 +134,10 @@ def test_a_shot_without_an_end_truncates_the_game():
     env.reset(seed=1)
     before = env.observe("player_0")["balls"]
     env.step(np.array([np.nan, 0, 0, 0, 0], np.float32))
-    assert all(env.truncations.values()) and not any(env.terminations.values()) and set(env.rewards.values()) == {0.0}
-    assert env.infos["player_1"]["status"] == carom.ShotStatus.INVALID and "not a number" in env.infos["player_1"]["message"]
+    assert all(env.truncations.values()) and not any(env.terminations.values())
+    assert set(env.rewards.values()) == {0.0}
+    assert env.infos["player_1"]["status"] == carom.ShotStatus.INVALID
+    assert "not a number" in env.infos["player_1"]["message"]
     assert np.array_equal(env.observe("player_0")["balls"], before)
     short = match.env("NineBall", most_shots=1)
     short.reset(seed=1)

@@ -33,7 +33,9 @@ def wrong_imports(sources):
     trees = {name: ast.parse(text) for name, text in sources.items()}
     # The package itself is no part of a circle: whoever imports one of its modules has it.
     edges = {
-        name: {other for node in ast.walk(tree) for other in imported(node) if other in sources and other not in ("carom", name)}
+        name: {
+            other for node in ast.walk(tree) for other in imported(node) if other in sources
+            and other not in ("carom", name)}
         for name, tree in trees.items()
     }
     while free := {name for name in edges if not edges[name] & edges.keys()}:
@@ -57,9 +59,13 @@ def test_modules_import_each_other_in_no_circle_and_at_the_top():
     ("planted", "wrong"),
     [
         ({"carom._scene": "from carom import _record"}, ({"carom._record", "carom._scene"}, [])),
-        ({"carom._scene": "if TYPE_CHECKING:\n    from carom._record import Record"}, ({"carom._record", "carom._scene"}, [])),
+        (
+            {"carom._scene": "if TYPE_CHECKING:\n    from carom._record import Record"},
+            ({"carom._record", "carom._scene"}, [])),
         ({"carom._toml": "def f():\n    import carom._isa"}, (set(), ["carom._toml:2"])),
-        ({"carom._toml": "class A:\n    def f(self):\n        from carom import plot\n"}, ({"carom._toml", "carom.plot"}, ["carom._toml:3"])),
+        (
+            {"carom._toml": "class A:\n    def f(self):\n        from carom import plot\n"},
+            ({"carom._toml", "carom.plot"}, ["carom._toml:3"])),
     ],
 )
 def test_a_circle_and_a_hidden_import_are_found(planted, wrong):
@@ -83,7 +89,9 @@ WRONG = [
 
 def public_functions():
     """The functions and methods of carom's public names, by their names. What the classes of others define is theirs."""
-    modules = [carom, carom.games, carom.kernel, carom.plot, carom.sweep, importlib.import_module("carom.io.pooltool")]
+    modules = [
+        carom, carom.games, carom.kernel, carom.plot, carom.sweep,
+        importlib.import_module("carom.io.pooltool")]
     if importlib.util.find_spec("pettingzoo"):
         modules += map(importlib.import_module, ("carom.gym", "carom.gym.match", "carom.gym._env"))
     for module in modules:
@@ -105,7 +113,9 @@ def arguments():
     for name, function in public_functions():
         for parameter in inspect.signature(function).parameters.values():
             named = "word" if parameter.kind is parameter.VAR_KEYWORD else parameter.name
-            if parameter.annotation is not parameter.empty and "Any" not in re.sub(r"\[.*\]", "", parameter.annotation):
+            if parameter.annotation is not parameter.empty and "Any" not in re.sub(
+                r"\[.*\]", "", parameter.annotation
+            ):
                 yield pytest.param(function, named, parameter.annotation, id=f"{name}({parameter})"[:120])
 
 
@@ -118,7 +128,9 @@ def test_a_wrong_type_is_refused_by_the_name_of_the_argument(function, name, ann
         if set(kinds) & set(whole.split(" | ")):
             continue
         # The message comes before one about other arguments that are missing.
-        with pytest.raises((TypeError, ValueError), match=rf"^{name}: expected .+, not .+ \({type(value).__name__}\)$"):
+        with pytest.raises(
+            (TypeError, ValueError), match=rf"^{name}: expected .+, not .+ \({type(value).__name__}\)$"
+        ):
             function(**{name: value})
 
 

@@ -47,7 +47,9 @@ def test_a_plan_has_balls_trails_and_pockets_where_they_are(pyplot):
     from carom.plot import _CLOTH, _HOLE
     from matplotlib.colors import to_rgb
 
-    record = carom.simulate(carom.Scene(ball=[{"id": "red", "position": [0.4, 0.5]}], cue={"ball": "red", "speed": 1.5, "aim_deg": 90, "offset": [0, 0]}))
+    record = carom.simulate(carom.Scene(
+        ball=[{"id": "red", "position": [0.4, 0.5]}],
+        cue={"ball": "red", "speed": 1.5, "aim_deg": 90, "offset": [0, 0]}))
     red = record.colors[0]
     assert red.tolist() == pytest.approx([0.80, 0.06, 0.08])
     end = record.states(record.duration)[0, 0]
@@ -100,7 +102,8 @@ def test_speeds_and_energies_are_those_of_the_states(pyplot):
     assert set(lines) == {"cue", "1"}
     for ball, name in enumerate(record.ids):
         times, speed = lines[name].T
-        np.testing.assert_allclose(speed, np.linalg.norm(record.states(times)[:, ball, 1], axis=-1), atol=1e-12)
+        np.testing.assert_allclose(
+            speed, np.linalg.norm(record.states(times)[:, ball, 1], axis=-1), atol=1e-12)
         # Both sides of the impact, so that the jump is upright.
         assert (times < hit).any() and np.diff(times[np.searchsorted(times, hit) - 1 :][:2])[0] < 1e-12
     energy = carom.plot.energy(record)
@@ -115,7 +118,8 @@ def test_a_notebook_shows_the_page_and_nothing_from_outside(pyplot):
     shown = record._repr_html_()
     assert "1 balls" in shown and not re.search(r"<b>|<script", shown)
     inside = re.fullmatch(r'<iframe [^>]* sandbox="allow-scripts" srcdoc="([^"]+)"></iframe>', shown)[1]
-    assert html.unescape(inside) == record.page() and not re.search(r"https?://(?!www.w3.org/2000/svg)", record.page())
+    assert html.unescape(inside) == record.page()
+    assert not re.search(r"https?://(?!www.w3.org/2000/svg)", record.page())
     assert record.page(record).count('<script type="application/json"') == 3
 
     assert record._repr_png_().startswith(b"\x89PNG")
@@ -136,7 +140,8 @@ for call in (carom.plot.table, carom.Record.to_pandas):
     except ImportError as error:
         print(error)
 """
-    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.splitlines()
+    out = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.splitlines()
     assert out == [
         "carom.plot needs matplotlib: pip install 'carom-billiards[plot]'",
         "to_pandas needs pandas: pip install 'carom-billiards[notebook]'",
@@ -152,8 +157,10 @@ def test_events_and_segments_become_data_frames(break_scene):
     segments = record.to_pandas("segments")
     for ball, view in zip(record.ids, record.segments):
         rows = segments[segments["ball"] == ball]
-        assert (rows["start"].to_numpy() == view["start"]).all() and (rows["held"].to_numpy() == view["held"]).all()
-        assert (rows[["rx", "ry", "rz"]].to_numpy() == view["r"]).all() and (rows[["dwx", "dwy"]].to_numpy() == view["dw"]).all()
+        assert (rows["start"].to_numpy() == view["start"]).all()
+        assert (rows["held"].to_numpy() == view["held"]).all()
+        assert (rows[["rx", "ry", "rz"]].to_numpy() == view["r"]).all()
+        assert (rows[["dwx", "dwy"]].to_numpy() == view["dw"]).all()
         assert list(rows["state"]) == [record.MOTIONS[state] for state in view["state"]]
     assert len(segments) == sum(map(len, record.segments))
     with pytest.raises(ValueError, match="expected events or segments"):

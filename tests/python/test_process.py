@@ -27,7 +27,8 @@ scene = carom.Scene(balls={"mu_s": 0, "mu_r": 0, "mu_sp": 0, "mu_b": 0, "e_b": 1
 
 
 def run(code, **options):
-    return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
+    return subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
 
 
 @pytest.mark.parametrize(
@@ -62,7 +63,9 @@ def test_nothing_heavy_is_imported():
     code = "import sys, numpy; before = set(sys.modules); import carom; print(*sorted(set(sys.modules) - before))"
     out, err = run(code).communicate(timeout=HANGS)
     new = {name.split(".")[0] for name in out.split()}
-    heavy = {"asyncio", "csv", "email", "inspect", "matplotlib", "multiprocessing", "pandas", "pyarrow", "subprocess", "tempfile", "tomllib"}
+    heavy = {
+        "asyncio", "csv", "email", "inspect", "matplotlib", "multiprocessing", "pandas", "pyarrow",
+        "subprocess", "tempfile", "tomllib"}
     assert "carom" in new and not new & heavy, (new, err)
 
 
@@ -171,7 +174,8 @@ def test_everything_public_is_documented():
         thing = getattr(carom, name)
         if name.startswith("__"):
             continue
-        members = [m for n, m in vars(thing).items() if not n.startswith("_")] if isinstance(thing, type) else []
+        members = [
+            m for n, m in vars(thing).items() if not n.startswith("_")] if isinstance(thing, type) else []
         if not thing.__doc__:
             undocumented.append(name)
         for member in members:
@@ -179,5 +183,6 @@ def test_everything_public_is_documented():
             if (callable(member) or isinstance(member, property)) and not member.__doc__:
                 undocumented.append(f"{name}: {member}")
     for module in (carom.kernel, carom.sweep):
-        undocumented += [f"{module.__name__}.{name}" for name in module.__all__ if not getattr(module, name).__doc__]
+        undocumented += [
+            f"{module.__name__}.{name}" for name in module.__all__ if not getattr(module, name).__doc__]
     assert not undocumented

@@ -22,13 +22,16 @@ from sweep_support import break_plan, contents, draw_plan, stamps, unfinished, w
 pytest.importorskip("pyarrow", reason="pyarrow is not installed: pip install pyarrow")
 
 # A worker that is silent for so long is given up; the test of one that comes back is quick so.
-DASK = {"DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL": "3s", "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "5s", "DASK_DISTRIBUTED__COMM__RETRY__COUNT": "0"}
+DASK = {
+    "DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL": "3s", "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "5s",
+    "DASK_DISTRIBUTED__COMM__RETRY__COUNT": "0"}
 slow = pytest.mark.skipif(not SLOW, reason="takes long; CAROM_SLOW_TESTS=1 runs it")
 
 
 def command(*arguments, **options):
     return subprocess.Popen(
-        [sys.executable, "-m", *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **{"env": os.environ | DASK} | options
+        [sys.executable, "-m", *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, **{"env": os.environ | DASK} | options
     )
 
 
@@ -68,15 +71,21 @@ class Cluster:
 
     def start(self, *arguments, **options):
         with (self.folder / f"dask-{len(self.processes)}.log").open("w") as log:
-            process = subprocess.Popen([sys.executable, "-m", "dask", *arguments], stdout=log, stderr=log, env=os.environ | DASK | options, cwd=self.folder)
+            process = subprocess.Popen(
+                [sys.executable, "-m", "dask", *arguments], stdout=log, stderr=log,
+                env=os.environ | DASK | options, cwd=self.folder)
         self.processes.append(process)
         return process
 
     def begin_scheduler(self):
-        return self.start("scheduler", "--host", "127.0.0.1", "--port", str(self.port), "--dashboard-address", "127.0.0.1:0", **self.options)
+        return self.start(
+            "scheduler", "--host", "127.0.0.1", "--port", str(self.port), "--dashboard-address",
+            "127.0.0.1:0", **self.options)
 
     def worker(self, *arguments, **options):
-        return self.start("worker", self.address, "--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1", "--death-timeout", "60", *arguments, **options)
+        return self.start(
+            "worker", self.address, "--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1",
+            "--death-timeout", "60", *arguments, **options)
 
     def __enter__(self):
         return self
@@ -142,7 +151,8 @@ def test_workers_on_ports_one_of_which_is_killed(tmp_path, cluster, once):
     before = stamps(tmp_path / "a")
     out, err = ended_well(client)
     assert re.match(r"dashboard: http://127\.0\.0\.1:\d+/status\n", out)
-    played = re.search(r"a: 3600 rows \(at_rest 3600\), (\d+) of them played in [\d.]+ s, \d+ a second\n", out)
+    played = re.search(
+        r"a: 3600 rows \(at_rest 3600\), (\d+) of them played in [\d.]+ s, \d+ a second\n", out)
     # A result that the dead worker had not handed over yet is asked of another one, who finds the shard there.
     assert played and int(played[1]) in (3450, 3600), out
     assert "24 of 24 shards, 0 left, 3600 rows, " in err
@@ -163,7 +173,9 @@ def test_workers_on_ports_one_of_which_is_killed(tmp_path, cluster, once):
         with pytest.raises(sweep.SweepError, match="there is another plan already"):
             sweep.run(small, tmp_path / "a", dask)
         # A worker that plays other bits refuses, and says where it is.
-        with pytest.raises(sweep.SweepError, match=rf"{os.uname().nodename}, process \d+: this carom .* with other bits"):
+        with pytest.raises(
+            sweep.SweepError, match=rf"{os.uname().nodename}, process \d+: this carom .* with other bits"
+        ):
             sweep.run(small._replace(probe="0" * 64), tmp_path / "b", dask)
         assert sweep.run(small, tmp_path / "c", dask, shards=[3]).played == 90
 
@@ -194,7 +206,8 @@ def test_a_shard_that_dask_gives_up_is_asked_for_again(tmp_path, once):
         wait_for(lambda: of_process(tmp_path / "a", victim))
         kill(victim)
         ended_well(client)
-        assert "KilledWorker" in (tmp_path / "dask/dask-0.log").read_text() or "marked as failed" in (tmp_path / "dask/dask-0.log").read_text()
+        assert "KilledWorker" in (tmp_path / "dask/dask-0.log").read_text() or "marked as failed" in (
+            tmp_path / "dask/dask-0.log").read_text()
         assert whole(tmp_path / "a", plan, files)
 
 
@@ -305,7 +318,8 @@ def test_an_array_of_slurm_and_another_one_for_what_is_missing(tmp_path, once, c
     folder = tmp_path / "a"
     arguments = [file, "-o", folder, "--slurm", "--elements", "4", "--sbatch=--time=60"]
     code, out, err = sweep_command(*arguments)
-    assert (code, out) == (0, "job 4711: --array=0-3 for 24 of 24 shards; --status says how far they are\n"), err
+    assert (code, out) == (
+        0, "job 4711: --array=0-3 for 24 of 24 shards; --status says how far they are\n"), err
     before = stamps(folder)
     missing = sweep.status(folder).missing
     assert 1 <= len(missing) <= 6 and len({shard % 4 for shard in missing}) == 1
@@ -319,19 +333,26 @@ def test_an_array_of_slurm_and_another_one_for_what_is_missing(tmp_path, once, c
     assert log.read_text() == f"0-3 60\n{missing[0] % 4} 60\n"
     stub.write_text("#!/bin/sh\necho 'sbatch: error: invalid partition' >&2\nexit 1\n")
     code, out, err = sweep_in_process(capsys, monkeypatch, file, "-o", tmp_path / "b", "--slurm")
-    assert (code, err) == (1, "carom.sweep: sbatch failed with the status 1: sbatch: error: invalid partition\n")
+    assert (code, err) == (
+        1, "carom.sweep: sbatch failed with the status 1: sbatch: error: invalid partition\n")
 
 
 def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path, capsys, monkeypatch):
     file = tmp_path / "p.json"
-    arguments = ["--scene", SOURCE / "scenes/draw.toml", "--vary", "cue.aim_deg=normal(2)", "--vary", "cue.speed=uniform(1,4)", "--seed", 4, "--shard", 20]
+    arguments = [
+        "--scene", SOURCE / "scenes/draw.toml", "--vary", "cue.aim_deg=normal(2)", "--vary",
+        "cue.speed=uniform(1,4)", "--seed", 4, "--shard", 20]
     assert sweep_command(file, *arguments, "--shots", 60) == (0, f"{file}: 60 shots in 3 shards\n", "")
     assert sweep.Plan.load(file) == draw_plan(60, 20)
     assert sweep_in_process(capsys, monkeypatch, file, *arguments, "--shots", 60)[0] == 0
     for words, code, message in [
-        ([file, *arguments, "--shots", 61], 1, f"{file}: there is another plan already; remove it, or write to another place"),
+        (
+            [file, *arguments, "--shots", 61], 1,
+            f"{file}: there is another plan already; remove it, or write to another place"),
         ([file, *arguments], 2, "--scene needs --vary and --shots"),
-        ([file, "--scene", "no.toml", "--vary", "cue.speed=list(1)", "--shots", 3], 2, "no.toml: cannot be read: there is no such file; check the path"),
+        (
+            [file, "--scene", "no.toml", "--vary", "cue.speed=list(1)", "--shots", 3], 2,
+            "no.toml: cannot be read: there is no such file; check the path"),
         ([tmp_path / "q.json", *arguments, "--shots", 0], 2, "shots=0: expected 1 to 2**53"),
         ([tmp_path / "q.json"], 2, f"{tmp_path}/q.json: cannot read it: No such file or directory"),
         ([file, "--part", "3/2"], 2, "--part 3/2: expected I/N with 0 <= I < N, as in 3/100"),
@@ -344,12 +365,15 @@ def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path, caps
     assert sweep_command(*words) == (code, "", f"carom.sweep: {message}\n")
     folder = tmp_path / "p"
     code, out, err = sweep_command(file, "--part", "1/2")
-    assert code == 0 and re.search(r"^1 of 1 shards, 0 left, 20 rows, \d+ shots/s, 0 failed$", err, re.MULTILINE), err
+    assert code == 0 and re.search(
+        r"^1 of 1 shards, 0 left, 20 rows, \d+ shots/s, 0 failed$", err, re.MULTILINE), err
     assert out.startswith(f"{folder}: 20 rows (at_rest 20), 20 of them played in ")
-    assert sweep_in_process(capsys, monkeypatch, file, "--status") == (1, f"{folder}: 1 of 3 shards, 20 of 60 rows\nmissing: 0,2\n", "")
+    assert sweep_in_process(capsys, monkeypatch, file, "--status") == (
+        1, f"{folder}: 1 of 3 shards, 20 of 60 rows\nmissing: 0,2\n", "")
     code, out, err = sweep_in_process(capsys, monkeypatch, folder / "plan.json", "--threads", "2")
     assert code == 0 and out.startswith(f"{folder}: 60 rows (at_rest 60), 40 of them played in "), err
-    assert sweep_in_process(capsys, monkeypatch, file, "--check") == (0, f"{folder}: 60 of 60 rows are there and as they were written (at_rest 60)\n", "")
+    assert sweep_in_process(capsys, monkeypatch, file, "--check") == (
+        0, f"{folder}: 60 of 60 rows are there and as they were written (at_rest 60)\n", "")
     path = folder / "shard-1.parquet"
     path.write_bytes(path.read_bytes()[:-1])
     code, out, err = sweep_in_process(capsys, monkeypatch, file, "--check")

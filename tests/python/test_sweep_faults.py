@@ -37,7 +37,8 @@ def test_what_is_missing_or_strange_is_not_read_over(tmp_path):
     plan = draw_plan(40, 10)
     sweep.run(plan, tmp_path, shards=[2, 0])
     found = sweep.status(tmp_path)
-    assert (found.done, found.missing, found.rows, found.unfinished, found.strangers) == (2, (1, 3), 20, (), ())
+    assert (
+        found.done, found.missing, found.rows, found.unfinished, found.strangers) == (2, (1, 3), 20, (), ())
     assert not sweep.check(tmp_path).whole and sweep.check(tmp_path).rows == 20
     with pytest.raises(sweep.SweepError, match="2 of 4 shards are missing"):
         sweep.open(tmp_path)
@@ -132,7 +133,8 @@ except OSError as error:
     print(error)
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == f"[Errno 27] cannot write: File too large: '{tmp_path}/shard-0.parquet'\n" and done.stderr == ""
+    assert done.stdout == f"[Errno 27] cannot write: File too large: '{tmp_path}/shard-0.parquet'\n"
+    assert done.stderr == ""
     assert contents(tmp_path) == {} and unfinished(tmp_path) == []
     assert sweep.run(plan, tmp_path).played == 30_000
     assert sweep.check(tmp_path).whole
@@ -142,7 +144,9 @@ def _mounted(folder):
     """Whether a small disk could be put there."""
     if os.geteuid() != 0 or shutil.which("mount") is None:
         return False
-    return subprocess.run(["mount", "-t", "tmpfs", "-o", "size=300k", "none", folder], capture_output=True, check=False).returncode == 0
+    return subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=300k", "none", folder], capture_output=True,
+        check=False).returncode == 0
 
 
 def test_a_small_disk_that_fills_up(tmp_path):
@@ -174,12 +178,15 @@ def test_a_worker_that_is_killed_while_it_writes_leaves_nothing_that_counts(tmp_
     with pytest.raises(sweep.SweepError, match="2 of 2 shards are missing"):
         sweep.open(tmp_path, partial=True)
     # The next one who makes this shard clears up; files of a process that lives, or of another machine, stay.
-    alive, far = (f"shard-0.parquet.{name}.tmp" for name in (f"{os.uname().nodename}.{os.getpid()}.00", "elsewhere.1.00"))
+    alive, far = (
+        f"shard-0.parquet.{name}.tmp"
+        for name in (f"{os.uname().nodename}.{os.getpid()}.00", "elsewhere.1.00"))
     for name in alive, far:
         (tmp_path / ".unfinished" / name).touch()
     again = worker(tmp_path / "plan.json", 0, tmp_path)
     wait_for(lambda: any(str(again.pid) in name for name in unfinished(tmp_path)))
-    assert {alive, far} <= set(unfinished(tmp_path)) and not any(str(process.pid) in name for name in unfinished(tmp_path))
+    assert {alive, far} <= set(unfinished(tmp_path))
+    assert not any(str(process.pid) in name for name in unfinished(tmp_path))
     again.kill()
     again.communicate()
 

@@ -37,7 +37,8 @@ def run(name, source, folder=None):
         for number in pyplot.get_fignums():
             figure = pyplot.figure(number)
             if folder is not None:
-                figure.savefig(folder / f"teaching_{name}_{len(pictures) + 1}.png", dpi=60, metadata={"Software": None})
+                figure.savefig(
+                    folder / f"teaching_{name}_{len(pictures) + 1}.png", dpi=60, metadata={"Software": None})
             figure.canvas.draw()
             pictures.append(len(np.unique(np.ascontiguousarray(figure.canvas.buffer_rgba()).view(np.uint32))))
         pyplot.close("all")
