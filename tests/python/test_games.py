@@ -1,4 +1,4 @@
-"""carom.games: the noise of a strike, rules, and aim help."""
+"""carom.games: the noise of a strike, rules, and aiming aids."""
 
 from __future__ import annotations
 
@@ -87,7 +87,10 @@ def test_a_new_game_and_what_is_legal():
     assert games.legal(
         games.new_game("three_cushion", first=1),
         carom.Scene(**RACKS["three_cushion"])).cue_balls == ["yellow"]
-    for bad in (lambda: games.new_game("pinball"), lambda: games.new_game("snooker", first=3), lambda: games.legal(state._replace(over=True), ["8"])):
+    for bad in (
+        lambda: games.new_game("pinball"), lambda: games.new_game("snooker", first=3),
+        lambda: games.legal(state._replace(over=True), ["8"])
+    ):
         with pytest.raises(ValueError):
             bad()
     with pytest.raises(ValueError, match="open, solids, stripes"):
@@ -95,7 +98,7 @@ def test_a_new_game_and_what_is_legal():
 
 
 def test_a_shot_is_judged_and_the_next_scene_follows():
-    # The one is potted, and the cue ball behind it: a scratch of nine-ball.
+    # The 1 is potted and the cue ball follows it: a scratch in nine-ball.
     scene = carom.Scene(
         table="nine_foot",
         balls="pool",
@@ -199,6 +202,9 @@ def test_an_aim_that_is_none_says_why():
     scene = pool(("cue", [0.4, 0.4]), ("1", [0.7, 1.4]), ("2", [0.55, 0.9]), speed=3.0)
     assert games.aim_pot(scene, "1", "p4")[0] is None
     assert games.aim_pot(scene, "1", "p4").why == "the cue ball meets ball 2 first"
-    for bad in (lambda: games.aim_pot(scene, "7", "p4"), lambda: games.aim_pot(scene, "1", "p9"), lambda: games.aim_pot(scene.replace(cue=None), "1", "p4")):
+    for bad in (
+        lambda: games.aim_pot(scene, "7", "p4"), lambda: games.aim_pot(scene, "1", "p9"),
+        lambda: games.aim_pot(scene.replace(cue=None), "1", "p4")
+    ):
         with pytest.raises(ValueError):
             bad()

@@ -1,4 +1,4 @@
-"""The Python blocks of the pages work as printed, and pass a strict check of types."""
+"""The Python blocks in the docs print what the pages say, and pass a strict type check."""
 
 from __future__ import annotations
 
@@ -20,12 +20,13 @@ PAGES = [
 
 
 def blocks(page):
-    """Python blocks, and what they have to print: the text block right behind, or None."""
+    """Python blocks, each with its expected output: the text block right after it, or None."""
     found = list(BLOCK.finditer(page.read_text()))
     for block, following in zip(found, [*found[1:], None]):
         if block[1] == "python":
             text = page.read_text()
-            close = following is not None and following[1] == "text" and text[block.end() : following.start()].strip() == ""
+            close = following is not None and following[1] == "text"
+            close = close and text[block.end() : following.start()].strip() == ""
             yield block[2], following[2] if close else None
 
 

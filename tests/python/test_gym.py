@@ -1,4 +1,5 @@
-"""Environments of Gymnasium: its own checks, legal strikes for every action, the vector as so many single environments, bits that repeat."""
+"""Gymnasium environments: Gymnasium's own checks, legal strikes for every action, vectors that equal single
+environments, repeatable bits."""
 
 from __future__ import annotations
 
@@ -18,14 +19,14 @@ from gymnasium.utils.env_checker import check_env, data_equivalence  # noqa: E40
 from gymnasium.vector import AutoresetMode, SyncVectorEnv  # noqa: E402
 
 NAMES = sorted(carom.gym.GAMES)
-#: Options that reach every part of an observation, an action and an info.
+#: Options that reach every part of observations, actions and info.
 OPTIONS = [
     {},
     {"aim": "ball", "observation": "dict", "elevation_deg": (0.0, 5.0), "hashes": True, "noise": "fastfiz"}]
 
 
 def same_bits(a, b):
-    """data_equivalence without its tolerance, which takes 1e-5 for nothing; NaN equals NaN."""
+    """data_equivalence without its tolerance of 1e-5; NaN equals NaN."""
     if isinstance(a, dict):
         return data_equivalence(a, b) and all(same_bits(a[key], b[key]) for key in a)
     if isinstance(a, np.ndarray) and a.dtype != object:
@@ -61,13 +62,14 @@ def test_the_vector_is_so_many_single_environments(name, options, mode):
         actions = single.action_space.sample()
         a, b = many.step(actions), single.step(actions)
         assert same_bits(a, b), (a, b)
-        assert a[0] in many.observation_space if isinstance(a[0], dict) else many.observation_space.contains(a[0])
+        space = many.observation_space
+        assert a[0] in space if isinstance(a[0], dict) else space.contains(a[0])
         ended = a[2] | a[3]
         over += ended.sum()
         if mode == AutoresetMode.DISABLED and ended.any():
             with pytest.raises(gymnasium.error.ResetNeeded, match="is over"):
                 many.step(actions)
-            # One by one as Gymnasium's own vector, with a seed for one of them.
+            # Reset some tables, as Gymnasium's own vector does, and seed one of them.
             again = [None, 9, None, None, None]
             assert same_bits(
                 many.reset(seed=again, options={"reset_mask": ended.copy()}),
@@ -112,7 +114,7 @@ def test_what_is_returned_is_nobody_elses():
 
 
 def corners(size):
-    """Every action whose numbers are ends, middles, or hardly more than nothing."""
+    """Actions whose numbers are at the ends, in the middle, or close to zero."""
     tiny = np.array([-1.0, 0.0, 1.0, 1e-45, -1e-30, 0.5])
     few = np.array(list(itertools.product([-1.0, 0.0, 1.0], repeat=size)))
     random = np.random.default_rng(5)
@@ -129,7 +131,7 @@ def test_every_action_is_a_legal_strike(aim, elevation, dtype):
     env.reset(seed=4)
     actions = corners(env.action_space.shape[0]).astype(dtype)
     played = env.rollout(env.states.take(np.zeros(len(actions), int)), actions)
-    # The scene's own check has the last word on what is legal: none of them is invalid.
+        # The scene's own check decides what is legal: no shot is invalid.
     assert not played.shots.messages and (played.shots.status == carom.ShotStatus.AT_REST).all()
     speed, aim_deg, raised, side, height = played.cue.T
     assert (speed >= 0.3).all() and (speed <= 5.0).all() and {0.3, 5.0} <= set(speed.tolist())
@@ -154,7 +156,8 @@ def test_directions_are_those_of_numpy():
         return carom.gym.Strikes().cue(
             actions, np.empty((len(along), 0, 2)), 0, np.empty((len(along), 0), bool), np.empty(0))[:, 1]
 
-    along = np.random.default_rng(1).uniform(-1, 1, (1000, 2)) * 10.0 ** np.random.default_rng(2).uniform(-40, 0, (1000, 1))
+    scales = 10.0 ** np.random.default_rng(2).uniform(-40, 0, (1000, 1))
+    along = np.random.default_rng(1).uniform(-1, 1, (1000, 2)) * scales
     assert np.abs(directions_deg(along) - np.degrees(np.arctan2(along[:, 1], along[:, 0]))).max() < 1e-13
     ends = np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1e-170, 1e-160], [np.nan, 1]], float)
     assert np.allclose(directions_deg(ends)[:5], [0, 0, 180, 90, -90], rtol=0, atol=1e-13)
@@ -164,14 +167,14 @@ def test_directions_are_those_of_numpy():
 def test_an_aim_at_a_ball_hits_it_as_full_as_it_says():
     env = carom.gym.make_env("Pot", aim="ball")
     env.reset(seed=1)
-    # Straight up the table, so that left and right are seen in x.
+    # Straight up the table, so that left and right show in x.
     states = carom.gym.States(np.array([[[0.6, 0.6], [0.6, 1.6]]] * 5), np.empty((5, 0)))
     full = np.array([0.0, 0.5, -0.5, 0.98, -0.98])
     actions = np.column_stack((np.zeros(5), full, np.full(5, -0.2), np.zeros((5, 2))))
     played = env.rollout(states, actions)
     radius = 0.028575
     line = np.radians(played.cue[:, 1])
-    # The distance of the other ball from the line of aim, to the right of it.
+    # How far to the right of the line of aim the other ball is.
     right = (1.0 * np.cos(line)) * -1.0
     assert np.allclose(right, full * 2 * radius, atol=1e-12)
     assert (played.shots.first_hit == 1).all()
@@ -197,7 +200,7 @@ def test_noise_is_that_of_the_seed():
     assert (exact == exact[0]).all()
     noisy = env.rollout(many, np.tile(meant, (n, 1)), noise_seed=3)
     assert np.array_equal(noisy.cue, carom.games.noisy(exact, "fastfiz", 3))
-    # An elevation below 0 is a level cue, and so half of its errors are none.
+    # An elevation below 0 becomes a level cue, so half of the elevation errors vanish.
     level = [0, 1, 3, 4]
     assert np.allclose(
         (noisy.cue - exact).std(0)[level], np.array(carom.games.Noise.named("fastfiz"))[level], rtol=0.1)
@@ -212,7 +215,7 @@ def test_noise_is_that_of_the_seed():
 
 
 def uniforms(states, draws):
-    """Of SplitMix64, by whole numbers of Python; the generators move on."""
+    """SplitMix64 in Python's integers; advances the generators."""
     bits, out = (1 << 64) - 1, np.empty((len(states), draws))
     for row in range(len(states)):
         state = int(states[row])
@@ -270,7 +273,7 @@ def test_an_observation_is_the_table_from_minus_one_to_one():
     wanted[np.isnan(places[:, :, 0])] = 0.0
     wanted = np.clip(wanted, -1.0, 1.0)
     assert same_bits(game.observe(states), wanted) and (np.abs(wanted) == 1).any()
-    # Of any piece of other arrays.
+    # Also for slices of larger arrays.
     assert same_bits(game.observe(carom.gym.States(xy[::-2], states.extra[::-2])), wanted[::-2].copy())
 
 
@@ -290,7 +293,9 @@ def test_pot_pays_for_the_ball_and_takes_for_fouls():
         (1.0, -0.3, 1.0, ""), (2.0, 0.45, -1.0, "scratch"), (0.3, 0.0, 0.0, "")
     ):
         played = play_one("Pot", straight, [speed, -135, 0, 0, height])
-        assert played.reward.tolist() == [reward] and played.foul.tolist() == [foul] and played.terminated.all(), (speed, height)
+        case = speed, height
+        assert played.reward.tolist() == [reward] and played.foul.tolist() == [foul], case
+        assert played.terminated.all(), case
 
 
 def test_position_takes_the_distance_to_the_target():
@@ -302,7 +307,7 @@ def test_position_takes_the_distance_to_the_target():
 
 @pytest.mark.parametrize("name", ["ThreeCushion", "SumToThree", "NineBallRun", "EightBallRun"])
 def test_what_a_shot_is_worth_is_what_the_rules_say(name):
-    """Every shot as a scene and a record of its own, judged by carom.games."""
+    """Plays every shot again as a scene of its own and judges its record by carom.games."""
     env = carom.gym.make_vector_env(
         name, 60, autoreset_mode="SameStep", aim="ball", speed=(2.0, 6.0), hashes=True)
     game = carom.gym.GAMES[name]()
@@ -341,7 +346,7 @@ def test_what_a_shot_is_worth_is_what_the_rules_say(name):
                 there = {
                     ball: place for ball, place in zip(game.ids, played.states.xy[row])
                     if place[0] == place[0]}
-                # Of a foul the next scene asks for a place of the cue ball, and here it is out of the game.
+                # After a foul, the next scene needs a place for the cue ball; these games end instead.
                 after = carom.games.next_scene(record, verdict)
                 assert sorted(there) == sorted(after.ids)
                 assert all(np.array_equal(there[ball], xy) for ball, xy in zip(after.ids, after.positions))
@@ -438,7 +443,7 @@ def test_a_run_that_cannot_go_on_is_truncated_too():
     *_, reward, terminated, truncated, info = env.step(np.array([1, 0, -0.5, 0, 0], np.float32))
     assert info["status"] == carom.ShotStatus.FAILED and truncated and not terminated and reward == 0
     assert info["message"].startswith("simulation stopped at t = ")
-    # An open table has no size to draw a layout in.
+    # A table without cushions has no area for a random layout.
     with pytest.raises(ValueError, match="no cushions"):
         carom.gym.make_env("Pot", scene=scene.replace(table={"cushion": []}))
 
@@ -531,7 +536,7 @@ def test_planes_have_their_balls_where_they_are():
         at = seen[:, int(30 * (x - table.corner[0]) / table.width), int(
             60 * (y - table.corner[1]) / table.length)]
         assert at[plane] > 0.6
-    # One cone each; the plane of targets is empty, and that of Position has one.
+    # One cone per ball; the plane of targets is empty, except in Position.
     assert seen[0].sum() == pytest.approx(seen[1].sum(), rel=0.1) and seen[2].sum() > 5 * seen[1].sum()
     assert (seen[3] == 0).all()
     other = carom.gym.FeaturePlanes(carom.gym.make_env("Position"))

@@ -1,4 +1,4 @@
-"""Impacts on arrays: those of the program, and of the engine's shots."""
+"""Impacts on arrays agree with the program and with the engine's shots."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ R = 0.028575
 
 
 def pairs(n):
-    """Balls that touch and approach each other."""
+    """Pairs of touching balls that approach each other."""
     rvw = RANDOM.normal(0, [[0.0], [2.0], [40.0]], (n, 2, 3, 3))
     rvw[:, :, 1, 2] = 0
     angle = RANDOM.uniform(0, 2 * np.pi, n)
@@ -49,7 +49,7 @@ def test_ball_ball_is_that_of_the_program(model):
     speed = np.abs(rvw[:, :, 1]).max()
     for i, answer in enumerate(answers(lines, *options)):
         wanted = np.array([[answer["v1"], answer["w1"]], [answer["v2"], answer["w2"]]])
-        # Batches and single impacts may differ by the tolerance.
+        # Batches and single impacts may differ within the tolerance.
         slack = 2e-9 * 2 * speed if model == "mathavan" else 0
         np.testing.assert_allclose(after[i, :, 1], wanted[:, 0], rtol=0, atol=slack)
         np.testing.assert_allclose(after[i, :, 2], wanted[:, 1], rtol=0, atol=slack / R)

@@ -1,4 +1,4 @@
-"""Batches: the bits of single shots, failures that stay where they are, arrays that are reused."""
+"""Batches: the bits of single shots, failures that affect only their own shot, and arrays that are reused."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def cues(n):
 
 
 def one_by_one(scene, cue, xy, params, i):
-    """Shot i as a scene of its own."""
+    """Shot i as its own scene."""
     changes = {f"cue.{key}": cue[i, k] for k, key in enumerate(("speed", "aim_deg", "elevation_deg"))}
     changes["cue.offset"] = [cue[i, 3], cue[i, 4]]
     for k, ball in enumerate(scene.ids):
@@ -111,7 +111,7 @@ def test_out_is_filled_and_returned(draw_scene):
 def test_a_ball_without_a_place_is_left_out(break_scene):
     xy = np.repeat(break_scene.positions[None], 3, axis=0)
     xy[1, [3, 5, 8]] = np.nan
-    xy[2, 0] = np.nan  # the cue ball, which is struck
+    xy[2, 0] = np.nan  # the struck ball
     shots = carom.simulate_many(break_scene, xy=xy, hashes=True)
     assert shots.status.tolist() == [0, 0, ShotStatus.INVALID]
     assert 'no ball "cue"' in shots.messages[2]
@@ -120,7 +120,7 @@ def test_a_ball_without_a_place_is_left_out(break_scene):
     assert f"{shots.hash[1]:016x}" == carom.simulate(carom.Scene.from_dict(tree)).hash()
     assert f"{shots.hash[0]:016x}" == carom.simulate(break_scene).hash()
     assert np.isnan(shots.xy[1]).any(axis=-1).nonzero()[0].tolist() == [3, 5, 8]
-    # One coordinate alone is a mistake.
+    # A single NaN coordinate is a mistake.
     xy[1, 3, 0] = 0.5
     assert carom.simulate_many(break_scene, xy=xy).status[1] == ShotStatus.INVALID
 

@@ -1,4 +1,5 @@
-"""Games of two players in PettingZoo's form: its own tests, whole games, the cue ball in hand, calls, and shots without an end."""
+"""Games for two players as PettingZoo environments: PettingZoo's own tests, whole games, ball in hand, calls,
+and shots without an end."""
 
 from __future__ import annotations
 
@@ -20,14 +21,14 @@ NAMES = ["EightBall", "NineBall", "Snooker"]
 @pytest.mark.parametrize("name", NAMES)
 def test_pettingzoo_accepts_the_game(name, options, capsys):
     with warnings.catch_warnings():
-        # It would rather have an array than a dict.
+        # PettingZoo warns that it prefers an array to a dict.
         warnings.filterwarnings("ignore", message="Observation.*")
         api_test(match.env(name, **options), num_cycles=30)
         seed_test(lambda: match.env(name, noise="ai3603", **options), num_cycles=15)
 
 
 def play(env, seed, act, most=3000):
-    """A whole game: (agent, reward, phase, info) of every turn."""
+    """Plays a whole game. Returns (agent, reward, phase, info) for every turn."""
     env.reset(seed=seed)
     turns = []
     for agent in env.agent_iter(most):
@@ -54,7 +55,7 @@ def test_games_between_random_players_end(name):
         ends.append((len(turns), env.record().hash()))
         phases += sum(phase for *_, phase, _ in turns)
         fouls |= {info["foul"] for *_, info in turns if info.get("foul")}
-        # Who is to place the cue ball also strikes it.
+        # The player who places the cue ball also strikes it.
         assert all(a[0] == b[0] for a, b in zip(turns, turns[1:]) if a[2])
     assert len(set(ends)) == 4 and phases > 0 and {"cue ball pocketed", "wrong ball first"} <= fouls
     again = np.random.default_rng(3)
@@ -83,7 +84,7 @@ def test_the_cue_ball_in_hand_lies_where_the_action_says_or_beside_what_is_in_th
             carom.games.may_place(env._record, env._option, place)
             for place in wanted) and len(set(wanted)) == 9, area
         if area == "anywhere":
-            # On another ball: beside it, no farther than it takes.
+            # A place on another ball becomes one just beside it.
             other = next(i for i, place in enumerate(env._xy) if i != cue and not np.isnan(place[0]))
             low, high = np.array(env._game.table.corner) + env._game.radii[cue], np.array(
                 [env._game.table.width, env._game.table.length]) - 2 * env._game.radii[cue]
@@ -106,7 +107,8 @@ def test_rings_cover_the_plane_once():
 def test_calls_are_numbers_of_the_action():
     env = match.env("EightBall", called=True)
     assert env.action_space("player_0").shape == (7,)
-    # Without a call that comes true a ball that falls ends the turn: compare with luck on the same shots.
+    # With `called`, pocketing a ball that was not called ends the turn: compare the same shots with lucky
+    # calls.
     lucky, called = match.env("EightBall", aim="ball"), match.env("EightBall", aim="ball", called=True)
     differ = 0
     for seed in range(3):

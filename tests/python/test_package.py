@@ -1,4 +1,4 @@
-"""The package as a whole: who imports whom."""
+"""The package as a whole: imports, argument types, and what is accepted as a scene."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ from conftest import SOURCE
 
 ROOT = pathlib.Path(carom.__file__).parent
 SOURCES = {
-    ".".join(("carom", *path.relative_to(ROOT).with_suffix("").parts)).removesuffix(".__init__"): path.read_text(encoding="utf-8")
+    ".".join(("carom", *path.relative_to(ROOT).with_suffix("").parts)).removesuffix(".__init__"):
+        path.read_text(encoding="utf-8")
     for path in ROOT.rglob("*.py")
-    if path.is_file()  # in a folder that was built in before, what is gone left its link
+    if path.is_file()  # an old build folder may hold dangling links
 }
 
 
@@ -25,13 +26,16 @@ def imported(node):
     """The modules that a statement may import."""
     if isinstance(node, ast.Import):
         return {alias.name for alias in node.names}
-    return {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)} if isinstance(node, ast.ImportFrom) else set()
+    if not isinstance(node, ast.ImportFrom):
+        return set()
+    return {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
 
 
 def wrong_imports(sources):
-    """Modules that import each other in a circle, checkers of types included, and imports of the package inside functions."""
+    """Modules in import cycles, imports for type checking included, and imports of the package inside
+    functions."""
     trees = {name: ast.parse(text) for name, text in sources.items()}
-    # The package itself is no part of a circle: whoever imports one of its modules has it.
+    # The package itself is left out: importing any of its modules imports it.
     edges = {
         name: {
             other for node in ast.walk(tree) for other in imported(node) if other in sources
@@ -74,7 +78,7 @@ def test_a_circle_and_a_hidden_import_are_found(planted, wrong):
     assert wrong[0] <= set(circle) and bool(circle) == bool(wrong[0])
 
 
-#: What each of them is of, as annotations write it.
+#: Each value with the annotations that accept it.
 WRONG = [
     ((), b"bytes"),
     ((), object()),
@@ -88,7 +92,7 @@ WRONG = [
 
 
 def public_functions():
-    """The functions and methods of carom's public names, by their names. What the classes of others define is theirs."""
+    """The functions and methods of carom's public names, without those that other packages define."""
     modules = [
         carom, carom.games, carom.kernel, carom.plot, carom.sweep,
         importlib.import_module("carom.io.pooltool")]
@@ -127,7 +131,7 @@ def test_a_wrong_type_is_refused_by_the_name_of_the_argument(function, name, ann
     for kinds, value in WRONG:
         if set(kinds) & set(whole.split(" | ")):
             continue
-        # The message comes before one about other arguments that are missing.
+        # The type is checked before missing arguments are reported.
         with pytest.raises(
             (TypeError, ValueError), match=rf"^{name}: expected .+, not .+ \({type(value).__name__}\)$"
         ):

@@ -1,4 +1,4 @@
-"""Pictures and tables of records: what matplotlib and pandas are given, and that notebooks show it."""
+"""Pictures and tables of records: what matplotlib and pandas receive, and what notebooks show."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from conftest import SOURCE
 
-# A record without friction between balls: the cue ball rolls into the 1 fully.
+# A record without friction between the balls: the cue ball rolls into the 1 head-on.
 HEAD_ON = dict(
     table={"cushion": []},
     balls={"mu_b": 0.0, "e_b": 1.0},
@@ -31,7 +31,7 @@ def pyplot():
 
 
 def pixels(axes):
-    """The picture as numbers, and a function from places on the table to its colours."""
+    """The picture as an array, and a function that returns the colour at a place on the table."""
     figure = axes.figure
     figure.canvas.draw()
     image = np.asarray(figure.canvas.buffer_rgba())[:, :, :3] / 255.0
@@ -56,13 +56,13 @@ def test_a_plan_has_balls_trails_and_pockets_where_they_are(pyplot):
     image, at = pixels(carom.plot.table(record))
     near = dict(atol=0.06)
     np.testing.assert_allclose(at(end[0] + 0.015, end[1]), red, **near)
-    np.testing.assert_allclose(at(0.4, 0.515), red, atol=0.35)  # the trail inside the ring of the start
+    np.testing.assert_allclose(at(0.4, 0.515), red, atol=0.35)  # the trail inside the starting ring
     np.testing.assert_allclose(at(0.4, 0.8), red, atol=0.35)
     np.testing.assert_allclose(at(0.42, 0.8), to_rgb(_CLOTH), **near)
     np.testing.assert_allclose(at(0.415, 0.5), to_rgb(_CLOTH), **near)  # the ring is empty
     for _, x, y, _radius in record.table.pockets:
         np.testing.assert_allclose(at(x, y), to_rgb(_HOLE), **near)
-    # At an instant: the disc is there, the trail ends there, and without trails there is none.
+    # At a given time there is a disc, and the trail ends there; without trails there is no trail.
     place = record.states(0.3)[0, 0]
     _, at = pixels(carom.plot.table(record, at=0.3))
     np.testing.assert_allclose(at(place[0] + 0.015, place[1]), red, **near)
@@ -104,7 +104,7 @@ def test_speeds_and_energies_are_those_of_the_states(pyplot):
         times, speed = lines[name].T
         np.testing.assert_allclose(
             speed, np.linalg.norm(record.states(times)[:, ball, 1], axis=-1), atol=1e-12)
-        # Both sides of the impact, so that the jump is upright.
+        # Both sides of the impact, so that the jump is vertical.
         assert (times < hit).any() and np.diff(times[np.searchsorted(times, hit) - 1 :][:2])[0] < 1e-12
     energy = carom.plot.energy(record)
     assert [text.get_text() for text in energy.get_legend().get_texts()] == ["travel", "rotation"]

@@ -1,5 +1,8 @@
-"""pooltool's files both ways. tests/data/pooltool holds Systems that pooltool 0.6.0 saved: the same shot before and after it was
-simulated, a potted ball, and a jaw. lab/measure/pooltool_parity.py asks pooltool itself."""
+"""pooltool's files, both ways.
+
+tests/data/pooltool holds Systems that pooltool 0.6.0 saved: one shot before and after simulation, a potted
+ball, and a jaw. lab/measure/pooltool_parity.py compares with pooltool itself.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +32,7 @@ def test_a_system_plays_as_in_pooltool(name):
     ours = record.event_list()
     assert [e.type for e in ours] == [NAMES.get(event["event_type"], event["event_type"]) for event in theirs]
     times = np.array([[e.time, event["time"]] for e, event in zip(ours, theirs)])
-    # To rounding until two balls or a jaw have met; then pooltool's balls stand 1e-6 m apart.
+    # Equal to rounding until two balls or a jaw meet; from then on, pooltool's balls are 1e-6 m apart.
     met = next(i for i, e in enumerate(ours) if e.type in ("ball_ball", "ball_jaw"))
     np.testing.assert_allclose(times[: met + 1, 0], times[: met + 1, 1], rtol=0, atol=1e-13)
     np.testing.assert_allclose(times[:, 0], times[:, 1], rtol=0, atol=1e-4)
@@ -39,7 +42,7 @@ def test_a_system_plays_as_in_pooltool(name):
 
 
 def test_the_friction_between_balls_is_pooltools():
-    # Without the scaled friction the balls would roll half a millisecond earlier, or later.
+    # Without the scaled friction, the balls would roll half a millisecond earlier or later.
     scene = pooltool.load(SYSTEMS / "two_balls.json")
     rolls = [
         e["time"] for e in system_of(SYSTEMS / "two_balls.json")["events"]
@@ -124,7 +127,8 @@ def test_what_is_no_file_or_no_json_is_named(tmp_path):
 
 
 def keys_of(value, path=""):
-    """The paths of all objects in a tree with their keys, as pairs; balls, cushions and jaws of any name are alike."""
+    """The paths of all objects in a tree, as pairs with their keys. Names of balls, cushions and jaws are
+    ignored."""
     if isinstance(value, list):
         return {pair for part in value for pair in keys_of(part, f"{path}[]")}
     if not isinstance(value, dict):
@@ -145,7 +149,7 @@ def test_a_saved_record_is_a_system(path, tmp_path):
     system = system_of(tmp_path / "s.json")
     known = {pair for file in SYSTEMS.glob("*.json") for pair in keys_of(system_of(file))}
     assert keys_of(system) <= known
-    # What pooltool plays begins at the state after the last event of a ball: that is the record's.
+    # pooltool starts at the state after a ball's last event: it must be the record's.
     assert system["events"][0]["event_type"] == system["events"][-1]["event_type"] == "none"
     times = [event["time"] for event in system["events"]]
     assert times == sorted(times) and times[0] == 0.0
@@ -175,14 +179,14 @@ def test_a_saved_record_comes_back_with_its_cue_and_table(break_scene, tmp_path)
     assert sorted(again.ids) == sorted(break_scene.ids)
     places = dict(zip(break_scene.ids, break_scene.positions.tolist()))
     assert [places[ball] for ball in again.ids] == again.positions.tolist()
-    # The ball leaves the cue as it did, and the table is the same one.
+    # The ball leaves the cue at the same velocity, and the table is the same.
     played = carom.simulate(again, until=0.05)
     np.testing.assert_allclose(
         played.states(0.0)[again.ids.index("cue")], record.states(0.0)[break_scene.ids.index("cue")],
         atol=1e-12)
     assert played.table.cushions == record.table.cushions and played.table.pockets == record.table.pockets
     assert played.table.jaws == record.table.jaws
-    # From a file a record has no cue: the balls move from the first event on.
+    # A record from a file has no cue: the balls move from the first event on.
     record.save(tmp_path / "r.json")
     pooltool.save(carom.Record.load(tmp_path / "r.json"), tmp_path / "t.json")
     with_cue, without = system_of(tmp_path / "s.json"), system_of(tmp_path / "t.json")

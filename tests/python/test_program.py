@@ -1,4 +1,4 @@
-"""The reports of the program as data. What they measure is tested in C++; here, that it arrives."""
+"""The program's reports as data. C++ tests what they measure; these tests check that it arrives."""
 
 from __future__ import annotations
 

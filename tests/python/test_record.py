@@ -1,4 +1,4 @@
-"""Records: the bits of the program, views without copies, files."""
+"""Records: the same bits as the program, views without copies, files."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def test_events_are_a_view_that_keeps_the_record_alive(break_scene):
     assert named[0] == (0.0, "cue_strike", "cue", "")
     del record
     gc.collect()
-    assert [carom.simulate(break_scene).hash() for _ in range(20)]  # would write over freed memory
+    assert [carom.simulate(break_scene).hash() for _ in range(20)]  # would overwrite freed memory
     assert (events.tobytes(), segments[3].tobytes()) == hash_of
 
 
@@ -148,7 +148,7 @@ def test_the_final_scene_is_the_next_shot(break_scene):
     kept = [i for i, ball in enumerate(record.ids) if ball in after.ids]
     assert (after.positions == end[kept, 0, :2]).all()
     assert carom.simulate(after).event_list()[0].type == "cue_strike"
-    # Over as many shots as there are: what rests keeps its place to the bit.
+    # Over many shots: a ball at rest keeps its place to the bit.
     for shot in range(1, 8):
         record = carom.simulate(after)
         end = dict(zip(record.ids, record.states(record.duration)[:, 0, :2]))

@@ -1,4 +1,4 @@
-"""Frames: the pixels of the program, and what cannot be drawn."""
+"""Frames: the program's pixels, and what cannot be drawn."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SCENE = SOURCE / "scenes/draw.toml"
 
 
 def drawn(*options):
-    """The frames that the program draws, without what PNG does to them."""
+    """The program's frames, decoded from PNG."""
     raw = carom_program("render", SCENE, "--size", "160x90", "--raw", *options, binary=True)
     return np.frombuffer(raw, np.uint8).reshape(-1, 90, 160, 3)
 

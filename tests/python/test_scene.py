@@ -1,4 +1,4 @@
-"""Scenes: files, texts, dicts, keywords; the engine's own messages."""
+"""Scenes: files, texts, dicts, keywords, and the engine's own messages."""
 
 from __future__ import annotations
 
@@ -54,7 +54,9 @@ def test_keywords_are_sections():
     scene = carom.Scene(
         table="carom", rack="three_cushion", cue={"ball": "white", "speed": 4}, balls={"preset": "carom"},
         stop={"time": 2.0})
-    text = '[table]\npreset = "carom"\n[rack]\ngame = "three_cushion"\n[cue]\nball = "white"\nspeed = 4\n[balls]\npreset = "carom"\n[stop]\ntime = 2.0\n'
+    text = (
+        '[table]\npreset = "carom"\n[rack]\ngame = "three_cushion"\n[cue]\nball = "white"\nspeed = 4\n'
+        '[balls]\npreset = "carom"\n[stop]\ntime = 2.0\n')
     assert scene == carom.Scene.loads(text)
     assert scene != carom.Scene(table="carom", rack="three_cushion", cue={"ball": "white", "speed": 5})
     assert set(scene.ids) == {"white", "yellow", "red"}

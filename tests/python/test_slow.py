@@ -1,4 +1,5 @@
-"""tools/slow: a check that passes, fails, is skipped, hangs or is wrong in itself ends with its own line, and the exit status says it all."""
+"""tools/slow: every check ends with its own line, whether it passes, fails, is skipped, hangs or is broken;
+the exit status sums them up."""
 
 from __future__ import annotations
 
@@ -56,7 +57,8 @@ def test_a_check_ends_with_its_line(name, result, said, status, tmp_path, capsys
     assert main([name], CHECKS, tmp_path) == status
     line, summary = capsys.readouterr().out.splitlines()
     assert line.split()[:2] == [result, name] and line.partition("min")[2].strip().startswith(said)
-    assert summary == f"slow: {int(result == 'PASS')} passed, {int(result == 'FAIL')} failed, {int(result == 'SKIPPED')} skipped"
+    passed, failed, skipped = (int(result == each) for each in ("PASS", "FAIL", "SKIPPED"))
+    assert summary == f"slow: {passed} passed, {failed} failed, {skipped} skipped"
     assert (tmp_path / "report.txt").read_text().splitlines() == [line, summary]
     assert (tmp_path / f"{name}.log").is_file()
 
@@ -75,7 +77,9 @@ def test_the_command_lists_its_checks_and_refuses_others():
             [sys.executable, SCRIPT, *arguments], capture_output=True, text=True, check=False)
 
     listed = run("--list")
-    assert listed.returncode == 0 and [line.split()[0] for line in listed.stdout.splitlines()] == [check.name for check in slow["CHECKS"]]
+    assert listed.returncode == 0
+    names = [line.split()[0] for line in listed.stdout.splitlines()]
+    assert names == [check.name for check in slow["CHECKS"]]
     assert "exit status" in run("--help").stdout.lower()
     for wrong in ("laerning", "--lsit"):
         done = run(wrong)

@@ -1,4 +1,4 @@
-"""Sweeps: the table of `carom sweep`, bit for bit."""
+"""Sweeps: the same table as `carom sweep`, bit for bit."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ RULES = {
 
 
 def same(text, value):
-    """Whether a cell of a CSV file is the value, to the bit."""
+    """Whether a cell of a CSV file equals the value to the bit."""
     if value is None:
         return text == ""
     if isinstance(value, float):
@@ -25,7 +25,7 @@ def same(text, value):
 
 
 def all_the_same(header, rows, columns):
-    """Whether columns hold what the rows of a CSV file do."""
+    """Whether columns hold the same values as the rows of a CSV file."""
     assert list(columns) == header
     for k, column in enumerate(header):
         wrong = [

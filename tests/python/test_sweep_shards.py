@@ -1,4 +1,5 @@
-"""Sweeps in shards: the rows of `carom sweep` whatever the shards and workers, plans that are checked, files that say where they come from."""
+"""Sharded sweeps: the rows of `carom sweep` whatever the shards and workers, checked plans, and files that
+state their origin."""
 
 from __future__ import annotations
 
@@ -37,7 +38,7 @@ def test_any_shards_and_workers_give_the_rows_of_the_program(tmp_path, name):
         tables.append(sweep.open(folder).to_table())
     assert all(table.equals(tables[0]) for table in tables)
     all_the_same(header, rows, tables[0].to_pydict())
-    # Who makes a file, and in which company, is not in it.
+    # A file does not depend on who makes it, or on which other files are made.
     assert contents(tmp_path / "7-1") == contents(tmp_path / "7-2")
 
 
@@ -49,7 +50,7 @@ def test_processes_that_were_spawned_make_the_same_files(tmp_path):
         again = sweep.reduce(plan, _moments, pool)
     assert contents(tmp_path / "threads") == contents(tmp_path / "processes")
     assert again == sweep.reduce(plan, _moments, threads=1)
-    with multiprocessing.pool.ThreadPool(2) as pool:  # has no submit
+    with multiprocessing.pool.ThreadPool(2) as pool:  # it has no submit
         assert sweep.run(plan, tmp_path / "map", pool).played == 60
         assert sweep.reduce(plan, _moments, pool) == again
     assert contents(tmp_path / "threads") == contents(tmp_path / "map")
@@ -70,7 +71,7 @@ def test_a_reduction_is_that_of_the_rows_and_merges_in_order(tmp_path):
     duration = sweep.table(
         carom.Scene.load(SOURCE / "scenes/draw.toml"), DRAW, 1000, seed=4)["duration"].to_numpy()
     parts = [duration[k : k + 90] for k in range(0, 1000, 90)]
-    # to the bit: the order is that of the shards
+    # Equal to the bit, because results are merged in the order of the shards.
     assert whole["sums"][0] == sum(part.sum() for part in parts)
     assert whole["histogram"] == np.histogram(duration, 10, (0, 10))[0].tolist()
     first = sweep.reduce(plan, lambda table: [table["shot"][0].as_py()], threads=4, merge=lambda a, b: a + b)
@@ -112,7 +113,7 @@ def test_a_file_says_where_it_comes_from(tmp_path):
         and b"unit" in field.metadata}
     metres = {f"{ball}.{axis}": "m" for ball in ("cue", "1") for axis in "xy"}
     assert units == {"cue.aim_deg": "degrees", "cue.speed": "m/s", "duration": "s"} | metres
-    # A row can be played again and compared, and the digest is of these hashes.
+    # A row can be replayed and compared; the digest is over these hashes.
     hashes = table["record_hash"].to_numpy()
     for row in table.to_pylist()[:3]:
         again = carom.simulate(scene.replace(**{key: row[key] for key in ("cue.aim_deg", "cue.speed")}))
@@ -146,7 +147,7 @@ def test_the_hash_of_the_content_does_not_depend_on_how_a_table_is_cut(draw_scen
     assert whole == digest(table.slice(0, 0), table.slice(0, 33), table.slice(33, 1), table.slice(34))
     assert whole == digest(pyarrow.concat_tables([table.slice(0, 50), table.slice(50)]))
     assert whole != digest(table.slice(0, 99)) and whole != digest(table.slice(50), table.slice(0, 50))
-    # A value and its absence, and where a text ends, make a difference.
+    # The digest tells null from 0, and where one string ends and the next begins.
     one, two = (pyarrow.table({"a": pyarrow.array(values)}) for values in (["ab", "c"], ["a", "bc"]))
     null, zero = (
         pyarrow.table({"a": pyarrow.array(values, pyarrow.int64())}) for values in ([1, None], [1, 0]))
@@ -228,7 +229,7 @@ def test_what_cannot_be_planned_is_said():
 
 def test_the_last_shots_of_the_largest_sweep_are_played(tmp_path):
     large = draw_plan(2**53, 10**10)
-    # Cut so that the last shard has few shots: their numbers survive.
+    # Cut so that the last shard has few shots: their values survive.
     small = large._replace(shard=2**53 - 5)
     sweep.run_shard(small, 1, tmp_path)
     table = parquet.read_table(tmp_path / small.file(1))
@@ -242,7 +243,8 @@ def test_duckdb_reads_the_files(tmp_path):
     plan = sweep.plan(SOURCE / "scenes/eight_ball_break.toml", RULES["eight_ball_break"], 60, shard=25)
     sweep.run(plan, tmp_path)
     table = sweep.open(tmp_path).to_table()
-    query = f"SELECT count(*), sum(events), count(DISTINCT shot), sum((pocketed <> '')::int) FROM '{tmp_path}/*.parquet'"
+    columns = "count(*), sum(events), count(DISTINCT shot), sum((pocketed <> '')::int)"
+    query = f"SELECT {columns} FROM '{tmp_path}/*.parquet'"
     rows = table.to_pylist()
     assert duckdb.sql(query).fetchall()[0] == (
         60, sum(row["events"] for row in rows), 60, sum(row["pocketed"] != "" for row in rows))

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""tools/release, on a copy of what it reads: it sees every kind of fault, and what it cuts has none. Usage: release_test.py (finds the repository by itself)."""
+"""Tests tools/release on a copy of its inputs: it finds every kind of fault, and the release it makes has
+none. Usage: release_test.py"""
 import contextlib
 import datetime
 import importlib.machinery
@@ -140,7 +141,7 @@ class Release(unittest.TestCase):
         git("config", "user.name", "somebody")
         git("config", "user.email", "somebody@example.org")
         (self.root / ".gitignore").write_text("/build/\n")
-        # Right after a release nothing stands there.
+        # Right after a release the section is empty.
         self.change(
             "CHANGELOG.md", r"(?s)## \[Unreleased\]\n.*?(?=\n## |\Z)",
             "## [Unreleased]\n\n### Added\n\n* Something.\n")
