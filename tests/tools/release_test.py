@@ -56,7 +56,7 @@ class Release(unittest.TestCase):
                     m.group(1), "9.9.9" if release.FULL in m.re.pattern else "9.9"), text))
                 self.one_fault(f"{name} has 9.9")
                 (self.root / name).write_text("nothing\n")
-                self.assertTrue(any("no version is found" in fault for fault in release.faults_of(self.root)))
+                self.assertTrue(any("no version matches" in fault for fault in release.faults_of(self.root)))
                 (self.root / name).write_text(text)
 
     def test_the_changelog_keeps_its_form(self):
@@ -69,7 +69,7 @@ class Release(unittest.TestCase):
 
     def test_an_entry_has_a_heading(self):
         self.change("CHANGELOG.md", "(?m)^## \\[Unreleased\\]$", "## [Unreleased]\n\n* Lost.")
-        self.one_fault("an entry stands above the first heading")
+        self.one_fault("an entry is above the first heading")
 
     def test_a_group_begins_a_paragraph(self):
         self.change("CHANGELOG.md", r"\n\n(Program)\n", r"\n\1\n")
@@ -97,7 +97,7 @@ class Release(unittest.TestCase):
 
     def test_a_record_version_that_changes_is_a_fault(self):
         self.change("docs/reference/record.schema.json", r'("version":\s*\{[^}]*"const":\s*)2', r"\g<1>3")
-        self.one_fault("records have version 3 in place of 2")
+        self.one_fault("records have version 3 instead of 2")
 
     def test_what_is_cut_has_no_fault(self):
         date = datetime.datetime(2030, 1, 2, 3, 4, 5, tzinfo=datetime.timezone.utc)
@@ -172,7 +172,7 @@ class Release(unittest.TestCase):
             with self.assertRaisesRegex(SystemExit, "is not later than"):
                 release.cut(version, 1)
             (self.root / "CHANGELOG.md").write_text((self.root / "CHANGELOG.md").read_text() + "\n")
-            with self.assertRaisesRegex(SystemExit, "not committed"):
+            with self.assertRaisesRegex(SystemExit, "uncommitted changes"):
                 release.cut(f"{major}.{int(minor) + 2}.0", 1)
 
 
