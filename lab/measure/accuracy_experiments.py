@@ -149,16 +149,19 @@ def same(row):
 
 def e2(shots):
     print("\n### E2: cost and outcome by class\n")
-    print("| class | setting | us a shot | outcome the same | median final error (m) | worst (m) |\n|---|---|---|---|---|---|")
+    print("| class | setting | us a shot | outcome the same | median final error (m) | "
+          "worst (m) |\n|---|---|---|---|---|---|")
     for kind in CLASSES:
         judged = [s for s in shots if s["class"] == kind and s["converged"]]
         for setting in settings(judged):
             rows = [r for r in rows_of(judged, setting) if "failed" not in r]
             print(f"| {kind} | {' '.join(setting)} | {median(r['ns'] for r in rows) / 1e3:.1f} | "
-                  f"{100 * sum(map(same, rows)) / len(rows):.0f} % | {median(r['error_max'] for r in rows):.1e} | "
+                  f"{100 * sum(map(same, rows)) / len(rows):.0f} % | "
+                  f"{median(r['error_max'] for r in rows):.1e} | "
                   f"{max(r['error_max'] for r in rows):.1e} |")
     lost = sum(not s["converged"] for s in shots)
-    print(f"\n{len(shots)} shots; on {lost} of them the two converged methods do not agree, and nothing is said about those.")
+    print(f"\n{len(shots)} shots; on {lost} of them the two converged methods do not agree, "
+          "and nothing is said about those.")
 
 
 def line_fit(x, y):
@@ -193,11 +196,14 @@ def e3(shots):
     print("\n### E3: gain\n\n| class | median gain | largest | median hits |\n|---|---|---|---|")
     for kind in CLASSES:
         own = [s for s in shots if s["class"] == kind]
-        print(f"| {kind} | {median(s['gain'] for s in own):.1e} | {max(s['gain'] for s in own):.1e} | {median(s['ball_hits'] for s in own):.0f} |")
+        print(f"| {kind} | {median(s['gain'] for s in own):.1e} | {max(s['gain'] for s in own):.1e} | "
+              f"{median(s['ball_hits'] for s in own):.0f} |")
     slope, start = fit_of_gain(shots)
     ratios = sorted(p[2] for p in collapse(shots))
-    print(f"\nlog10 gain = {start:.2f} + {slope:.3f} x hits. error / (gain x tolerance x 1 m): median {median(ratios):.1e}, "
-          f"90 % between {ratios[len(ratios) // 20]:.1e} and {ratios[-len(ratios) // 20]:.1e}, largest {ratios[-1]:.1e}.")
+    print(f"\nlog10 gain = {start:.2f} + {slope:.3f} x hits. "
+          f"error / (gain x tolerance x 1 m): median {median(ratios):.1e}, "
+          f"90 % between {ratios[len(ratios) // 20]:.1e} and {ratios[-len(ratios) // 20]:.1e}, "
+          f"largest {ratios[-1]:.1e}.")
 
 
 def adaptive_rows(shots):
@@ -220,12 +226,16 @@ def e4(shots):
                                                         ("tolerance", "1e-06"), ("tolerance", "1e-12"))]
     for title, rows in fixed + [("tolerance by gain", [r for _, r in pairs])]:
         print(f"| {title} | {statistics.mean(r['ns'] for r in rows) / 1e3:.1f} | "
-              f"{100 * sum(r['error_max'] <= TARGET for r in rows) / len(rows):.1f} % | {max(r['error_max'] for r in rows):.1e} |")
-    print(f"\n{len(judged)} of {len(shots)} shots; the others do not allow 1 mm in double precision. Finding the gain takes three runs "
-          "of the shot more.\n\n| class | shots | allow 1 mm | met by the recommended tolerance |\n|---|---|---|---|")
+              f"{100 * sum(r['error_max'] <= TARGET for r in rows) / len(rows):.1f} % | "
+              f"{max(r['error_max'] for r in rows):.1e} |")
+    print(f"\n{len(judged)} of {len(shots)} shots; the others do not allow 1 mm in double precision. "
+          "Finding the gain takes three runs "
+          "of the shot more.\n\n| class | shots | allow 1 mm | "
+          "met by the recommended tolerance |\n|---|---|---|---|")
     for kind in CLASSES:
         own = [(s, r) for s, r in pairs if s["class"] == kind]
-        print(f"| {kind} | {sum(s['class'] == kind for s in shots)} | {len(own)} | {sum(r['error_max'] <= TARGET for _, r in own)} |")
+        print(f"| {kind} | {sum(s['class'] == kind for s in shots)} | {len(own)} | "
+              f"{sum(r['error_max'] <= TARGET for _, r in own)} |")
 
 
 def e5(noise, clusters):
@@ -238,11 +248,14 @@ def e5(noise, clusters):
         print(f"| {title} | " + " | ".join(
             f"{median(v):.1e}, {max(v):.1e}" for v in cells[title].values()) + " |")
     print("\n### The cluster models on the same breaks\n")
-    print("| model | us a break | of it in the map | events | final distance from compliant (m) | gain |\n|---|---|---|---|---|---|")
+    print("| model | us a break | of it in the map | events | final distance from compliant (m) | "
+          "gain |\n|---|---|---|---|---|---|")
     for model in CLUSTERS:
         own = [c for c in clusters if c["model"] == model]
-        print(f"| {model} | {median(c['ns'] for c in own) / 1e3:.0f} | {median(c['cluster_ns'] for c in own) / 1e3:.0f} | "
-              f"{median(c['events'] for c in own):.0f} | {median(c['apart'] for c in own):.2g} | {median(c['twin'] for c in own):.1e} |")
+        print(f"| {model} | {median(c['ns'] for c in own) / 1e3:.0f} | "
+              f"{median(c['cluster_ns'] for c in own) / 1e3:.0f} | "
+              f"{median(c['events'] for c in own):.0f} | {median(c['apart'] for c in own):.2g} | "
+              f"{median(c['twin'] for c in own):.1e} |")
 
 
 def draw_pareto(plt, shots, folder):

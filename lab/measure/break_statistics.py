@@ -24,7 +24,8 @@ VARY = ["cue.aim_deg=normal(0.15)", "cue.offset.height=normal(0.05)", "rack.seed
 
 
 def scene(game, table, gap, position, aim, extra="", cloth="tournament"):
-    return (f'[table]\npreset = "{table}"\ncloth = "{cloth}"\n[rack]\ngame = "{game}"\ngap = {gap}\njitter = {gap}\n{extra}'
+    return (f'[table]\npreset = "{table}"\ncloth = "{cloth}"\n[rack]\ngame = "{game}"\ngap = {gap}\n'
+            f'jitter = {gap}\n{extra}'
             f'[[ball]]\nid = "cue"\nposition = [{position[0]}, {position[1]}]\n'
             f'[cue]\nspeed = 7.0\naim_deg = {aim}\noffset = [0.0, 0.1]\n')
 
@@ -116,7 +117,8 @@ def row(carom, name, text, speed, money, real, count):
     if real:
         what, hits, of, event = real
         counted = f"{what} {share(hits, of)}, {event}"
-    return (f"| {name} | {share(any_ball, games)} | {sum(map(len, balls)) / games:.2f} | {scratch / games:.3f} | {share(success, games)} | "
+    return (f"| {name} | {share(any_ball, games)} | {sum(map(len, balls)) / games:.2f} | "
+            f"{scratch / games:.3f} | {share(success, games)} | "
             f"{sum(money in b for b in balls) / games:.3f} | {seconds:.1f} | {counted} |")
 
 

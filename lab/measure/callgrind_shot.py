@@ -128,7 +128,8 @@ def main():
     if args.functions:
         print(f"\n{'count':>12}  share  part      function")
         for function, cost in total.most_common(args.functions):
-            print(f"{cost:>12}{100 * cost / sum(total.values()):>6.1f}%  {part_of(function):<9} {function[:110]}")
+            print(f"{cost:>12}{100 * cost / sum(total.values()):>6.1f}%  {part_of(function):<9} "
+                  f"{function[:110]}")
     if args.json:
         pathlib.Path(args.json).write_text(json.dumps({
             "shot": args.shot, "seed": args.seed, "total": sum(total.values()),

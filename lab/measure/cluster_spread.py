@@ -136,12 +136,15 @@ def main():
         times = costs(args.carom, folder, args.repeats)
     base = min(times["sequential"])
     for model in MODELS:
-        print(f"{model:<11} break to rest: {min(times[model]):.3f} ms at least, median {statistics.median(times[model]):.3f} ms, "
+        print(f"{model:<11} break to rest: {min(times[model]):.3f} ms at least, "
+              f"median {statistics.median(times[model]):.3f} ms, "
               f"{min(times[model]) / base:.2f} x sequential")
     for gap in GAPS[1:]:
-        moved = "  ".join(f"{model} {1e3 * statistics.median(farthest(results[model][gap], results[model][0.0])):.2e}"
+        moved = "  ".join(f"{model} "
+                          f"{1e3 * statistics.median(farthest(results[model][gap], results[model][0.0])):.2e}"
                           for model in MODELS)
-        apart = "  ".join(f"{other} {1e3 * statistics.median(farthest(results['compliant'][gap], results[other][gap])):.1f}"
+        apart = "  ".join(f"{other} "
+                          f"{1e3 * statistics.median(farthest(results['compliant'][gap], results[other][gap])):.1f}"
                           for other in MODELS[1:])
         print(f"gap {gap:.0e} m: moved by (mm) {moved}; from compliant (mm) {apart}")
     draw(plt, results, args.output)

@@ -26,13 +26,15 @@ def shot(kind, seed):
     draw = random.Random(f"{kind} {seed}")
     uniform = draw.uniform
     if kind == "break":
-        return (f'[table]\npreset = "nine_foot"\n[rack]\ngame = "eight_ball"\ngap = 1e-4\njitter = 3e-5\nseed = {seed}\n'
+        return ('[table]\npreset = "nine_foot"\n[rack]\ngame = "eight_ball"\ngap = 1e-4\njitter = 3e-5\n'
+                f'seed = {seed}\n'
                 + ball("cue", uniform(0.55, 0.72), 0.5) + cue(
                     uniform(6, 10), 90 + uniform(-0.3, 0.3), height=uniform(0, 0.2)))
     if kind == "three_cushion":
         start, red = (uniform(0.3, 1.1), uniform(0.4, 1.0)), (uniform(0.3, 1.1), uniform(1.6, 2.4))
         other = (uniform(0.3, 1.1), uniform(1.15, 1.45))
-        return ('[table]\npreset = "carom"\n[balls]\npreset = "carom"\n' + ball("cue", *start) + ball("red", *red)
+        return ('[table]\npreset = "carom"\n[balls]\n'
+                'preset = "carom"\n' + ball("cue", *start) + ball("red", *red)
                 + ball("yellow", *other)
                 + cue(
                     uniform(3, 5), aim(start, red, 0.03075, uniform(-60, 60)), uniform(-0.3, 0.3),

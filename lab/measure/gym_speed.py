@@ -140,14 +140,17 @@ def main():
     model = next(
         (line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")),
         platform.machine())
-    print(f"{model}, Python {platform.python_version()}, CAROM_ISA={os.environ.get('CAROM_ISA', '(the widest)')}")
-    print(f"{'game':<16}{'tables':>7}{'steps/s':>12}{'plain batch':>14}{'judged batch':>14}   medians of the ratios")
+    print(f"{model}, Python {platform.python_version()}, "
+          f"CAROM_ISA={os.environ.get('CAROM_ISA', '(the widest)')}")
+    print(f"{'game':<16}{'tables':>7}{'steps/s':>12}{'plain batch':>14}{'judged batch':>14}   medians of the "
+          "ratios")
     import carom.gym
 
     for game in args.games or carom.gym.GAMES:
         for tables in (64, 256, 1024):
             ours, plain, judged, of_judged, of_step = vector(game, tables, args.rounds)
-            print(f"{game:<16}{tables:>7}{ours:>10.0f}/s{plain:>12.0f}/s{judged:>12.0f}/s   {of_judged:.2f} {of_step:.2f}")
+            print(f"{game:<16}{tables:>7}{ours:>10.0f}/s{plain:>12.0f}/s{judged:>12.0f}/s   {of_judged:.2f} "
+                  f"{of_step:.2f}")
         print(f"{game:<16}{'one':>7}{single(game, args.rounds):>10.0f}/s")
     if args.pooltool:
         print(f"{'over pooltool':<16}{'one':>7}{pooltool_rate(args.shots):>10.0f}/s")

@@ -126,7 +126,8 @@ def main():
         lengths = code_lengths(np.where(usable, np.maximum(1e6 * shares / shares.sum(), 1), 0), LONGEST)
     for (name, _), c, size in zip(frames, counts, level_1):
         own = code_lengths(np.where(usable, c.with_lengths(lengths)[0] + 0.01, 0), 15)
-        print(f"{name:14} zlib {size:7}  these codes {c.bits(lengths) / 8 / size:.3f}  own {c.bits(own) / 8 / size:.3f}")
+        print(f"{name:14} zlib {size:7}  these codes {c.bits(lengths) / 8 / size:.3f}  own "
+              f"{c.bits(own) / 8 / size:.3f}")
     # As the source has them: a length, and how many codes in a row have it.
     changes = [0, *(np.flatnonzero(np.diff(lengths)) + 1), CODES]
     print(", ".join(f"{{{lengths[i]}, {j - i}}}" for i, j in zip(changes, changes[1:])))

@@ -23,8 +23,10 @@ def scene(table, pocket, x, y, angle_deg, speed):
     vx, vy = -speed * math.sin(math.radians(angle_deg)), -speed * math.cos(math.radians(angle_deg))
     balls = "preset = \"snooker\"" if table == "snooker" else ""
     # It is one visit: the run ends before the ball comes back from another rail.
-    return (f'[table]\npreset = "{table}"\n[balls]\n{balls}\n[[ball]]\nposition = [{x!r}, {y!r}]\nvelocity = [{vx!r}, {vy!r}]\n'
-            f'spin = [{-vy / R!r}, {vx / R!r}, 0.0]\n[physics]\npocket = "{pocket}"\n[stop]\ntime = {1.0 / speed + 0.4!r}\n')
+    return (f'[table]\npreset = "{table}"\n[balls]\n{balls}\n[[ball]]\nposition = [{x!r}, {y!r}]\n'
+            f'velocity = [{vx!r}, {vy!r}]\n'
+            f'spin = [{-vy / R!r}, {vx / R!r}, 0.0]\n[physics]\npocket = "{pocket}"\n[stop]\n'
+            f'time = {1.0 / speed + 0.4!r}\n')
 
 
 def drops(carom, folder, text):

@@ -142,7 +142,8 @@ def compare(folder):
         ("without a jaw", [r for r in rows if not r[3]]), ("with a jaw", [r for r in rows if r[3]])
     ):
         if part:
-            print(f"{name}: {len(part)} shots; ends apart by {statistics.median(r[2] for r in part):.1e} m (median), {max(r[2] for r in part):.1e} m (most); "
+            print(f"{name}: {len(part)} shots; ends apart by {statistics.median(r[2] for r in part):.1e} m "
+                  f"(median), {max(r[2] for r in part):.1e} m (most); "
                   f"event times by {statistics.median(r[1] for r in part):.1e} s (median)")
 
 

@@ -73,7 +73,8 @@ def batches(library, rounds):
     import numpy as np
 
     random = np.random.default_rng(3)
-    print(f"{'batch of':<18}{'shots':>8}{'engine':>14}{'Python':>14}{'with out=':>14}   median of engine/Python, engine/out=")
+    print(f"{'batch of':<18}{'shots':>8}{'engine':>14}{'Python':>14}{'with out=':>14}   median of "
+          "engine/Python, engine/out=")
     for name, n in (("draw", 20000), ("three_cushion", 20000), ("eight_ball_break", 1000)):
         scene = carom.Scene.load(ROOT / "scenes" / f"{name}.toml")
         speed = scene.to_dict()["cue"]["speed"]
@@ -92,7 +93,8 @@ def batches(library, rounds):
                          timed(lambda: carom.simulate_many(scene, cue=cue, out=out))))
         rates = [n / min(column) for column in zip(*rows)]
         print(f"{name:<18}{n:>8}" + "".join(f"{rate:>12.0f}/s" for rate in rates)
-              + f"   {statistics.median(e / p for e, p, _ in rows):.3f}, {statistics.median(e / o for e, _, o in rows):.3f}")
+              + f"   {statistics.median(e / p for e, p, _ in rows):.3f}, "
+                f"{statistics.median(e / o for e, _, o in rows):.3f}")
 
 
 def one_shot(rounds):
@@ -123,7 +125,8 @@ def main():
     model = next(
         (line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")),
         platform.machine())
-    print(f"{model}, Python {platform.python_version()}, CAROM_ISA={os.environ.get('CAROM_ISA', '(the fastest)')}")
+    print(f"{model}, Python {platform.python_version()}, "
+          f"CAROM_ISA={os.environ.get('CAROM_ISA', '(the fastest)')}")
     for module in ("numpy", "carom"):
         print(f"import {module}: {import_cost(module, args.rounds, args.package):.3f} CPU s")
     one_shot(args.rounds)

@@ -54,7 +54,8 @@ class Renewal:
         load, cores = os.getloadavg()[0], os.cpu_count()
         text = f"{datetime.date.today()}, commit {commit}, {cpu}, {cores} cores, {compiler}; load when this began: {load:.1f}."
         if load > 0.75 * cores:
-            text += (" **Other work ran beside it.** Wall times (every figure of a frame) are then far too long, processor times "
+            text += (" **Other work ran beside it.** Wall times (every figure of a frame) are then far too "
+                     "long, processor times "
                      "somewhat: read them as ratios, or measure again.")
         return text
 
@@ -67,12 +68,15 @@ class Renewal:
         for i in range(0, len(reach), 4):
             cells = " | ".join(f"{ns(r['ns_median'])} / {ns(r['ns_all'])}" for r in reach[i:i + 4])
             text += f"| {reach[i]['method']} | {reach[i]['kind']} | {cells} |\n"
-        text += (f"\n{result['impacts']} random impacts, {result['isa']}; the two converged methods agree within {result['agreement']:.1e} on all "
-                 f"of these and disagree on {result['disagreeing']} more. Slope of the march's median error over N: {result['slope']:.2f}.\n")
+        text += (f"\n{result['impacts']} random impacts, {result['isa']}; "
+                 f"the two converged methods agree within {result['agreement']:.1e} on all "
+                 f"of these and disagree on {result['disagreeing']} more. "
+                 f"Slope of the march's median error over N: {result['slope']:.2f}.\n")
         text += "\n| method | setting | ns (minimum) | median error | 99 % | worst |\n|---|---|---|---|---|---|\n"
         for r in result["rows"]:
             if r["kind"] == "single" and not re.match("march .", r["method"]):
-                text += (f"| {r['method']} | {r['setting']} | {r['ns']:.0f} | {r['error_median']:.1e} | {r['error_p99']:.1e} | "
+                text += (f"| {r['method']} | {r['setting']} | {r['ns']:.0f} | {r['error_median']:.1e} | "
+                         f"{r['error_p99']:.1e} | "
                          f"{r['error_max']:.1e} |\n")
         return text
 
@@ -86,9 +90,12 @@ class Renewal:
                 ("pockets", "same_pocketed"))
                     if r[k] is False]
             error = "-" if r["error_max"] is None else f"{r['error_max']:.1e}"
-            text += (f"| {r['method']} | {r['setting']} | {r['ns'] / 1e3:.1f}, {r['ns_median'] / 1e3:.1f} | {share(r['kernel_share'])} | "
-                     f"{share(r['cluster_share'])} | {error} | {'same' if not same else 'other ' + ', '.join(same)} |\n")
-        return (text + f"\nGain {result['gain']:.1e}; the two converged runs end {result['agreement']:.1e} m apart.\n\n> "
+            text += (f"| {r['method']} | {r['setting']} | {r['ns'] / 1e3:.1f}, {r['ns_median'] / 1e3:.1f} | "
+                     f"{share(r['kernel_share'])} | "
+                     f"{share(r['cluster_share'])} | {error} | "
+                     f"{'same' if not same else 'other ' + ', '.join(same)} |\n")
+        return (text + f"\nGain {result['gain']:.1e}; the two converged runs end {result['agreement']:.1e} m "
+                       "apart.\n\n> "
                 + result["recommendation"] + "\n")
 
     def break_(self):
@@ -107,7 +114,8 @@ class Renewal:
         return self.call(self.build / "lab/measure/carom_detectors", 2000 if self.quick else 20000)
 
     def margin(self):
-        text = ("| size | fps | budget | p50 | p99 | worst | missed | without files | simulate p99 | draw p50 | read p50 | encode p50 | "
+        text = ("| size | fps | budget | p50 | p99 | worst | missed | without files | simulate p99 | "
+                "draw p50 | read p50 | encode p50 | "
                 "write p50 | parts / wall |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n")
         for size in ("1280x720", "1920x1080"):
             for fps in (60, 120, 240):
@@ -116,16 +124,21 @@ class Renewal:
                                           1 if self.quick else 3,
                                           *plot))
                 s = m["stages"]
-                text += (f"| {size} | {fps} | {m['budget_ms']:.2f} | {m['total']['p50']:.2f} | {m['total']['p99']:.2f} | "
-                         f"{m['worst']['ms']:.2f} | {m['missed']} of {m['frames']} | {m['missed_without_files']} | "
-                         f"{s['simulate']['p99']:.3f} | {s['draw']['p50']:.2f} | {s['readback']['p50']:.2f} | {s['encode']['p50']:.2f} | "
+                text += (f"| {size} | {fps} | {m['budget_ms']:.2f} | {m['total']['p50']:.2f} | "
+                         f"{m['total']['p99']:.2f} | "
+                         f"{m['worst']['ms']:.2f} | {m['missed']} of {m['frames']} | "
+                         f"{m['missed_without_files']} | "
+                         f"{s['simulate']['p99']:.3f} | {s['draw']['p50']:.2f} | "
+                         f"{s['readback']['p50']:.2f} | {s['encode']['p50']:.2f} | "
                          f"{s['write']['p50']:.2f} | {100 * m['serial']['share']:.1f} % |\n")
         m = json.loads(self.carom(
             "margin", BREAK, "--json", "--no-render", "--repeat", 9, "--plot",
             image("margin_simulation.svg")))
         t, s = m["timing"], m["stages"]["simulate"]
-        return (text + f"\nms. Simulation alone (`--no-render --repeat 9`): its worst frame takes {s['max']:.3f} ms, p99 {s['p99']:.3f} ms. "
-                f"Timing itself: {t['simulate_timed_ms']:.3f} ms with, {t['simulate_ms']:.3f} ms without ({100 * t['share']:+.1f} %), "
+        return (text + "\nms. Simulation alone (`--no-render --repeat 9`): its worst frame takes "
+                       f"{s['max']:.3f} ms, p99 {s['p99']:.3f} ms. "
+                f"Timing itself: {t['simulate_timed_ms']:.3f} ms with, "
+                f"{t['simulate_ms']:.3f} ms without ({100 * t['share']:+.1f} %), "
                 f"{t['clock_ns']:.0f} ns a look at the clock.\n")
 
     def sweep(self):

@@ -108,7 +108,8 @@ def main():
                                     "--no-growth"], check=True, capture_output=True, text=True).stdout
             ours.append(json.loads(bench))
     original = min(t["ns"] for t in theirs)
-    print(f"numba original: {original:.0f} ns an impact; off the published results by {theirs[0]['difference']:.1e} m/s")
+    print(f"numba original: {original:.0f} ns an impact; "
+          f"off the published results by {theirs[0]['difference']:.1e} m/s")
     best = {}
     for bench in ours:
         for row in bench["rows"]:

@@ -161,9 +161,11 @@ def main():
                              capture_output=True, text=True, env={
                                  **os.environ, "PYTHONPATH": args.package,
                                  "CAROM_ISA": os.environ.get("CAROM_ISA", "v3")}).stdout
-    print(f"{'':<18}{'pooltool':>12}{'carom':>12}{'ratio':>8}{'in a batch':>12}   events, theirs and ours (medians)")
+    print(f"{'':<18}{'pooltool':>12}{'carom':>12}{'ratio':>8}{'in a batch':>12}   events, "
+          "theirs and ours (medians)")
     for row in json.loads(out.strip().splitlines()[-1]):
-        print(f"{row['kind']:<18}{row['theirs_ms']:>9.2f} ms{row['ours_ms']:>9.4f} ms{row['ratio']:>8.0f}{row['many_ms']:>9.4f} ms"
+        print(f"{row['kind']:<18}{row['theirs_ms']:>9.2f} ms{row['ours_ms']:>9.4f} "
+              f"ms{row['ratio']:>8.0f}{row['many_ms']:>9.4f} ms"
               f"   {row['theirs_events']:.0f}, {row['ours_events']:.0f}")
 
 

@@ -66,7 +66,8 @@ def table(plan, path):
 
 
 def rows(rounds):
-    print("| shots | plain batch, us a shot | with hashes | shards, no hashes | shards, digest | `carom sweep` | bytes a row: Parquet | CSV | ratio |")
+    print("| shots | plain batch, us a shot | with hashes | shards, no hashes | shards, digest | "
+          "`carom sweep` | bytes a row: Parquet | CSV | ratio |")
     print("|---|---|---|---|---|---|---|---|---|")
     for name, rules, shots in CASES:
         path = f"scenes/{name}.toml"
@@ -87,7 +88,8 @@ def rows(rounds):
 
         cost = statistics.median(seconds["batch"]) / shots * 1e6
         print(
-            f"| {name} | {cost:.2f} | {ratio('hashes'):.3f} | {ratio('plain'):.3f} | {ratio('digest'):.3f} | {ratio('csv'):.3f} | "
+            f"| {name} | {cost:.2f} | {ratio('hashes'):.3f} | {ratio('plain'):.3f} | {ratio('digest'):.3f} | "
+            f"{ratio('csv'):.3f} | "
             f"{parquet / shots:.1f} | {csv / shots:.1f} | {parquet / csv:.3f} |"
         )
 
@@ -134,7 +136,8 @@ with tempfile.TemporaryDirectory() as folder:
     ran = time.perf_counter() - start
 print(f"| {shots:.0e} | {plan.shards} | {size} | {1e3 * planned:.1f} | {1e3 * seen:.0f} | {1e6 * ran / plan.shards:.0f} | {before:.0f} | {peak() - before:.1f} |")
 """
-    print("\n| shots | shards | bytes of the plan | planning, ms | `status`, ms | client, us a shard | a Python with carom and pyarrow, MB | on top, MB |")
+    print("\n| shots | shards | bytes of the plan | planning, ms | `status`, ms | client, us a shard | "
+          "a Python with carom and pyarrow, MB | on top, MB |")
     print("|---|---|---|---|---|---|---|---|")
     for shots, shard in (10**6, 250_000), (10**9, 250_000), (10**9, 10_000), (2**53, 10**11):
         sys.stdout.flush()

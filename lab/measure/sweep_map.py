@@ -17,7 +17,8 @@ def read_rows(path, columns):
             reader = csv.DictReader(stream)
             for column in columns:
                 if column not in (reader.fieldnames or []):
-                    sys.exit(f"{path}: there is no column {column}; there are {', '.join(reader.fieldnames or [])}")
+                    sys.exit(f"{path}: there is no column {column}; "
+                             f"there are {', '.join(reader.fieldnames or [])}")
             return [[row[column] for column in columns] for row in reader]
     except OSError as error:
         sys.exit(f"{path}: {error.strerror}")
