@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Experiments E2 to E5 of lab/notes/2026-11-accuracy_experiments.md over seeded shots of four classes.
 
-    lab/measure/accuracy_experiments.py [--count 100] [--program build/release/carom] [--data FILE.json] [--images FOLDER]
-    lab/measure/accuracy_experiments.py --from FILE.json        # the tables again, from measurements kept
+    lab/measure/accuracy_experiments.py [--count 100] [--program build/release/carom] [--data FILE.json]
+                                        [--images FOLDER]
+    lab/measure/accuracy_experiments.py --from FILE.json        # prints the tables from stored measurements
 
-Prints the tables as Markdown; --data keeps all measurements, --images draws the figures (python3-matplotlib).
+Prints the tables as Markdown. --data stores all measurements, --images draws the figures
+(python3-matplotlib).
 """
 import argparse
 import json
@@ -36,7 +38,7 @@ def progress(title, done, total):
 
 
 def measure_shots(program, folder, count):
-    """carom accuracy on every shot: what E2, E3 and E4 read."""
+    """Runs `carom accuracy` on every shot, for E2, E3 and E4."""
     shots = []
     for kind in CLASSES:
         for seed in range(1, count + 1):
@@ -51,7 +53,7 @@ def measure_shots(program, folder, count):
 
 
 def final(program, scene, text):
-    """Final (x, y) of every ball, or None where the text cannot be run."""
+    """The final (x, y) of every ball, or None if the scene cannot be run."""
     scene.write_text(text)
     result = json.loads(run(program, "simulate", str(scene), "--json", "--profile"))
     balls = {b["id"]: tuple(b["position"][:2]) for b in result["balls"]}
@@ -82,7 +84,7 @@ def balls(text, line):
     return text + f"[balls]\n{line}\n"
 
 
-# What may disturb a shot, and how. "tight" is the tolerance that everything is compared at.
+# What may disturb a shot, and how. Everything is compared with the result at the tolerance TIGHT.
 TIGHT = "tolerance = 1e-13"
 NOISE = (
     ("last bit of one coordinate", lambda t: physics(moved(t, 1.2e-16), TIGHT)),
@@ -105,7 +107,8 @@ CLUSTERS = ("compliant", "sequential", "rigid")
 
 
 def measure_noise(program, folder, count):
-    """E5: final distance that each disturbance makes of a cut and of a break; and the cluster models side by side."""
+    """E5: the final distance that each disturbance causes in a cut and in a break; also compares the cluster
+    models."""
     scene = folder / "noise.toml"
     rows, clusters = [], []
     for kind in ("cut", "break"):
@@ -171,7 +174,7 @@ def line_fit(x, y):
 
 
 def amplifying(shots):
-    """Without those that end in the pockets whatever happens: their gain is 0."""
+    """The shots with a gain above 0; the others end in the pockets whatever happens."""
     return [s for s in shots if s["gain"] > 0]
 
 
@@ -181,11 +184,12 @@ def fit_of_gain(shots):
 
 
 def collapse(shots):
-    """(gain, tolerance, error / (gain x tolerance x 1 m)) wherever the error is resolved."""
+    """(gain, tolerance, error / (gain x tolerance x 1 m)) for every error that is resolved."""
     points = []
     for s in amplifying(shots):
         for r in s["rows"]:
-            if not s["converged"] or r["method"] != "tolerance" or r["error_max"] <= 10 * s["agreement"] or not r["error_max"]:
+            judged = s["converged"] and r["method"] == "tolerance"
+            if not judged or r["error_max"] <= 10 * s["agreement"] or not r["error_max"]:
                 continue
             points.append(
                 (s["gain"], float(r["setting"]), r["error_max"] / (s["gain"] * float(r["setting"]))))

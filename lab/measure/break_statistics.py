@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""What breaks bring, beside what was counted at tournaments: the table of lab/notes/2026-11-breaks.md.
+"""The outcomes of breaks beside tournament counts: the table of lab/notes/2026-11-breaks.md.
 
-Plays every kind of break with `carom sweep` (aim, speed, height of the tip and rack vary) and prints a Markdown table: how often a ball falls,
-how many, how often the cue ball falls, how often both is right, with 95 % intervals (Wilson). The same numbers on every machine.
+Plays every kind of break with `carom sweep`, varying aim, speed, tip height and rack. Prints a Markdown
+table: how often a ball falls, how many, how often the cue ball falls, how often the break succeeds, with 95 %
+intervals (Wilson). The numbers are the same on every machine.
 
-    lab/measure/break_statistics.py [--carom build/release/carom] [--count 2000] [-o lab/notes/2026-11-breaks.md]
+    lab/measure/break_statistics.py [--carom build/release/carom] [--count 2000]
+                                    [-o lab/notes/2026-11-breaks.md]
 
-With -o the table between the marks <!-- begin breaks --> and <!-- end breaks --> of that page is written anew.
+-o rewrites the table between the marks <!-- begin breaks --> and <!-- end breaks --> of that page.
 """
 import argparse
 import csv
@@ -18,7 +20,8 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# [m/s] of the cue: 8.1 to 11.2 m/s of the ball, what players reach (D. Alciatore: powerful breaks 11 to 13, professionals 9.8 to 11.6).
+# [m/s] of the cue: 8.1 to 11.2 m/s of the ball, which players reach (D. Alciatore: powerful breaks 11 to 13,
+# professionals 9.8 to 11.6).
 SPEED = "uniform(6.1,8.4)"
 VARY = ["cue.aim_deg=normal(0.15)", "cue.offset.height=normal(0.05)", "rack.seed=integer(1,1000000)"]
 
@@ -35,12 +38,12 @@ def straight_at(target, position):
 
 
 def breaks():
-    """(name, scene, speed, money ball, what was counted as (what, hits, games, event) or None)"""
+    """(name, scene, speed, money ball, the tournament count as (what, hits, games, event) or None)"""
     foot = (0.635, 1.905)
     nine_apex = (0.635, 1.905 - math.sqrt(3) * (0.05715 + 1e-5))
     side, rail = (0.45, 0.55), (0.12, 0.55)
     soft, second = (0.10, 0.55), (0.12, 0.55)
-    # The ball behind the apex on the side of the breaker, as full as the apex lets the cue ball pass: 16 mm beside its centre.
+    # The ball behind the apex, on the breaker's side, as full as the apex allows: 16 mm beside its centre.
     second_ball = (foot[0] - 0.028585 - 0.0151, foot[1] + 0.028585 * math.sqrt(3) + 0.0052)
     bar_foot, bar_middle = (0.508, 1.524), (0.508, 0.40)
     return [

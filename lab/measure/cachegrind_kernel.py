@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Instructions, loads, stores, cache and branch misses a step, by cachegrind, for the rungs that take one impact a call.
+"""Instructions, loads, stores, cache and branch misses per step, by cachegrind, for rungs with one impact per
+call.
 
-Valgrind knows AVX2 and not AVX-512: scalar and v3. Two runs of different length are subtracted, so that start-up does not
-count. Where a machine gives perf its hardware counters, --perf adds those.
+Valgrind supports AVX2 but not AVX-512, so the levels are scalar and v3. Subtracting two runs of different
+length removes the cost of start-up. --perf adds the hardware counters if perf can read them.
 
-    lab/measure/cachegrind_kernel.py --one-rung build/release/lab/measure/carom_one_rung [--json FILE] [--perf]
+    lab/measure/cachegrind_kernel.py --one-rung build/release/lab/measure/carom_one_rung [--json FILE]
+                                     [--perf]
 """
 import argparse
 import json
@@ -51,7 +53,8 @@ def main():
     parser.add_argument("--perf", action="store_true")
     args = parser.parse_args()
     rows = []
-    print(f"{'a step':<22}{'isa':<8}{'instr':>8}{'loads':>8}{'stores':>8}{'L1 miss':>9}{'branches':>9}{'mispred':>9}")
+    print(f"{'a step':<22}{'isa':<8}{'instr':>8}{'loads':>8}{'stores':>8}{'L1 miss':>9}"
+          f"{'branches':>9}{'mispred':>9}")
     for rung in RUNGS:
         for isa in ("scalar", "v3"):
             few, many = cachegrind(args.one_rung, rung, isa, 2), cachegrind(args.one_rung, rung, isa, 12)

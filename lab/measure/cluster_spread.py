@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""What the model of several contacts at once costs, and how far it decides a break: compliant, rigid, sequential.
+"""The cost of the models for several simultaneous contacts, and how much they change a break: compliant,
+rigid, sequential.
 
     lab/measure/cluster_spread.py build/release/carom -o lab/notes/images/cluster_spread.png
 
-Plays the same seeded breaks (aim and speed vary a little) of racks with gaps from 0 to 1e-4 m under each model, and stops
-them before the balls reach a cushion. Compares the places of the balls there: under one model against its touching
-rack, and under two models. Costs are `carom simulate --profile` of the touching rack to rest, the models in turn.
-Needs python3-matplotlib.
+Plays the same seeded breaks (aim and speed vary a little) of racks with gaps from 0 to 1e-4 m under each
+model, and stops them before the balls reach a cushion. Compares the balls' positions then: with the touching
+rack under the same model, and with another model. The costs are those of `carom simulate --profile` for the
+touching rack to rest, alternating the models. Needs python3-matplotlib.
 """
 
 import argparse
@@ -61,7 +62,7 @@ def write_scene(folder, model, gap, stop):
 
 
 def places(carom, folder, model, gap, count):
-    """Per shot the list of (x, y) of all balls at STOP."""
+    """For every shot the (x, y) of all balls at STOP."""
     table = folder / f"{model}_{gap}.csv"
     run([carom, "sweep", write_scene(folder, model, gap, True), "--vary", "cue.aim_deg=uniform(89.8,90.2)",
          "--vary", "cue.speed=uniform(8,10)", "--seed", "1", "--count", str(count), "-o", table])
@@ -140,12 +141,12 @@ def main():
               f"median {statistics.median(times[model]):.3f} ms, "
               f"{min(times[model]) / base:.2f} x sequential")
     for gap in GAPS[1:]:
-        moved = "  ".join(f"{model} "
-                          f"{1e3 * statistics.median(farthest(results[model][gap], results[model][0.0])):.2e}"
-                          for model in MODELS)
-        apart = "  ".join(f"{other} "
-                          f"{1e3 * statistics.median(farthest(results['compliant'][gap], results[other][gap])):.1f}"
-                          for other in MODELS[1:])
+        own = {model: statistics.median(farthest(results[model][gap], results[model][0.0]))
+               for model in MODELS}
+        moved = "  ".join(f"{model} {1e3 * own[model]:.2e}" for model in MODELS)
+        other = {model: statistics.median(farthest(results["compliant"][gap], results[model][gap]))
+                 for model in MODELS[1:]}
+        apart = "  ".join(f"{model} {1e3 * other[model]:.1f}" for model in MODELS[1:])
         print(f"gap {gap:.0e} m: moved by (mm) {moved}; from compliant (mm) {apart}")
     draw(plt, results, args.output)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The same rungs built by several compilers and with several flags, interleaved in one run.
+"""The same rungs built with several compilers and flags, interleaved in one run.
 
     lab/measure/compilers_kernel.py gcc=BUILD/carom_one_rung clang=OTHER/carom_one_rung [--json FILE]
 """

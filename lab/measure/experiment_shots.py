@@ -1,4 +1,5 @@
-"""Seeded shots for the experiments of lab/notes/2026-11-accuracy_experiments.md, as scene files: straight, cut, three cushions, break."""
+"""Seeded shots for the experiments of lab/notes/2026-11-accuracy_experiments.md, as scenes: straight, cut,
+three cushions, break."""
 import math
 import random
 
@@ -15,14 +16,14 @@ def cue(speed, aim_deg, side=0.0, height=0.0):
 
 
 def aim(start, target, radius, cut_deg):
-    """Direction in degrees from start that meets target at this cut angle."""
+    """The direction in degrees from start that meets the target at this cut angle."""
     dx, dy = target[0] - start[0], target[1] - start[1]
     off = math.asin(2 * radius * math.sin(math.radians(cut_deg)) / math.hypot(dx, dy))
     return math.degrees(math.atan2(dy, dx) + off)
 
 
 def shot(kind, seed):
-    """Text of a scene file; equal arguments give equal text."""
+    """The text of a scene file; equal arguments give equal text."""
     draw = random.Random(f"{kind} {seed}")
     uniform = draw.uniform
     if kind == "break":

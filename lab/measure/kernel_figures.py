@@ -32,7 +32,7 @@ def save(figure, folder, name):
 
 
 def bars(folder, name, title, rows, label, log=False, line=None):
-    """rows: {group: {key: value}}, horizontal, one colour a key."""
+    """Horizontal bars of rows: {group: {key: value}}, one colour per key."""
     groups = list(rows)
     keys = []
     for values in rows.values():

@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
-"""The lengths of the Huffman codes that are built into the PNG writer (render/src/frames/png_code.cpp), from frames of several scenes
-and cameras. Also prints how large the frames become with them, and with codes of their own, beside zlib's level 1 without filters.
+"""Computes the lengths of the Huffman codes built into the PNG writer (render/src/frames/png_code.cpp) from
+frames of several scenes and cameras.
+
+Also prints the frame sizes with these codes and with codes made for each frame, relative to zlib's level 1
+without filters.
 
     cmake --build --preset release --target carom_program
     lab/measure/png_code_lengths.py [BUILD_FOLDER]
@@ -15,9 +18,9 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release") / "carom"
 WIDTH, HEIGHT = 1920, 1080
-SEGMENT = 64  # pixels; no run leaves its segment
+SEGMENT = 64  # pixels; no run crosses a segment's end
 LONGEST = 12  # bits of a code
-# the byte before every row (Paeth), the end of the data, the first code of a run
+# The byte before every row (Paeth), the end of the data, the first code of a run.
 FILTER, END, RUNS = 4, 256, 257
 BREAK = "eight_ball_break"
 FRAMES = {
@@ -33,7 +36,8 @@ FRAMES = {
     "at the cloth": [BREAK, "--eye", "0.6,0.9,0.25", "--target", "0.63,1.9,0"],
 }
 
-# What deflate calls a length of 3 to 258: for each of its 29 codes the shortest length, and the bits that follow the code.
+# Deflate's codes for lengths of 3 to 258: the shortest length of each of the 29 codes, and the number of
+# extra bits.
 BASE = [
     3, 4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 17, 19, 23, 27, 31, 35, 43, 51, 59, 67, 83, 99, 115, 131, 163, 195,
     227, 258]
@@ -51,7 +55,7 @@ def frames_of(scene, *options):
 
 
 def residuals(image):
-    """What the filter Paeth leaves of an image."""
+    """The image after the Paeth filter."""
     x = image.astype(np.int16)
     left, up, corner = np.zeros_like(x), np.zeros_like(x), np.zeros_like(x)
     left[:, 1:], up[1:], corner[1:, 1:] = x[:, :-1], x[:-1], x[:-1, :-1]
@@ -61,7 +65,8 @@ def residuals(image):
 
 
 class Counts:
-    """How often each byte stands alone, and the runs: rows of (pixels, bytes of one pixel, how often)."""
+    """How often each byte occurs outside a run, and the runs: rows of (pixels, bytes per pixel, how
+    often)."""
 
     def __init__(self, image):
         rest = residuals(image)
@@ -81,7 +86,8 @@ class Counts:
         self.bytes = [pixel & 255, pixel >> 8 & 255, pixel >> 16]
 
     def with_lengths(self, lengths):
-        """How often each code is used if every run takes the shorter of its two forms; the bits that follow the codes."""
+        """How often each code is used if every run takes the shorter of its two forms; the bits that follow
+        the codes."""
         as_bytes = self.length * sum(lengths[b] for b in self.bytes)
         as_run = lengths[RUNS + CODE_OF_RUN[self.length]] + EXTRA_OF_RUN[self.length] + 1
         written_out = as_bytes < as_run

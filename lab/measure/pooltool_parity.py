@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Measures how far carom and pooltool 0.6.0 agree on the same Systems, and whether pooltool plays what carom.io.pooltool.save writes.
+"""Measures how far carom and pooltool 0.6.0 agree on the same Systems, and whether pooltool plays what
+carom.io.pooltool.save writes.
 
-Plays random shots of two and three balls with pooltool and saves them as JSON. Then, with the Python package in the build folder:
-impacts one by one (the states before and after every impact stand in the file), whole shots after carom.io.pooltool.load, and
-continuize() of pooltool on every record of scenes/ that save writes, beside the states of the record. Needs PyPI, or with --python an
-interpreter that has pooltool; neither the build nor a test needs this script.
+Plays random shots of two and three balls with pooltool and saves them as JSON. Then compares, with the Python
+package in the build folder, single impacts (the file has the states before and after each), whole shots after
+carom.io.pooltool.load, and pooltool's continuize() of every scene in scenes/ that save writes with the states
+of the record. Needs PyPI, or with --python an interpreter that has pooltool; neither the build nor a test
+needs this script.
 
     lab/measure/pooltool_parity.py [--package build/release/python] [--shots 20] [--python PYTHON]
 """
@@ -26,7 +28,7 @@ R = 0.028575
 
 
 def play(folder, count):
-    """Runs where pooltool is: the shots, as files."""
+    """Runs with pooltool: plays the shots and saves them."""
     import pooltool as pt
 
     rng = random.Random(1)
@@ -34,7 +36,7 @@ def play(folder, count):
     for i in range(count):
         places = positions(2 + i % 2, rng, float(table.w), float(table.l))
         balls = {name: pt.Ball.create(name, xy=xy) for name, xy in places.items()}
-        # Straight enough at the first ball to hit it.
+        # Aimed straight enough to hit the first ball.
         to = [b - a for a, b in zip(places["cue"], places["1"])]
         system = pt.System(cue=pt.Cue(cue_ball_id="cue"), table=pt.Table.default(), balls=balls)
         aim = pt.ptmath.angle(__import__("numpy").array([*to, 0.0])) * 180 / 3.141592653589793
@@ -46,7 +48,7 @@ def play(folder, count):
 
 
 def continuize(folder):
-    """Runs where pooltool is: the largest distance of its dense history from the states that carom wrote beside it."""
+    """Runs with pooltool: the largest distance between its dense history and the states that carom wrote."""
     import numpy as np
     import pooltool as pt
 
@@ -65,7 +67,8 @@ def continuize(folder):
 
 
 def impacts(system):
-    """Differences in m/s of velocity and of R times spin, of carom's impact from pooltool's: for two balls and for cushions."""
+    """The differences between carom's and pooltool's impacts, in m/s, of velocities and R times spin, by kind
+    of impact."""
     import carom
     import numpy as np
 
@@ -94,7 +97,9 @@ def impacts(system):
             nose = event["agents"][1]["initial"]
             straight = "p1" in nose
             x1, y1, height = nose["p1"] if straight else nose["center"]
-            normal = np.array([nose["p2"][1] - y1, x1 - nose["p2"][0]]) if straight else before[0, 0, :2] - [x1, y1]
+            normal = before[0, 0, :2] - [x1, y1]
+            if straight:
+                normal = np.array([nose["p2"][1] - y1, x1 - nose["p2"][0]])
             normal /= np.linalg.norm(normal)
             normal *= np.sign(normal @ (before[0, 0, :2] - [x1, y1]))
             params = agents[0]["initial"]["params"]

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""What Python costs on top of the engine: importing, one shot, a batch, and states, in one process, in turns.
+"""What Python costs on top of the engine: importing, one shot, a batch, and states, in one process,
+alternating.
 
-The batch of the engine is carom_simulate_many of libcarom.so, which hands its arrays to the engine as they are. Both play the same
-shots from the same arrays on one thread. CPU time of the thread, the least of the rounds and the median of the ratios.
+The engine's batch is carom_simulate_many of libcarom.so, which passes its arrays to the engine unchanged.
+Both play the same shots from the same arrays on one thread. CPU time of the thread; the fastest of the rounds
+and the median of the ratios.
 
-    lab/measure/python_speed.py [--package build/release/python] [--library build/release/capi/libcarom.so] [--rounds 15]
+    lab/measure/python_speed.py [--package build/release/python] [--rounds 15]
+                                [--library build/release/capi/libcarom.so]
 """
 import argparse
 import ctypes
@@ -27,7 +30,7 @@ def timed(work):
 
 
 def each(work, rounds, calls=20):
-    """Least seconds of a call, of rounds with many of them."""
+    """The fewest seconds per call, over rounds of many calls."""
 
     def some():
         for _ in range(calls):
@@ -37,7 +40,7 @@ def each(work, rounds, calls=20):
 
 
 def import_cost(module, rounds, package):
-    """Least CPU seconds of a Python that imports a module and ends."""
+    """The fewest CPU seconds of a Python process that only imports a module."""
     best = 1e9
     for _ in range(rounds):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -49,7 +52,7 @@ def import_cost(module, rounds, package):
 
 
 class Engine:
-    """A batch by libcarom.so."""
+    """A batch through libcarom.so."""
 
     def __init__(self, library, scene):
         self.c = ctypes.CDLL(library)

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Writes anew what docs/reference/validation.md shows of `carom-lab validate`: its table between the marks <!-- begin summary --> and
-<!-- end summary -->, and its figures in docs/images. The same on every machine.
+"""Rewrites what docs/reference/validation.md shows of `carom-lab validate`.
+
+That is its table between the marks <!-- begin summary --> and <!-- end summary -->, and its figures in
+docs/images. They are the same on every machine.
 
     cmake --build --preset release --target carom_lab_program
     lab/measure/renew_validation.py [--carom build/release/carom-lab] [--check]
 
---check writes nothing and fails where the page or a figure is not what the program prints.
+--check writes nothing, and fails if the page or a figure differs from what the program prints.
 """
 import argparse
 import json
@@ -21,7 +23,7 @@ FIGURES = ["V2", "V3", "V4", "V7", "V17", "V18", "B1", ""]  # "": all cases in o
 
 
 def validate(carom, folder, case):
-    """What --json and --plot give."""
+    """The output of --json and --plot."""
     figure = pathlib.Path(folder, "figure.svg")
     command = [carom, "validate", *([case] if case else []), "--json", "--plot", figure]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
@@ -31,13 +33,16 @@ def validate(carom, folder, case):
 def worst(group):
     row = max(group, key=lambda r: abs(r["difference"]))
     off, unit = row["computed"] - row["measured"], row["unit"]
-    by = f"{abs(off / row['measured']):.0%}".replace("%", " %") if row["measured"] and unit != "deg" else f"{abs(off):.2g} {unit}"
+    by = f"{abs(off):.2g} {unit}"
+    if row["measured"] and unit != "deg":
+        by = f"{abs(off / row['measured']):.0%}".replace("%", " %")
     side = "off" if not row["measured"] else "low" if off < 0 else "high"
     return f"{row['difference']:+.1f} ({by} {side})"
 
 
 def summary(all_rows):
-    """One line for the cases of one title and variant: V8 to V16 are nine shots of one kind. Under the table, what the variants are."""
+    """One line for the cases with the same title and variant (V8 to V16 are nine shots of one kind), then a
+    list of the variants."""
     groups, keys = {}, {}
     for row in all_rows:
         groups.setdefault((row["title"], row["variant"]), []).append(row)
@@ -49,9 +54,8 @@ def summary(all_rows):
     last = None
     for (title, variant), group in groups.items():
         ids = [group[0]["case"], group[-1]["case"]]
-        what = [
-            ids[0] if ids[0] == ids[1] else f"{ids[0]} to {ids[1]}", title,
-            group[0]["trust"]] if title != last else ["", "", ""]
+        same_id = ids[0] if ids[0] == ids[1] else f"{ids[0]} to {ids[1]}"
+        what = [same_id, title, group[0]["trust"]] if title != last else ["", "", ""]
         last = title
         free = "yes" if all(r["free_of_fit"] for r in group) else "no"
         within = f"{sum(r['within'] for r in group)} of {len(group)}"

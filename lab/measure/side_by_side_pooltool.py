@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Times the numba original beside ours, in one run.
+"""Times the original in numba beside carom's impact, in one run.
 
-Makes a throw-away virtual environment, installs pooltool-billiards 0.6.0 (PyPI, --no-deps) with what its impact function
-imports, and times pooltool.physics.resolve.ball_ball.frictional_mathavan.collide_balls on the paper's five states,
-interleaved with `carom-lab bench kernel`. Needs PyPI; neither the build nor a test needs this script.
+Makes a temporary virtual environment, installs pooltool-billiards 0.6.0 (PyPI, --no-deps) with what its
+impact function imports, and times pooltool.physics.resolve.ball_ball.frictional_mathavan.collide_balls on the
+paper's five states, alternating with `carom-lab bench kernel`. Needs PyPI; neither the build nor a test needs
+this script.
 
     lab/measure/side_by_side_pooltool.py [--carom build/release/carom-lab] [--rounds 3]
 """
@@ -26,8 +27,9 @@ def time_original():
     import time
     import types
 
-    # The package imports its graphical interface; the one module that is wanted needs none of it. So packages are entered
-    # without their __init__, and names that only classes around the function use stand for nothing.
+    # The package imports its graphical interface, which this one module does not need. So packages are
+    # imported without their __init__, and dummies stand for names that only the classes around the function
+    # use.
     class Name(type):
         def __getattr__(cls, name):
             if name.startswith("__"):

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Times whole shots beside pooltool 0.6.0, in one process, shot by shot in turns.
+"""Times whole shots beside pooltool 0.6.0, in one process, alternating shot by shot.
 
-Makes a throw-away virtual environment, installs pooltool-billiards 0.6.0 (PyPI, --no-deps: the panda3d that it asks for is not on
-PyPI) with what it imports, and plays breaks, random positions of two, 8, 12 and 16 balls with pooltool.simulate and, from the
-Python package in the build folder, with carom.simulate (plan and record each time) and carom.simulate_many (one thread). Both play the same
-positions, aims and speeds on the seven-foot table with the same coefficients and models: inelastic with Alciatore's friction, Stronge's
-cushion, pair by pair. CPU time of the thread. The first shots of pooltool, which compile it, are not counted. FastFiz is not
-on PyPI (sources: github.com/ekiefl/FastFiz); it is not compared. Needs PyPI; neither the build nor a test needs this script.
+Makes a temporary virtual environment and installs pooltool-billiards 0.6.0 (PyPI, --no-deps: the panda3d that
+it requires is not on PyPI) with what it imports. Plays breaks and random positions of two, 8, 12 and 16 balls
+with pooltool.simulate and, from the Python package in the build folder, with carom.simulate (plan and record
+each time) and carom.simulate_many (one thread). Both play the same positions, aims and speeds on the
+seven-foot table with the same coefficients and models: inelastic impacts with Alciatore's friction, Stronge's
+cushion, sequential clusters. CPU time of the thread. The first shots of pooltool, which compile it, are not
+counted. FastFiz is not on PyPI (sources: github.com/ekiefl/FastFiz), so it is not compared. Needs PyPI;
+neither the build nor a test needs this script.
 
     lab/measure/side_by_side_shots.py [--package build/release/python] [--shots 10]
 """
