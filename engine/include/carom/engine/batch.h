@@ -97,8 +97,8 @@ struct BatchOptions {
     /// without playing them again. Both arguments are valid during the call only, and neither contains balls
     /// that were left out. An exception ends the batch.
     std::function<void(std::size_t shot, const Outcome& outcome, const Record& record)> judge{};
-    /// Hash only shots whose number is a multiple of this (not 0); the others have 0. Hashing makes short
-    /// shots half as long again.
+    /// Hash only shots whose number is a multiple of this (not 0); the others have 0. Hashing makes
+    /// short shots take half as long again.
     std::uint64_t hash_every = 1;
 };
 

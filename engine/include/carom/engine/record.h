@@ -151,7 +151,6 @@ struct Event {
     EventType type = EventType::kCueStrike;
     int a = -1;  ///< ball (index)
     int b = -1;  ///< the other ball, or the index of the cushion, jaw or pocket; -1 if none
-
     /// kBallCluster: index into Record::clusters; cushions and jaws: index into the plan's noses, or -1
     int detail = -1;
     /// a contact in the air so slow that it separates at a fixed speed: the energy may rise
@@ -243,7 +242,6 @@ class Record {
     /// A cache that is not part of the value: any two of these are equal.
     struct Aside {
         Aside();
-
         // A copy may be changed, so it computes its orientations afresh.
         Aside(const Aside&) : Aside() {}
         Aside(Aside&&) noexcept = default;
