@@ -162,8 +162,8 @@ TEST_F(Mistakes, ARecordIsNoScene) {
     ASSERT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
     for (const char* command : {"simulate", "check", "margin"})
         refused(
-            "this is JSON, and a scene is TOML; if it is a record, carom render, view, export and compare "
-            "take it",
+            "this is JSON, but a scene is TOML; if it is a record, pass it to carom render, view, export or "
+            "compare",
             {command, record});
 }
 
