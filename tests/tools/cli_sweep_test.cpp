@@ -118,7 +118,7 @@ TEST(CliSweep, AnInterruptLeavesWhatWasDone) {
     ASSERT_NE(part, "");
     const ProcessResult second = carom(breaks(100000, output));
     EXPECT_EQ(second.status, 1);
-    EXPECT_EQ(second.err, "carom: " + part + ": another program is writing this very file\n");
+    EXPECT_EQ(second.err, "carom: " + part + ": another program is writing this file\n");
     process.interrupt();
     const ProcessResult result = process.finish("");
     EXPECT_EQ(result.status, 130);

@@ -51,9 +51,8 @@ struct DetectorMemory {
     std::vector<Mover> mover_;
     std::vector<int> tied_;  // balls whose next event is at the same instant
     EventQueue queue_;       // of the balls: the time of the first candidate, or of the expiry of the box
-    BoxSearch ball_boxes_,
-        // boxes of balls until their own next event, and boxes of the parts of the table
-        table_boxes_;
+    // boxes of balls until their own next event, and boxes of the parts of the table
+    BoxSearch ball_boxes_, table_boxes_;
     std::vector<Contact> parts_;  // cushions, then noses, then pockets; without a ball
     Geometry table_;              // the table of parts_ and table_boxes_
     std::optional<Search> table_search_;
