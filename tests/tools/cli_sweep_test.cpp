@@ -216,7 +216,7 @@ TEST(CliSweep, AShotThatFailsIsARowAndAnExitStatus) {
     int failed = 0, stopped = 0;
     for (const std::string& line : lines_of(read_file(output))) {
         failed +=
-            line.find(",0.6,failed,") != line.npos && line.find("did not end within its bound") != line.npos;
+            line.find(",0.6,failed,") != line.npos && line.find("reached its limit of steps") != line.npos;
         stopped += line.find(",0,time,1,") != line.npos;
     }
     EXPECT_GT(failed, 0);

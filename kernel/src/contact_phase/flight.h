@@ -1,5 +1,5 @@
-// What happens between the contacts of a contact phase: flights, and
-// contacts that turn less than the balls. Part of contact_phase.cpp.
+// The time between the contacts of a contact phase: flights, and contacts that turn less than the balls. Part
+// of contact_phase.cpp.
 #pragma once
 
 #include "carom/kernel/contact_phase.h"
@@ -10,10 +10,10 @@
 namespace carom::kernel {
 namespace {
 
-// Where a contact closes after a flight, its normal turns with the balls up to this share of the look-ahead;
-// less from there to the end, and so do contacts that close up to so long after it [L/V].
+// If a contact closes after a flight of up to this share of the look-ahead, its normal turns with the balls.
+// Beyond that it turns less, and so do contacts that close up to this much later [L/V].
 constexpr double kFlight = 0.5, kSoonAfter = 0.5;
-// [longest steps] A contact that touches within this time touches at once.
+// [longest steps] A contact that would touch within this time touches at once.
 constexpr double kAtOnce = 1e-3;
 
 CAROM_INLINE bool any_overlap(const Work& w) {
@@ -22,7 +22,7 @@ CAROM_INLINE bool any_overlap(const Work& w) {
     return bits != 0;
 }
 
-// Whether a contact overlaps that has something left to do.
+// Whether a contact overlaps and still acts.
 CAROM_INLINE bool any_pressed(const Work& w, const HertzLaw& law, double time_left) {
     for (int c = 0; c < w.contacts; ++c) {
         const double d = w.d[c];
@@ -35,19 +35,19 @@ CAROM_INLINE bool any_pressed(const Work& w, const HertzLaw& law, double time_le
 
 constexpr double kNever = 1e300;
 
-// The motion of two balls along and across their line of centres,
-// while nothing pushes them. Lengths in L, kappa = L/(2 R).
+// The motion of two balls along and across their line of centres, while nothing pushes them. Lengths in L,
+// kappa = L/(2 R).
 struct Way {
-    double closing, across, speed2;  // speeds, and their square together
-    double kappa, gap, apart;        // kappa, and kappa times the distance of the centres
+    double closing, across, speed2;  // speeds, and their total squared
+    double kappa, gap, apart;        // kappa, the gap, and kappa times the distance of the centres
 
-    // When they touch: |z - v s| = 2 R, without the difference of numbers that are nearly equal.
+    // When they touch: |z - v s| = 2 R, without subtracting nearly equal numbers.
     double touch() const {
         if (!(closing > 0.0)) return kNever;
         const double q = gap * (2.0 + kappa * gap), c = apart * closing, root2 = c * c - kappa * speed2 * q;
         return root2 < 0.0 ? kNever : q / (c + square_root(root2));
     }
-    // When they touch or are nearest, from now on.
+    // When they touch or are nearest, from now.
     double nearest() const {
         const double s = touch();
         if (s < kNever) return s;
@@ -92,9 +92,9 @@ CAROM_INLINE double falling(double x, double from, double to) {
     return 1.0 - t * t * (3.0 - 2.0 * t);
 }
 
-// Moves all balls straight on for `time`, when the first contact closes. Where that takes
-// almost the look-ahead, the caller is almost about to take over, whose balls have not
-// moved during the contacts: such contacts, and those that close soon after, turn less.
+// Moves all balls straight ahead for `time`, when the first contact closes. If that takes almost the whole
+// look-ahead, the caller is about to take over, and for it the balls have not moved during the contacts. So
+// such contacts, and those that close soon after, turn less.
 CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double look_ahead) {
     const double less = 1.0 - falling(time, kFlight * look_ahead, look_ahead);
     w.shares = false;
@@ -111,9 +111,9 @@ CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double lo
     look(w);
 }
 
-// A contact closes that turns less than the balls do: its normal goes from that
-// of the balls to the one with which the balls would meet if they had moved with
-// their present velocities since the first touch, without any contact before.
+// Closes a contact that turns less than the balls. Its normal moves from that of the balls towards the one
+// with which they would meet if they had moved with their present velocities since the first touch, without
+// earlier contacts.
 CAROM_INLINE void close_contact(const ContactPhase& phase, Work& w, int c, double time) {
     double &nx = w.nx[c], &ny = w.ny[c];
     turn_by_flight(way(w, c, nx, ny, largest(0.0, -w.d[c])), time, nx, ny);

@@ -1,4 +1,4 @@
-// The contact phase in space, one contact at a time: clusters with a ball in the air are rare, and few.
+// The contact phase in space, one contact at a time: clusters with a ball in the air are rare and small.
 #include "carom/kernel/contact_phase.h"
 #include "contact_phase/law.h"
 #include "numbers.h"
@@ -6,8 +6,8 @@
 namespace carom::kernel {
 namespace {
 
-constexpr int kPerState = 9;   // numbers of a ball in a state: where it has moved to [L], v and R w [V]
-constexpr int kPerMotion = 6;  // in ContactPhaseInSpace::motion: without the place
+constexpr int kPerState = 9;   // numbers per ball in a state: displacement [L], v and R w [V]
+constexpr int kPerMotion = 6;  // in ContactPhaseInSpace::motion: without the displacement
 constexpr double kNever = 1e300;
 
 struct Vector {
@@ -41,7 +41,7 @@ void add(double* to, const Vector& a) {
 // A contact at one instant.
 struct Now {
     Vector n;              // from i to j
-    double overlap, rate;  // and its slope
+    double overlap, rate;  // and its rate
 };
 
 class InSpace {
@@ -237,7 +237,7 @@ class InSpace {
         return false;
     }
 
-    // Whether a contact overlaps that has something left to do.
+    // Whether a contact overlaps and still acts.
     bool presses(double time_left) const {
         for (int c = 0; c < phase_.contacts; ++c) {
             const Now now = look(y_, c);
@@ -246,8 +246,8 @@ class InSpace {
         return false;
     }
 
-    // When the next contact closes, if nothing pushes: |z - v s| =
-    // 2 R, without the difference of numbers that are nearly equal.
+    // When the next contact closes, if nothing pushes: |z - v s| = 2 R, without subtracting nearly equal
+    // numbers.
     double next_touch() const {
         double first = kNever;
         for (int c = 0; c < phase_.contacts; ++c) {
@@ -272,10 +272,10 @@ class InSpace {
     const double diameter_;  // [L]
     const int size_;
     double *y_, *stage_, *slope_[kStages];
-    double next_;        // limit of the next step by the error of the last one
-    double* stiffness_;  // per ball: the sum of friction over slip
-    // Per contact: from one centre to the other at the start (3 numbers); the
-    // largest overlap since it opened; overlap and its slope before the step.
+    double next_;        // limit of the next step, from the error of the last one
+    double* stiffness_;  // per ball: the sum of friction divided by slip
+    // Per contact: the vector between the centres at the start (3 numbers); the largest overlap since it
+    // opened; overlap and rate before the step.
     double *apart_, *memory_, *before_, *rate_;
 };
 
