@@ -128,8 +128,8 @@ inline constexpr Field<BallParams> kBallFields[] = {
                                   {.files = Files::kRecord, .since = 2}),
     fit<&BallParams::mu_b, &BallParams::mu_b_more, &BallParams::mu_b_fall>(
         "mu_b_fit", kFriction,
-        "ball-ball friction a + b exp(-c u) at the slip u in m/s, in an impact of two balls the slip before "
-        "it; `[0.009951, 0.108, 1.088]` is the fit of Alciatore's TP A.14",
+        "ball-ball friction a + b exp(-c u) at the slip u in m/s (for two balls, the slip before the "
+        "impact); `[0.009951, 0.108, 1.088]` is the fit of Alciatore's TP A.14",
         "[a, b, c] for a + b exp(-c u)", "mu_b"),
     field<&BallParams::e_b>("e_b", kRestitution, "ball-ball restitution"),
     number_or_fit<&BallParams::e_c, &BallParams::e_c_fall, &BallParams::e_c_above>(
@@ -145,7 +145,8 @@ inline constexpr Field<BallParams> kBallFields[] = {
         "e_c_fit", kFriction,
         "cushion restitution that falls with the speed v in m/s towards the cushion: e up to v0, e - c (v - "
         "v0) "
-        "above, and not below 0; `[1, 0.08, 1.7]` with `mathavan_2010` meets the snooker cushion of 2009",
+        "above, and not below 0; `[1, 0.08, 1.7]` with `mathavan_2010` reproduces the snooker cushion "
+        "measured in 2009",
         "[e, c, v0] for e - c max(0, v - v0)", "e_c"),
     number_or_fit<&BallParams::f_c, &BallParams::f_c_more, &BallParams::f_c_fall>(
         "f_c", kFriction, "cushion friction, at any slip"),
@@ -172,8 +173,8 @@ inline constexpr Field<BallParams> kBallFields[] = {
         "restitution of ball and cloth a + b exp(-c V) at the speed V in m/s towards the cloth",
         "[a, b, c] for a + b exp(-c V)", "e_t"),
     field<&BallParams::e_h>("e_h", kRestitution,
-                            "share of the downward speed from a cushion that throws a ball up again: a hop; "
-                            "about 0.2 on a real table",
+                            "share of the downward speed after a cushion that throws the ball up again (a "
+                            "hop); about 0.2 on a real table",
                             {.since = 2, .later = true}),
 };
 
@@ -192,10 +193,10 @@ struct BallStart {
 };
 inline constexpr Field<BallStart> kBallStartFields[] = {
     field<&BallStart::id>("id", at_least(1.0, kMaxIdLength, "bytes"),
-                          "used once; no commas, quotes or control characters"),
+                          "unique; no commas, quotes or control characters"),
     field<&BallStart::position>("position", kCoordinate, "of the centre", {.shape = "[x, y]"}),
     field<&BallStart::height>("height", at_least(0.0, kMaxLength, "m"),
-                              "of its lowest point above the cloth: it starts in the air"),
+                              "of its lowest point above the cloth, to start in the air"),
     field<&BallStart::velocity>("velocity", at_least(-kMaxSpeed, kMaxSpeed, "m/s"),
                                 "to start moving without a cue; vz, upward, may be left out",
                                 {.shape = "[vx, vy, vz]", .last_may_lack = true}),
@@ -229,21 +230,21 @@ struct Rack {
     std::optional<Vec2> position = std::nullopt;  ///< nothing: the foot spot
 };
 inline constexpr Field<Rack> kRackFields[] = {
-    field<&Rack::game>("game", "which balls stand where"),
+    field<&Rack::game>("game", "arrangement of the balls"),
     field<&Rack::gap>("gap", at_least(0.0, kMaxLength, "m"), "between neighbours, 0 = touching"),
     field<&Rack::jitter>("jitter", at_least(0.0, kMaxJitter, "m"),
                          "every ball moves by up to this much in x and in y"),
     field<&Rack::seed>("seed", at_least(0.0, kAnyInteger), "of the random numbers"),
     field<&Rack::count>("count", at_least(1.0, kMaxBalls), "balls of a `line`"),
     field<&Rack::rows>("rows", at_least(1.0, kMaxRackRows), "rows of a `triangle`"),
-    field<&Rack::position>("position", kCoordinate, "where the rack stands",
+    field<&Rack::position>("position", kCoordinate, "position of the rack",
                            {.shape = "[x, y]", .standard = "the foot spot"}),
     field<&Rack::spot_ball>(
         "spot_ball", at_least(1.0, kMaxBalls),
-        "number of the ball that stands there: 9 in a nine-ball rack with the 9 on the spot",
+        "number of the ball at that position: 9 in a nine-ball rack with the 9 on the spot",
         {.standard = "the apex"}),
     field<&Rack::angle_deg>("angle_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"),
-                            "by which the rack is turned about that ball; 0 has its rows towards +y"),
+                            "rotation of the rack about that ball; 0: rows towards +y"),
 };
 
 /// The cue's stroke. The defaults are those of a scene file with an empty [cue], and of the C interface.
@@ -348,7 +349,7 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
     field<&Physics::ball_ball>("ball_ball", "impact of two balls"),
     field<&Physics::cushion>(
         "cushion",
-        "impact with a straight cushion; `mathavan_2010` refuses a friction under which a ball could jam",
+        "impact with a straight cushion; `mathavan_2010` rejects a friction with which a ball could jam",
         {.standard = "that of the balls' preset"}),
     field<&Physics::jaw>("jaw", "impact with a round jaw", {.standard = "as `cushion`"}),
     field<&Physics::cloth_slip>(
@@ -365,15 +366,13 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
     field<&Physics::substeps>("substeps", at_least(1.0, kMaxSubsteps), "the published march with this N",
                               {.instead_of = "tolerance"}),
     field<&Physics::march>("march",
-                           "how `substeps` are done: the same steps summed over many at once, or one after "
-                           "the other in the loop as "
-                           "published, to the bit",
+                           "how `substeps` are computed: the same steps summed over many at once, or one by "
+                           "one as published, bit for bit",
                            {.since = 2, .later = true}),
     field<&Physics::cushion_touch>(
         "cushion_touch",
-        "distance of a ball's centre from a nose line that it touches: its `radius` R, as most simulators "
-        "have "
-        "it, or sqrt(R^2 - (height - R)^2), where its sphere meets the `nose`; that is 0.6 to 2.2 mm less",
+        "distance of a ball's centre from a nose line that it touches: its `radius` R, as in most "
+        "simulators, or sqrt(R^2 - (height - R)^2), where its sphere meets the `nose` (0.6 to 2.2 mm less)",
         {.since = 2}),
     field<&Physics::pocket>("pocket",
                             "a ball whose centre crosses the circle of a pocket falls, and may come back "
@@ -438,8 +437,8 @@ inline constexpr Field<RenderSettings> kRenderFields[] = {
     field<&RenderSettings::fps>("fps", more_than(0.0, kMaxFps, "frames per second"), "frame rate"),
     field<&RenderSettings::width, &RenderSettings::height>("size", at_least(1.0, kMaxImageSize, "pixels"),
                                                            "of an image", {.shape = "[width, height]"}),
-    field<&RenderSettings::camera>("camera", "where one looks from", {.names = kCameras}),
-    field<&RenderSettings::eye>("eye", kCoordinate, "place of a free camera, with `target`",
+    field<&RenderSettings::camera>("camera", "view of the table", {.names = kCameras}),
+    field<&RenderSettings::eye>("eye", kCoordinate, "position of a free camera, with `target`",
                                 {.shape = "[x, y, z]", .instead_of = "camera"}),
     field<&RenderSettings::target>("target", kCoordinate, "point that a free camera looks at, with `eye`",
                                    {.shape = "[x, y, z]", .instead_of = "camera"}),

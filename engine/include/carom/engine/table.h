@@ -110,7 +110,7 @@ inline constexpr Field<Table> kTableFields[] = {
                           {.shape = "[x, y]", .files = Files::kRecord}),
     field<&Table::bed>(
         "bed", kCoordinate,
-        "two corners of the playing surface: a ball in the air is out where it leaves it, and no sooner",
+        "two corners of the playing surface: a ball in the air is out when it leaves this rectangle",
         {.shape = "[x0, y0, x1, y1]", .since = 2, .later = true, .standard = "behind any cushion"}),
 };
 
