@@ -4,7 +4,7 @@
 carom_packages=(
     cmake g++ ninja-build
     libeigen3-dev libbox2d-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev libcli11-dev
-    libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri libpng-dev
+    libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri libpng-dev libcairo2-dev
     libgtest-dev libbenchmark-dev
     pkg-config python3 python3-numpy
 )

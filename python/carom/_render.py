@@ -16,9 +16,6 @@ from carom._simulate import simulate
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-#: What a picture may have at most on a side [pixels].
-_LARGEST = 16384
-
 
 @checked
 def render(
@@ -48,8 +45,9 @@ def render(
     """
     record = shot if isinstance(shot, Record) else simulate(shot)
     width, height = record.picture_size if size is None else size
-    if not (1 <= width <= _LARGEST and 1 <= height <= _LARGEST):
-        raise ValueError(f"size={size}: expected 1 to {_LARGEST} pixels on each side")
+    most = _carom.MAX_IMAGE_SIZE
+    if not (1 <= width <= most and 1 <= height <= most):
+        raise ValueError(f"size={size}: expected 1 to {most} pixels on each side")
     rate = record.fps if fps is None else fps
     if not (0 < rate < np.inf):
         raise ValueError(f"fps={fps}: expected a number greater than 0")

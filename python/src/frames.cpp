@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "carom/engine/tolerances.h"
 #include "carom/render/draw_list.h"
 #include "carom/render/error.h"
 #include "carom/render/kept_image.h"
@@ -71,6 +72,7 @@ void add_frames(nb::module_& m) {
                  new (frames) Frames(r.record, camera, width, height, backend, overlays);
              })
         .def("draw", &Frames::draw, nb::arg("time"), nb::arg("out").noconvert());
+    m.attr("MAX_IMAGE_SIZE") = kMaxImageSize;
     m.def("frame_count", render::frame_count);
     m.def("frame_time", render::frame_time);
 }

@@ -155,10 +155,7 @@ NativeScene parsed_with(const std::string& section, const Scene& scene) {
 void add_records(nb::module_& m) {
     nb::class_<NativeRecord>(m, "Record")
         .def_prop_ro("duration", [](const NativeRecord& r) { return r.record->duration; })
-        .def_prop_ro("stopped",
-                     [](const NativeRecord& r) {
-                         return std::string(name(static_cast<ShotStatus>(r.record->stopped)));
-                     })
+        .def_prop_ro("stopped", [](const NativeRecord& r) { return words(r.record->stopped).word; })
         .def_prop_ro("ids", track_ids)
         .def_prop_ro("balls", ball_count)
         .def_prop_ro("table", table_of)

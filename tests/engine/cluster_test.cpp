@@ -349,6 +349,26 @@ TEST(Cluster, AContactHasALengthAtEverySpeed) {
     EXPECT_EQ(contact_length(0.0), 0.0);
 }
 
+// Every shipped model reads both e_b and mu_b, or neither.
+TEST(Cluster, AModelMayReadRestitutionAndNoFriction) {
+    Scene scene = empty_scene();
+    scene.balls.e_b = 0.9;
+    scene.balls.mu_b = 0.0;
+    scene.physics.ball_ball = ball_ball_model("inelastic");
+    add_ball(scene, "cue", 0.0, 0.0, 2.0, 0.0);
+    add_ball(scene, "1", 0.5, kR);
+    add_ball(scene, "2", 0.5, -kR);
+    Plan plan = plan_of(scene);
+    const Record with_both = simulate(plan);
+    ASSERT_EQ(count(with_both, EventType::kBallCluster), 1);
+    BallBallModelInfo model = *plan.ball_ball;
+    model.reads_friction = false;
+    plan.ball_ball = &model;
+    EXPECT_EQ(simulate(plan).hash(), with_both.hash());
+    model.reads_restitution = false;
+    EXPECT_NE(simulate(plan).hash(), with_both.hash());
+}
+
 TEST(Cluster, BallsThatHardlyMoveComeToRest) {
     // Scene files refuse speeds below 1e-60 m/s; balls may
     // come to have them. Below 1e-100 m/s they are at rest.

@@ -224,9 +224,6 @@ TEST(Sequence, AFrameThatCannotBeWrittenIsNamedAndLeavesNothing) {
 
 TEST(Sequence, RefusesBadOptions) {
     SequenceOptions options = small_options("");
-    options.libpng_level = 10;
-    EXPECT_THROW(render_sequence(one_ball(), options), RenderError);
-    options = small_options("");
     options.camera = "periscope";
     EXPECT_THROW(render_sequence(one_ball(), options), RenderError);
     options = small_options("frame.png");

@@ -121,7 +121,7 @@ TEST(Pipeline, BothWritersGiveTheSamePixels) {
     SequenceOptions options = options_for(folder.file("a%02d.png"));
     const std::vector<FrameTiming> changes = render_sequence(rolling_ball(), options);
     options.pattern = folder.file("b%02d.png");
-    options.libpng_level = 6;
+    options.libpng = true;
     const std::vector<FrameTiming> whole = render_sequence(rolling_ball(), options);
     for (long k = 0; k < static_cast<long>(whole.size()); ++k) {
         EXPECT_TRUE(same_pixels(render_test::read_png(frame_path(folder.file("a%02d.png"), k)),

@@ -88,7 +88,7 @@ TEST(OutcomeOf, NamesContactsAndTheFirstBallHit) {
     add_ball(scene, "cue", 0.0, 0.0, 2.0, 0.0);
     add_ball(scene, "far", 0.8, 0.0);
     add_ball(scene, "near", 0.4, 0.0);
-    const ShotContacts outcome = contacts_of(simulate(plan_of(scene)));
+    const ShotContacts outcome = contacts_of(scene, simulate(plan_of(scene)));
     EXPECT_EQ(outcome.first_contact, "near");
     ASSERT_GE(outcome.contacts.size(), 2u);
     EXPECT_EQ(outcome.contacts[0], "ball_ball cue near");

@@ -61,7 +61,8 @@ TEST(CliDescribe, BashOffersCommandsOptionsValuesAndFiles) {
     EXPECT_EQ(offered(folder, {"carom", "check", "a"}), Words{"a shot.toml"});
     EXPECT_EQ(offered(folder, {"carom", "sweep", "-o", "a"}), Words{"a shot.toml"});
     EXPECT_EQ(offered(folder, {"carom", "describe", ""}),
-              (Words{"man", "bash", "zsh", "command-line", "scene-schema", "record-schema", "scene-format"}));
+              (Words{"man", "bash", "zsh", "command-line", "scene-schema", "record-schema", "scene-format",
+                     "measures", "events"}));
 }
 
 TEST(CliDescribe, ZshReadsItsCompletion) {

@@ -18,7 +18,8 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "a command is missing: simulate, render, view, export, compare, margin, accuracy, sweep, check, "
+         "a command is missing: simulate, render, view, diagram, next, judge, export, compare, margin, "
+         "accuracy, sweep, check, "
          "impact or describe; see carom --help"},
         {{"accuracy"}, "accuracy: a scene file is required; see --help"},
         {{"fly"}, "fly"},

@@ -13,6 +13,9 @@ namespace carom::tools {
 void add_simulate(Options& program);
 void add_render(Options& program);
 void add_view(Options& program);
+void add_diagram(Options& program);
+void add_judge(Options& program);
+void add_next(Options& program);
 void add_export(Options& program);
 void add_compare(Options& program);
 void add_margin(Options& program);
@@ -49,6 +52,9 @@ int run(int argc, char** argv) {
     add_simulate(program);
     add_render(program);
     add_view(program);
+    add_diagram(program);
+    add_next(program);
+    add_judge(program);
     add_export(program);
     add_compare(program);
     add_margin(program);

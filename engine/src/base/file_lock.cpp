@@ -27,18 +27,14 @@ bool is_named(int fd, const std::string& name) {
            opened.st_dev == named.st_dev;
 }
 
-void lock(int fd, const std::string& name, int how, const char* what) {
+void lock(int fd, const std::string& name, int how) {
     if (::flock(fd, how | LOCK_NB) == 0) return;
-    if (errno == EWOULDBLOCK) throw std::runtime_error(name + ": another program is writing " + what);
+    if (errno == EWOULDBLOCK)
+        throw std::runtime_error(name + ": another program is writing the files that this lock protects");
     fail(name, "cannot lock");
 }
 
 }  // namespace
-
-void lock_file(int fd, const std::string& name) {
-    lock(fd, name, LOCK_EX, "this file");
-    if (!is_named(fd, name)) throw std::runtime_error(name + ": another program has just finished this file");
-}
 
 FileLock::FileLock(std::string name, bool alone) : name_(std::move(name)) {
     constexpr int kTries = 100;
@@ -46,7 +42,7 @@ FileLock::FileLock(std::string name, bool alone) : name_(std::move(name)) {
         fd_ = ::open(name_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (fd_ < 0) fail(name_, "cannot open for writing");
         try {
-            lock(fd_, name_, alone ? LOCK_EX : LOCK_SH, "the files that this lock protects");
+            lock(fd_, name_, alone ? LOCK_EX : LOCK_SH);
         } catch (...) {
             ::close(fd_);
             throw;

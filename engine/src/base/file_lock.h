@@ -5,9 +5,6 @@
 
 namespace carom {
 
-/// Locks an open file, which `name` names. All errors are std::runtime_error and begin with the name.
-void lock_file(int fd, const std::string& name);
-
 /// Locks files that a program works on, for its own lifetime, by an empty file next to them. The lock file is
 /// removed at the end; one that a killed program left behind is reused.
 class FileLock {

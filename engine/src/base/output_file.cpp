@@ -145,7 +145,12 @@ void OutputFile::write(std::string_view text) {
     if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail("cannot write");
 }
 
-void OutputFile::commit() {
+void OutputFile::commit(bool durable) {
+    durable = durable && !is_direct();
+    // Some file systems cannot; they promise nothing.
+    if (durable &&
+        (std::fflush(file_) != 0 || (::fsync(::fileno(file_)) != 0 && errno != EINVAL && errno != EROFS)))
+        fail("cannot write");
     std::FILE* file = file_;
     file_ = nullptr;
     // fclose reports errors that buffering has hidden until now, such as a full disk.
@@ -153,6 +158,12 @@ void OutputFile::commit() {
     if (temporary_.empty()) return;
     if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot rename to this name");
     temporary_.clear();
+    if (!durable) return;
+    const std::string folder = std::filesystem::path(target_).parent_path().string();
+    const int fd = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0) return;
+    ::fsync(fd);
+    ::close(fd);
 }
 
 }  // namespace carom

@@ -33,8 +33,12 @@ class OutputFile {
     /// The name that is written to until commit(), for another program that writes the file instead.
     const std::string& written() const { return temporary_.empty() ? target_ : temporary_; }
 
+    /// Whether there is no temporary file.
+    bool is_direct() const { return temporary_.empty(); }
+
     /// Closes and renames; before this call no file has the requested name.
-    void commit();
+    /// @param durable  the file survives a power cut from here on, which takes milliseconds and more
+    void commit(bool durable = false);
 
   private:
     void open_temporary();

@@ -9,7 +9,7 @@
 namespace carom {
 
 static_assert(static_cast<int>(ShotStatus::kEndless) == static_cast<int>(StopReason::kEndless));
-static_assert(names_of(ShotStatus()).size() == kShotStatuses);
+static_assert(static_cast<std::size_t>(ShotStatus::kInvalid) == kStopWords.size());
 
 Simulator::Simulator(const Scene& scene, kernel::Isa isa) : planner_(scene, isa) {}
 

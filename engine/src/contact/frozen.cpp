@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "carom/engine/event_details.h"
 #include "carom/engine/vec.h"
 
 namespace carom {
@@ -11,15 +12,6 @@ namespace {
 // [ball radii] A ball that has moved away from a cushion by less than this has not left it: rounding of
 // positions, far below anything visible.
 constexpr double kStillFrozen = 1e-9;
-
-/// The point of the table's part that is nearest to a position.
-Vec2 nearest_point(const Table& table, const Event& event, const Vec2& place) {
-    const auto part = static_cast<std::size_t>(event.b);
-    if (kind(event.type).partner == Partner::kJaw) return table.jaws[part].center;
-    const Cushion& c = table.cushions[part];
-    const Vec2 line = c.to - c.from;
-    return c.from + std::clamp(dot(place - c.from, line) / line.squaredNorm(), 0.0, 1.0) * line;
-}
 
 /// How long segment `i` is in force [s after its start], at most until `time`.
 double lasts(std::span<const Segment> segments, std::size_t i, double time) {

@@ -188,14 +188,13 @@ bool Clusters::closes_still(double v_n) const {
 
 long Clusters::resolve(double v_n, bool friction) {
     const BallParams& p = plan_.balls;
-    const double e_b = plan_.ball_ball->reads_friction ? p.e_b : 1.0;
     const double R = balls_.radius(members_.front().ball);  // equal for all members
     if (plan_.clusters == ClusterModel::kRigid) return map_.rigid(members_, contacts_, p.e_b, R);
     ClusterSettings settings{
         .R = R,
         .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
         .mu_b = friction ? p.mu_b : 0.0,
-        .e_b = e_b,
+        .e_b = plan_.e_b(),
         .published_cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
         .epsilon = kClusterEpsilon,
         .longest_step = friction && p.ball_friction().any() ? kClusterFrictionStep : kClusterStep,

@@ -40,9 +40,6 @@ struct LogMemory {
     std::vector<Segment> of_struck_;  // by outcome()
 };
 
-/// The ball that the cue strikes, otherwise the first one that moves at the start; or -1.
-int struck_ball(const Scene& scene);
-
 class Log : private Borrowed<LogMemory> {
     /// [-] Most consecutive iterations without an event; with more, the simulation is stalled.
     static constexpr int kQuietCap = 1000000;

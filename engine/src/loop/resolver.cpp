@@ -123,7 +123,7 @@ kernel::ImpactResult Resolver::collide(int one, int two, const kernel::Ball& b1,
         .mu_s1 = mu_s,
         .mu_s2 = mu_s,
         .mu_b = plan_.in_force(Effect::kThrow) ? pair_friction(plan_, balls_, one, two) : 0.0,
-        .e_b = model.reads_restitution ? p.e_b : 1.0,
+        .e_b = plan_.e_b(),
         .cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished
                           ? kernel::ClothSlip::kAsPublished
                           : kernel::ClothSlip::kConsistent};
@@ -170,8 +170,7 @@ bool Resolver::hold_in_cluster(Pressed when) {
 // @return true if a cluster was resolved, or one of its contacts became a resting contact; false: use the
 // pair kernel
 bool Resolver::cluster(int a, int b, double v_n) {
-    const double e_b = plan_.ball_ball->reads_restitution ? plan_.balls.e_b : 1.0;
-    const bool parts_slowly = e_b * v_n < parting_speed(balls_.radius(a), plan_.gravity);
+    const bool parts_slowly = plan_.e_b() * v_n < parting_speed(balls_.radius(a), plan_.gravity);
     v_n = clusters_.collect(a, b, v_n);
     if (clusters_.balls().size() < 3) return false;
     const bool in_space = clusters_.in_space();

@@ -69,7 +69,7 @@ void Resolver::free_balls(int a, int b) {
         if (alike && resting_.try_hold(approach, plan_.balls.e_b)) return;
     }
     FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.balls};
-    if (!plan_.ball_ball->reads_restitution) pair.balls.e_b = 1.0;
+    pair.balls.e_b = plan_.e_b();
     if (!plan_.ball_ball->reads_friction || !plan_.in_force(Effect::kThrow))
         pair.balls.mu_b = pair.balls.mu_b_more = 0.0;
     const Vec3 apart = p2.position - p1.position, n = apart / length3(apart);

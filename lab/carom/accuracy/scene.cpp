@@ -31,7 +31,7 @@ struct LabAccuracyArgs : AccuracySceneArgs {
 
 void measure_box2d(SceneAccuracy& result, const Scene& scene) {
     const Record truth = simulate_plan(with_tolerance(scene, kernel::kTightestTolerance), {});
-    const ShotContacts outcome = contacts_of(truth);
+    const ShotContacts outcome = contacts_of(scene, truth);
     const std::vector<Vec2> end = final_positions(truth);
     constexpr double kRates[] = {60.0, 120.0, 240.0, 1000.0, 10000.0};
     ProgressLine progress("accuracy, Box2D:");

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 #: What a shot is called in the column "outcome".
-OUTCOMES = tuple(status.name.lower() for status in ShotStatus)
+OUTCOMES = tuple(_carom.status_names())
 #: A sweep has at most so many shots: doubles count to there.
 MOST_SHOTS = 2**53
 

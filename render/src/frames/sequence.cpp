@@ -140,8 +140,6 @@ StageOptions stage_options(const SequenceOptions& options) {
 }
 
 void check_options(const SequenceOptions& options) {
-    if (options.libpng_level && (*options.libpng_level < 0 || *options.libpng_level > 9))
-        throw RenderError("the PNG level must be 0 to 9");
     if (options.size.width < 1 || options.size.height < 1)
         throw RenderError("an image needs at least one pixel");
     if (options.resume && (options.pattern.empty() || options.raw || !is_numbered(options.pattern)))
@@ -303,7 +301,7 @@ void render_sheet(const Record& record, const SequenceOptions& options, int colu
         if (options.progress) options.progress(i + 1, last + 1);
     }
     std::vector<std::uint8_t> bytes;
-    options.libpng_level ? encode_png(sheet, *options.libpng_level, bytes) : KeptPng().encode(sheet, bytes);
+    options.libpng ? encode_png(sheet, kFrameLevel, bytes) : KeptPng().encode(sheet, bytes);
     write_file(path, bytes);
 }
 

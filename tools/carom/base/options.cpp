@@ -78,7 +78,7 @@ std::string is_count(const std::string& text) {
 template <class T>
 void add_option(CLI::App& app, const Option& row, const std::string& names, T& variable) {
     CLI::Option* option = app.add_option(names, variable, row.text);
-    if constexpr (kIsList<T>) option->allow_extra_args(false);
+    if constexpr (kIsList<T>) option->allow_extra_args(row.by_place());
     if constexpr (std::is_same_v<T, std::vector<int>> || std::is_same_v<T, std::vector<double>>)
         option->delimiter(',');
     if constexpr (std::is_same_v<T, std::uint64_t>) option->check(is_count);

@@ -29,7 +29,9 @@ enum class ShotStatus : std::uint8_t {
 };
 inline constexpr int kShotStatuses = 6;
 constexpr auto names_of(ShotStatus) {
-    return std::array{"at_rest", "time", "events", "endless", "invalid", "failed"};
+    std::array<const char*, kShotStatuses> names{"", "", "", "", "invalid", "failed"};
+    for (std::size_t i = 0; i < kStopWords.size(); ++i) names[i] = kStopWords[i].word;
+    return names;
 }
 constexpr bool has_result(ShotStatus status) {
     return status < ShotStatus::kInvalid;

@@ -172,8 +172,27 @@ struct EventCost {
 /// kEndless: balls move forever without another event, and there was no time to stop at; the record ends at
 /// its last event.
 enum class StopReason : std::uint8_t { kAtRest, kTime, kEvents, kEndless };
+
+/// The words for a StopReason.
+struct StopWords {
+    const char* word;       ///< in tables, Python and C
+    const char* in_record;  ///< in record files
+    const char* sentence;   ///< for people
+};
+inline constexpr std::array<StopWords, 4> kStopWords = {{
+    {"at_rest", "at rest", "everything is at rest"},
+    {"time", "stop time", "stopped at its time"},
+    {"events", "number of events", "stopped at its number of events"},
+    {"endless", "endless motion", "nothing more happens, but balls move for ever"},
+}};
+constexpr const StopWords& words(StopReason why) {
+    return kStopWords[static_cast<std::size_t>(why)];
+}
+/// As record files have them.
 constexpr auto names_of(StopReason) {
-    return std::array{"at rest", "stop time", "number of events", "endless motion"};
+    std::array<const char*, kStopWords.size()> names{};
+    for (std::size_t i = 0; i < names.size(); ++i) names[i] = kStopWords[i].in_record;
+    return names;
 }
 
 /// State of one ball at a time.

@@ -65,16 +65,18 @@ struct BallOutcome {
     bool operator==(const BallOutcome&) const = default;
 };
 
+/// The ball that the cue strikes, otherwise the first one that moves at the start; or -1.
+int struck_ball(const Scene& scene);
+
 /// The result of a shot without a record: final positions and counts of events.
 struct Outcome {
     StopReason stopped = StopReason::kAtRest;
     double duration = 0.0;    ///< [s]
     std::int64_t events = 0;  ///< as many as in the record
     int clusters = 0;         ///< of these events
-    /// the ball that the cue strikes, otherwise the first one that moves at the start; or -1
-    int struck = -1;
-    int first_hit = -1;  ///< the ball that it meets first (the nearest one of a cluster); or -1
-    int contacts = 0;    ///< balls that it meets, each counted once
+    int struck = -1;          ///< struck_ball()
+    int first_hit = -1;       ///< the ball that it meets first (the nearest one of a cluster); or -1
+    int contacts = 0;         ///< balls that it meets, each counted once
     /// Its contacts with cushions and jaws before the second ball, or in all, except with one that it has
     /// been frozen to since the start (still_frozen)
     int approach_cushions = 0;

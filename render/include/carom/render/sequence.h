@@ -47,9 +47,8 @@ struct SequenceOptions {
     std::function<double(long k)> frame_cost_ms;
     /// Samples per pixel of the table, which is drawn once per camera; not used if the camera moves
     int table_samples = 16;
-    /// zlib level 0..9: libpng encodes every frame as a whole. Default: only what changed is encoded
-    /// (kept_png.h)
-    std::optional<int> libpng_level;
+    /// libpng encodes every frame as a whole. Default: only what changed is encoded (kept_png.h)
+    bool libpng = false;
     Backend backend = Backend::kAuto;
     /// Number of threads that encode and write. 1: everything runs on the
     /// calling thread, so that the timings do not disturb each other. 0: one

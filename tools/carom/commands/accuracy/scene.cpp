@@ -73,9 +73,9 @@ void set_shares(SceneAccuracyRow& row, const Plan& plan) {
     }
 }
 
-void compare(SceneAccuracyRow& row, const Record& record, const ShotContacts& truth,
+void compare(SceneAccuracyRow& row, const Scene& scene, const Record& record, const ShotContacts& truth,
              const std::vector<Vec2>& end) {
-    const ShotContacts outcome = contacts_of(record);
+    const ShotContacts outcome = contacts_of(scene, record);
     row.order_same = outcome.contacts == truth.contacts;
     row.first_same = outcome.first_contact == truth.first_contact;
     row.pocketed_same = outcome.pockets == truth.pockets;
@@ -159,7 +159,7 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     const Plan tight = with_tolerance(scene, kernel::kTightestTolerance);
     const Record truth = simulate_plan(tight, {});
     const Record other = simulate_plan(with_power_series(scene), {});
-    const ShotContacts outcome = contacts_of(truth), other_outcome = contacts_of(other);
+    const ShotContacts outcome = contacts_of(scene, truth), other_outcome = contacts_of(scene, other);
     const std::vector<Vec2> end = final_positions(truth);
     result.contacts = outcome.contacts.size();
     for (const Event& event : truth.events) result.ball_hits += balls_collide(event.type) ? 1U : 0U;
@@ -174,7 +174,7 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     for (SceneSubject& s : list) {
         throw_if_interrupted();
         try {
-            compare(s.row, simulate(s.plan, interruptible()), outcome, end);
+            compare(s.row, scene, simulate(s.plan, interruptible()), outcome, end);
             set_shares(s.row, s.plan);
         } catch (const SimulationError& error) {
             s.row.failed = error.what();

@@ -29,10 +29,10 @@ struct AccuracySceneArgs {
 /// What happened in a shot: all contacts in order, the first ball hit, and which ball fell into which pocket.
 struct ShotContacts {
     std::vector<std::string> contacts;
-    std::string first_contact;  ///< the ball that the first moving ball hits first, or ""
+    std::string first_contact;  ///< the ball that the struck ball hits first, or ""
     std::vector<int> pockets;   ///< per ball, -1: on the table
 };
-ShotContacts contacts_of(const Record& record);
+ShotContacts contacts_of(const Scene& scene, const Record& record);
 
 /// Distances between the final positions of the same ball in two runs [m].
 struct FinalError {
@@ -68,7 +68,7 @@ struct SceneAccuracy {
     std::vector<SceneAccuracyRow> rows;
 };
 
-/// The gain, from twins of the plan whose first moving ball starts kTwinStep to the side and ahead; the
+/// The gain, from twins of the plan whose struck ball starts kTwinStep to the side and ahead; the
 /// larger of the two.
 inline constexpr double kTwinStep = 1e-12;
 double gain_of(const Plan& plan, const Record& record);

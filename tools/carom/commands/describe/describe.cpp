@@ -10,6 +10,8 @@
 
 #include "base/console.h"
 #include "base/options.h"
+#include "carom/engine/event_details.h"
+#include "carom/games/measures.h"
 #include "commands/describe/formats.h"
 
 namespace carom::tools {
@@ -263,6 +265,32 @@ std::string zsh_completion(const Options& program) {
         functions, zsh_arguments(program), names, cases);
 }
 
+// ---- measures and columns --------------------------------------------------------------------------------
+
+std::string measures_text() {
+    std::string out =
+        "Measures of a shot, for carom sweep --measure. An expression joins them with numbers, texts in\n"
+        "quotes, and, or, not, == != < <= > >=, in, near, + - * /, as in\n"
+        "  \"9\" in pocketed and not scratch\n"
+        "  cue near (0.6, 1.2, 0.05)      at rest within 5 cm of this place\n\n";
+    for (const games::MeasureInfo& m : games::measures()) {
+        const std::string call =
+            *m.arguments == 0 ? std::string(m.name) : fmt::format("{}({})", m.name, m.arguments);
+        out += fmt::format("  {:<24}{:<7}{}\n", call, m.unit, m.what);
+    }
+    return out + "\nBALL is an id, K counts from 1, X and Y are in m, GAME is a game of carom judge.\n";
+}
+
+std::string events_text() {
+    std::string out =
+        "Columns of carom simulate --events, behind time, type, a, b and what --profile adds. A column is\n"
+        "empty if an event of its kind has no such number.\n\n";
+    for (const EventColumn& column : event_columns())
+        out += fmt::format("  {:<14}{:<7}{}\n", column.name, column.unit, column.what);
+    return out + fmt::format("  {:<21}{}\n  {:<21}{}\n", "met", "what ball a meets, by its name", "cluster",
+                             "all balls of a cluster, with ; between them");
+}
+
 // ---- the command -----------------------------------------------------------------------------------------
 
 /// What the command can print: one row for each format.
@@ -275,7 +303,9 @@ constexpr struct {
                 {"command-line", command_line_page},
                 {"scene-schema", [](const Options&) { return scene_schema(); }},
                 {"record-schema", [](const Options&) { return record_schema(); }},
-                {"scene-format", [](const Options&) { return scene_format(); }}};
+                {"scene-format", [](const Options&) { return scene_format(); }},
+                {"measures", [](const Options&) { return measures_text(); }},
+                {"events", [](const Options&) { return events_text(); }}};
 
 struct DescribeArgs {
     std::string format;

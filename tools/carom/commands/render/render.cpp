@@ -149,7 +149,7 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     options.frame = args.frame;
     options.size = args.size.empty() ? settings.size() : parse_size(args.size);
     set_view(args, settings, options);
-    if (args.png_writer == "libpng") options.libpng_level = 1;
+    options.libpng = args.png_writer == "libpng";
     options.jobs = args.jobs;
     options.resume = args.resume;
     if (args.raw || args.y4m) {

@@ -12,8 +12,10 @@
 #include "base/console.h"
 #include "base/options.h"
 #include "base/setup.h"
+#include "base/units.h"
 #include "carom/engine/printable.h"
 #include "carom/engine/verify.h"
+#include "commands/simulate/story.h"
 #include "report/csv.h"
 #include "report/table.h"
 
@@ -32,7 +34,8 @@ struct SimulateArgs {
     bool hash = false;
     bool profile = false;
     bool json = false;
-    bool list = false;    ///< the events as a table
+    bool list = false;  ///< tell every event
+    std::string units = kUnits[0];
     bool verify = false;  ///< check the laws after every event
 };
 
@@ -90,24 +93,14 @@ std::string result_json(const Record& record) {
     return all.dump() + "\n";
 }
 
-const char* reason(StopReason stopped) {
-    constexpr const char* kReasons[] = {"everything is at rest", "stopped at its time",
-                                        "stopped at its number of events",
-                                        "nothing more happens, but balls move for ever"};
-    return kReasons[static_cast<int>(stopped)];
-}
-
-std::string summary(const Record& record, const std::string& scene) {
+std::string summary(const Record& record, const std::string& scene, const SimulateArgs& args) {
     fmt::memory_buffer out;
     const auto line = std::back_inserter(out);
-    fmt::format_to(line, "{}: {}, {:.4f} s, {}; {}\n\nevents\n", scene, counted(record.tracks.size(), "ball"),
-                   record.duration, counted(record.events.size(), "event"), reason(record.stopped));
-    std::array<long, kEventTypes> counts{};
-    for (const Event& event : record.events) ++counts[static_cast<std::size_t>(event.type)];
-    for (int type = 0; type < kEventTypes; ++type) {
-        const long count = counts[type];
-        if (count > 0) fmt::format_to(line, "  {:<22}{:>6}\n", name(static_cast<EventType>(type)), count);
-    }
+    const Units units = units_of(args.units);
+    const Unit length = length_unit(units);
+    fmt::format_to(line, "{}: {}, {:.4f} s, {}; {}\n\n", scene, counted(record.tracks.size(), "ball"),
+                   record.duration, counted(record.events.size(), "event"), words(record.stopped).sentence);
+    fmt::format_to(line, "{}", args.list ? all_events(record, units) : story(record, units));
     fmt::format_to(line, "\npocketed\n");
     long pocketed = 0;
     for (const Event& event : record.events) {
@@ -117,31 +110,22 @@ std::string summary(const Record& record, const std::string& scene) {
                        record.partner_id(event), event.time);
     }
     if (pocketed == 0) fmt::format_to(line, "  none\n");
-    const char* title = "\noff the table (m)\n";
+    const std::string title = fmt::format("\noff the table ({})\n", length.name);
+    bool off = false;
     for (const Event& event : record.events) {
         if (event.type != EventType::kBallOut) continue;
-        const Vec3 there = record.state_at(event.a, event.time).position;
+        const Vec3 there = record.state_at(event.a, event.time).position * length.factor;
         fmt::format_to(line, "{}  {:<6} left at {:.6f}, {:.6f}, {:.6f} high, at {:.4f} s\n",
-                       std::exchange(title, ""), record.tracks.at(event.a).id, there.x(), there.y(),
-                       there.z(), event.time);
+                       std::exchange(off, true) ? "" : title, record.tracks.at(event.a).id, there.x(),
+                       there.y(), there.z(), event.time);
     }
-    fmt::format_to(line, "\nballs at the end (m)\n");
+    fmt::format_to(line, "\nballs at the end ({})\n", length.name);
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         const BallState s = record.state_at(static_cast<int>(i), record.duration);
         fmt::format_to(line, "  {:<6} {:<11}{:>11.6f}{:>11.6f}\n", record.tracks[i].id, name(s.state),
-                       s.position.x(), s.position.y());
+                       s.position.x() * length.factor, s.position.y() * length.factor);
     }
     return fmt::to_string(out);
-}
-
-/// What happened, one line an event.
-std::string event_list(const Record& record) {
-    Table table(Column("", "time (s)", ">12.6f"), Column("", "  type", "<24"), Column("", "ball", "<10"),
-                Column("", "with", "<"));
-    for (const Event& event : record.events)
-        table.add({event.time, "  " + std::string(name(event.type)), record.tracks.at(event.a).id,
-                   record.partner_id(event)});
-    return "\n" + table_text(table);
 }
 
 /// Where the time of a profiled run went.
@@ -218,8 +202,8 @@ int run(const SimulateArgs& args) {
     if (args.hash)
         print(record.hash() + "\n");
     else if (!taken)
-        print(summary(record, harmless(args.scene)));
-    if (args.list) print(event_list(record));
+        print(summary(record, harmless(args.scene), args));
+    if (args.list && (args.hash || taken)) print(all_events(record, units_of(args.units)));
     if (args.profile) print(profile_report(record));
     return status;
 }
@@ -246,7 +230,10 @@ void add_simulate(Options& program) {
     command.option("--sample-dt", &args.sample_dt, "S", "Time between samples in s (default: none)");
     command.option("--until", &args.until, "S",
                    "Stop at this time in s at the latest (default: the scene's end)");
-    command.flag("--list", args.list, "Print the events as a table (default: off)");
+    command.flag("--list", args.list,
+                 "Tell every event, not only the landmarks of a long shot (default: off)");
+    command.option("--units", &args.units, "UNITS", "Units of what is printed; files are always in SI")
+        .one_of({kUnits[0], kUnits[1]});
     command.flag("--hash", args.hash,
                  "Print the hash of all bits of the record instead of the summary (default: off)");
     command.flag("--profile", args.profile,

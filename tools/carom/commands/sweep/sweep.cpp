@@ -1,8 +1,7 @@
 // carom sweep: simulates many shots of one scene and writes one row for each shot.
 //
 // A row depends only on the scene, the rules, the seed and its number. The engine
-// plays a block of shots on all threads, and their rows are written in order: if
-// the program is killed, the file contains the first rows of the whole table.
+// plays a block of shots on all threads, and their rows are written in order.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,9 +20,9 @@
 #include "base/console.h"
 #include "base/options.h"
 #include "base/setup.h"
-#include "commands/sweep/partial_file.h"
 #include "commands/sweep/rows.h"
 #include "commands/sweep/status.h"
+#include "commands/sweep/table_in_parts.h"
 
 namespace carom::tools {
 namespace {
@@ -44,7 +43,7 @@ using Clock = std::chrono::steady_clock;
 /// Doubles, and what reads tables as doubles, count to there.
 constexpr std::uint64_t kMostShots = std::uint64_t{1} << 53;
 constexpr std::uint64_t kMostShards = 1000000;
-/// A block of shots grows until it takes this long: what a kill can lose, and how often the progress moves.
+/// A block of shots grows until it takes this long: how often the progress moves.
 constexpr std::chrono::milliseconds kBlockTime(100);
 /// [shots] Limits the memory of a block.
 constexpr std::uint64_t kLargestBlock = std::uint64_t{1} << 16;
@@ -73,62 +72,17 @@ struct Sweep {
     int threads;
 };
 
-/// The k-th value of a row as it stands there; of quotes only what is between them counts.
-std::string_view field_of(std::string_view row, std::size_t k) {
-    bool quoted = false;
-    std::size_t begin = 0, at = 0;
-    for (; at < row.size(); ++at) {
-        if (row[at] == '"') quoted = !quoted;
-        if (row[at] != ',' || quoted) continue;
-        if (k-- == 0) break;
-        begin = at + 1;
-    }
-    return row.substr(begin, at - begin);
+std::uint64_t failures(const Outcomes& outcomes) {
+    return outcomes[static_cast<std::size_t>(ShotStatus::kFailed)];
 }
 
-/// What stands in a file that is taken up.
-struct RowsThere {
-    std::uint64_t failed = 0;
-    bool in_order = true;
-
-    void see(const Sweep& sweep, const ShotRange& range, long number, std::string_view row) {
-        if (range.header && number == 0) {
-            in_order = std::string(row) + '\n' == sweep_header(sweep.variation);
-            return;
-        }
-        const std::uint64_t shot = range.first + static_cast<std::uint64_t>(number) - (range.header ? 1 : 0);
-        in_order = in_order && field_of(row, 0) == fmt::format_int(shot).c_str();
-        if (field_of(row, 1 + sweep.variation.keys().size()) == name(ShotStatus::kFailed)) ++failed;
-    }
-};
-
-/// The shot at which an incomplete file of an earlier run is continued. Its last row is computed again: if
-/// another build gives another row, the file is not continued.
-std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRange& range,
-                      const RowsThere& there) {
-    if (file.lines() == 0) return range.first;
-    const std::uint64_t rows = static_cast<std::uint64_t>(file.lines()) - (range.header ? 1 : 0);
-    std::string expected;
-    if (rows <= range.last - range.first)
-        expected = rows == 0 ? sweep_header(sweep.variation)
-                             : play_rows(sweep.variation, range.first + rows - 1, 1, sweep.isa).text;
-    if (!there.in_order || expected != file.last_line() + '\n')
-        throw std::runtime_error(fmt::format("{}: {} not what this program computes; remove it to begin anew",
-                                             file.name(),
-                                             there.in_order ? "its last row is" : "its rows are"));
-    message(fmt::format("going on with {}: {} of {} shots are there", file.name(), rows,
-                        range.last - range.first));
-    return range.first + rows;
-}
-
-/// Runs the shots from `from` on, block by block, and writes their rows. The next block is played while one
-/// is waited for and written, so that no thread stands idle.
-Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& range, std::uint64_t from,
-                    SweepStatus& status) {
+/// Runs the shots that the table lacks, block by block, and writes their rows. The next block is played while
+/// one is waited for and written, so that no thread stands idle.
+Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& range, SweepStatus& status) {
     Outcomes outcomes{};
     ProgressLine line("sweep");
     auto block = 2 * static_cast<std::uint64_t>(sweep.threads);
-    std::uint64_t begun = from;
+    std::uint64_t begun = table.next();
     std::future<SweepRows> next;
     const auto begin_next = [&] {
         const std::uint64_t first = begun, shots = std::min(block, range.last - begun);
@@ -139,19 +93,18 @@ Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& rang
         });
     };
     if (begun < range.last) begin_next();
-    for (std::uint64_t done = from; done < range.last;) {
+    while (table.next() < range.last) {
         const Clock::time_point start = Clock::now();
-        const std::uint64_t last = begun;
+        const std::uint64_t shots = begun - table.next();
         std::future<SweepRows> ready = std::exchange(next, {});
         if (begun < range.last) begin_next();
         const SweepRows rows = ready.get();
-        file.append(rows.text);
-        file.flush();
+        table.add(rows.text, shots, failures(rows.outcomes));
         for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += rows.outcomes[i];
-        done = last;
         if (Clock::now() - start < kBlockTime && block < kLargestBlock) block *= 2;
-        status.show(done, outcomes);
-        line.show_bar(static_cast<long>(done - range.first), static_cast<long>(range.last - range.first));
+        status.show(table.next(), outcomes);
+        line.show_bar(static_cast<long>(table.next() - range.first),
+                      static_cast<long>(range.last - range.first));
     }
     return outcomes;
 }
@@ -186,7 +139,7 @@ int run(const SweepArgs& args) {
     const Variation variation = read_variation(args);
     for (const std::string& warning : make_plan(variation.base(), isa).warnings)
         message("warning: " + warning);
-    // Each range of shots has a file of its own.
+    // Each range of shots has parts of its own.
     const std::uint64_t id =
         variation.fingerprint() ^ (range.first * 0x9e3779b97f4a7c15u) ^ (range.last * 0xbf58476d1ce4e5b9u);
     if (!args.shard.empty() && std::filesystem::is_regular_file(args.output))
@@ -196,34 +149,39 @@ int run(const SweepArgs& args) {
     const int jobs =
         args.jobs > 0 ? args.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     const Sweep sweep{variation, isa, jobs};
-    RowsThere there;
-    PartialFile file(args.output, id,
-                     [&](long number, std::string_view row) { there.see(sweep, range, number, row); });
-    const std::uint64_t from = take_up(file, sweep, range, there);
-    if (range.header && file.lines() == 0) file.append(sweep_header(sweep.variation));
+    TableInParts table(args.output, id, range.header ? sweep_header(variation) : "", range.first);
+    const std::uint64_t from = table.next();
+    if (from > range.first) {
+        // Another build may have other bits.
+        if (!table.ends_with(play_rows(variation, from - 1, 1, isa).text))
+            throw std::runtime_error(
+                fmt::format("{}: its last row is not what this program computes; remove it to begin anew",
+                            table.folder()));
+        message(fmt::format("going on with {}: {} of {} shots are there", table.folder(), from - range.first,
+                            range.last - range.first));
+    }
     const Clock::time_point start = Clock::now();
     Outcomes outcomes{};
     SweepStatus status(args.status, args.output, range.first, range.last, from);
     try {
-        outcomes = write_rows(file, sweep, range, from, status);
+        outcomes = write_rows(table, sweep, range, status);
     } catch (const std::system_error& error) {
         throw std::runtime_error(fmt::format("not all of {} could be started ({}); use fewer with --jobs",
                                              counted(static_cast<std::size_t>(jobs), "thread"),
                                              error.what()));
     } catch (const Interrupted&) {
-        file.flush();
+        table.keep();
         status.end("stopped");
-        if (file.can_be_taken_up())
-            message(fmt::format("stopped; the same command goes on with {}", file.name()));
+        if (!table.folder().empty())
+            message(fmt::format("stopped; the same command goes on with {}", table.folder()));
         throw;
     }
-    file.commit();
+    table.commit();
     status.end("done");
     print(summary(outcomes, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
-    const std::uint64_t failed = outcomes[static_cast<std::size_t>(ShotStatus::kFailed)] + there.failed;
-    if (failed == 0) return kOk;
-    message(fmt::format("{} failed while running; {} why", counted(failed, "shot"),
-                        failed == 1 ? "its row says" : "their rows say"));
+    if (table.failed() == 0) return kOk;
+    message(fmt::format("{} failed while running; {} why", counted(table.failed(), "shot"),
+                        table.failed() == 1 ? "its row says" : "their rows say"));
     return kFailed;
 }
 
