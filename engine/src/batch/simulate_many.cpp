@@ -189,7 +189,7 @@ struct Work {
         if (!error) error = std::move(why);
         stopped = true;
     }
-    void tell(std::size_t shot, const std::string& text) {
+    void add_message(std::size_t shot, const std::string& text) {
         const std::lock_guard lock(mutex);
         messages.push_back({shot, text});
     }
@@ -203,7 +203,7 @@ struct Work {
         if (!has_result(status) || some)
             clear(out, shot, balls, has_result(status) ? std::numeric_limits<double>::quiet_NaN() : 0.0);
         if (!has_result(status)) {
-            tell(shot, player.last->message());
+            add_message(shot, player.last->message());
             return;
         }
         keep(out, shot, player.last->outcome(), balls, some ? &player.present : nullptr);

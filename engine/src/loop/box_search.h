@@ -42,7 +42,7 @@ class BoxSearch {
     void place(int index, const RoundedBox& box);
     void remove(int index);
     /// Call between placing and searching: it sometimes rebuilds the blocks from the present neighbours.
-    void settle() {
+    void rebuild_if_due() {
         if (tree_ && --until_rebuild_ <= 0) rebuild();
     }
 

@@ -123,9 +123,9 @@ void Log::book_costs() {
     }
 }
 
-void Log::tell_progress() {
-    if (++rounds_untold_ < options_.progress_rounds && !long_round_) return;
-    rounds_untold_ = 0;
+void Log::report_progress() {
+    if (++rounds_unreported_ < options_.progress_rounds && !long_round_) return;
+    rounds_unreported_ = 0;
     long_round_ = false;
     options_.progress(events_.size(), balls_.now());
 }

@@ -92,7 +92,7 @@ class Log : private Borrowed<LogMemory> {
     void end_round() {
         if (is_crowded() || quiet_rounds_ > kQuietCap) fail_crowded();
         if (costs_) book_costs();
-        if (options_.progress) tell_progress();
+        if (options_.progress) report_progress();
     }
     /// Marks this iteration as long, so that it ends with a report of progress.
     void note_long_round() { long_round_ = true; }
@@ -121,7 +121,7 @@ class Log : private Borrowed<LogMemory> {
     }
     [[noreturn]] void fail_crowded();
     void book_costs();
-    void tell_progress();
+    void report_progress();
 
     const Plan& plan_;
     const SimulateOptions& options_;
@@ -135,7 +135,7 @@ class Log : private Borrowed<LogMemory> {
     double setup_detect_ns_ = 0.0;
     std::size_t events_before_ = 0;  // number of events before this iteration
     int quiet_rounds_ = 0;           // consecutive iterations without an event
-    int rounds_untold_ = 0;          // iterations since the last call of options_.progress
+    int rounds_unreported_ = 0;      // iterations since the last call of options_.progress
     bool long_round_ = false;        // whether one of these called note_long_round()
 };
 

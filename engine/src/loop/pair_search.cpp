@@ -99,7 +99,7 @@ void Detector::offer(int ball, int partner, Candidate c) {
 
 // Finds the contacts of one ball with others, and offers each to both balls.
 void Detector::search_pairs(int ball) {
-    ball_boxes_.settle();
+    ball_boxes_.rebuild_if_due();
     const Path mine = path(ball, balls_.segment(ball).start);
     ball_boxes_.neighbours(ball, [this, ball, &mine](int other) {
         // If both balls have changed, the one with the smaller index has already searched this pair.

@@ -60,7 +60,7 @@ void Detector::set_up_table() {
         add(With::kNose, i, around(g.noses[i].center, g.noses[i].radius));
     for (std::size_t i = 0; i < g.pockets.size(); ++i)
         add(With::kPocket, i, around(g.pockets[i].center, g.pockets[i].radius));
-    table_boxes_.settle();
+    table_boxes_.rebuild_if_due();
 }
 
 // Finds the parts of the table that a ball can reach inside a box, in the order of parts_.

@@ -318,7 +318,7 @@ long integrate(const ContactPhase& phase, const HertzLaw& law, double longest_st
                             law.p,
                             law.mu_s > 0.0 && has_friction(law),
                             has_friction(law)};
-    look(w);
+    update_rates(w);
     long steps = 0;
     double next = longest_step;
     double time = 0.0;
@@ -326,7 +326,7 @@ long integrate(const ContactPhase& phase, const HertzLaw& law, double longest_st
         if (!(time < time_limit)) return -1;
         const double most =
             lanes.friction ? longest_step : longest_step * slowness(fastest_squared(w, lanes));
-        const double longest = w.shares ? settle(phase, w, most) : most;
+        const double longest = w.shares ? update_turning(phase, w, most) : most;
         const double h = step(w, lanes, kShortest * longest_step, longest, next);
         ++steps;
         time += h;

@@ -37,7 +37,7 @@ constexpr double kNever = 1e300;
 
 // The motion of two balls along and across their line of centres, while nothing pushes them. Lengths in L,
 // kappa = L/(2 R).
-struct Way {
+struct RelativePath {
     double closing, across, speed2;  // speeds, and their total squared
     double kappa, gap, apart;        // kappa, the gap, and kappa times the distance of the centres
 
@@ -59,7 +59,7 @@ struct Way {
     }
 };
 
-CAROM_INLINE Way way(const Work& w, int c, double nx, double ny, double gap) {
+CAROM_INLINE RelativePath relative_path(const Work& w, int c, double nx, double ny, double gap) {
     const double *i = w.y + w.i[c], *j = w.y + w.j[c];
     const double x = i[0] - j[0], y = i[2] - j[2];
     const double along = x * nx + y * ny, across = y * nx - x * ny;
@@ -67,8 +67,8 @@ CAROM_INLINE Way way(const Work& w, int c, double nx, double ny, double gap) {
 }
 
 // The normal after a flight of length s.
-CAROM_INLINE void turn_by_flight(const Way& way, double s, double& nx, double& ny) {
-    const double along = way.apart - way.kappa * way.closing * s, across = -way.kappa * way.across * s;
+CAROM_INLINE void turn_by_flight(const RelativePath& path, double s, double& nx, double& ny) {
+    const double along = path.apart - path.kappa * path.closing * s, across = -path.kappa * path.across * s;
     const double x = nx * along - ny * across, y = ny * along + nx * across;
     const double length = square_root(x * x + y * y);
     nx = x / length;
@@ -79,7 +79,8 @@ CAROM_INLINE void turn_by_flight(const Way& way, double s, double& nx, double& n
 CAROM_INLINE double next_touch(const Work& w) {
     double first = kNever;
     for (int c = 0; c < w.contacts; ++c) {
-        if (w.rate[0][c] > kNothing) first = smallest(first, way(w, c, w.nx[c], w.ny[c], -w.d[c]).touch());
+        if (w.rate[0][c] > kNothing)
+            first = smallest(first, relative_path(w, c, w.nx[c], w.ny[c], -w.d[c]).touch());
     }
     return first;
 }
@@ -99,7 +100,7 @@ CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double lo
     const double less = 1.0 - falling(time, kFlight * look_ahead, look_ahead);
     w.shares = false;
     for (int c = 0; c < w.contacts; ++c) {
-        const Way path = way(w, c, w.nx[c], w.ny[c], -w.d[c]);
+        const RelativePath path = relative_path(w, c, w.nx[c], w.ny[c], -w.d[c]);
         const double late = path.touch() - time;
         w.d[c] = smallest(0.0, -path.gap_after(time));
         if (late <= 0.0) w.d[c] = 0.0;
@@ -108,7 +109,7 @@ CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double lo
         w.bend[c] = w.curvature;
         w.shares |= w.share[c] < 1.0 && w.curvature > 0.0;
     }
-    look(w);
+    update_rates(w);
 }
 
 // Closes a contact that turns less than the balls. Its normal moves from that of the balls towards the one
@@ -116,10 +117,10 @@ CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double lo
 // earlier contacts.
 CAROM_INLINE void close_contact(const ContactPhase& phase, Work& w, int c, double time) {
     double &nx = w.nx[c], &ny = w.ny[c];
-    turn_by_flight(way(w, c, nx, ny, largest(0.0, -w.d[c])), time, nx, ny);
+    turn_by_flight(relative_path(w, c, nx, ny, largest(0.0, -w.d[c])), time, nx, ny);
     const HertzContact& first = phase.contact[w.id[c]];
     double x = first.nx, y = first.ny;
-    const Way since = way(w, c, x, y, -first.overlap);
+    const RelativePath since = relative_path(w, c, x, y, -first.overlap);
     turn_by_flight(since, since.nearest(), x, y);
     const double share = w.share[c];
     nx = share * nx + (1.0 - share) * x;
@@ -133,7 +134,7 @@ CAROM_INLINE void close_contact(const ContactPhase& phase, Work& w, int c, doubl
 // Contacts that turn less than the balls do so from their touch to their end. A step ends where one of them
 // touches.
 // @return the longest step
-CAROM_INLINE double settle(const ContactPhase& phase, Work& w, double longest) {
+CAROM_INLINE double update_turning(const ContactPhase& phase, Work& w, double longest) {
     double h = longest;
     bool changed = false;
     for (int c = 0; c < w.contacts; ++c) {
@@ -145,7 +146,7 @@ CAROM_INLINE double settle(const ContactPhase& phase, Work& w, double longest) {
             changed = true;
             continue;
         }
-        const double time = open ? way(w, c, w.nx[c], w.ny[c], -w.d[c]).touch() : 0.0;
+        const double time = open ? relative_path(w, c, w.nx[c], w.ny[c], -w.d[c]).touch() : 0.0;
         if (time > kAtOnce * longest) {
             h = smallest(h, time);
             continue;
@@ -153,7 +154,7 @@ CAROM_INLINE double settle(const ContactPhase& phase, Work& w, double longest) {
         close_contact(phase, w, c, time);
         changed = true;
     }
-    if (changed) look(w);
+    if (changed) update_rates(w);
     return h;
 }
 

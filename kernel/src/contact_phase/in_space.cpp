@@ -109,7 +109,7 @@ class InSpace {
         const HertzContactInSpace& contact = phase_.contact[c];
         return at(velocity(y, contact.i)) - at(velocity(y, contact.j));
     }
-    Now look(const double* y, int c) const {
+    Now contact_at(const double* y, int c) const {
         if (!turns_) {
             const HertzContactInSpace& contact = phase_.contact[c];
             const Vector n = at(contact.n);
@@ -155,7 +155,7 @@ class InSpace {
             for (int k = 3; k < kPerState; ++k) to[k] = 0.0;
         }
         for (int c = 0; c < phase_.contacts; ++c) {
-            const Now now = look(y, c);
+            const Now now = contact_at(y, c);
             if (now.overlap > 0.0) push(y, c, now, slope);
         }
     }
@@ -172,7 +172,7 @@ class InSpace {
     // One Runge-Kutta step; returns its length.
     double step(double longest) {
         for (int c = 0; c < phase_.contacts; ++c) {
-            const Now now = look(y_, c);
+            const Now now = contact_at(y_, c);
             before_[c] = now.overlap;
             rate_[c] = now.rate;
         }
@@ -224,7 +224,7 @@ class InSpace {
 
     // Updates the largest overlap of a contact.
     void remember(int c, double h) {
-        const Now now = look(y_, c);
+        const Now now = contact_at(y_, c);
         memory_[c] = now.overlap > 0.0 ? largest(memory_[c], now.overlap) : 0.0;
         if (now.overlap > 0.0 && rate_[c] > 0.0 && now.rate < 0.0)
             memory_[c] = largest(memory_[c], peak(before_[c], now.overlap, h * rate_[c], h * now.rate));
@@ -232,7 +232,7 @@ class InSpace {
 
     bool overlaps() const {
         for (int c = 0; c < phase_.contacts; ++c) {
-            if (look(y_, c).overlap > 0.0) return true;
+            if (contact_at(y_, c).overlap > 0.0) return true;
         }
         return false;
     }
@@ -240,7 +240,7 @@ class InSpace {
     // Whether a contact overlaps and still acts.
     bool presses(double time_left) const {
         for (int c = 0; c < phase_.contacts; ++c) {
-            const Now now = look(y_, c);
+            const Now now = contact_at(y_, c);
             if (now.overlap > 0.0 && !is_over(force(c, now), now.overlap, now.rate, time_left)) return true;
         }
         return false;
@@ -252,7 +252,7 @@ class InSpace {
         double first = kNever;
         for (int c = 0; c < phase_.contacts; ++c) {
             if (!turns_) {
-                const Now now = look(y_, c);
+                const Now now = contact_at(y_, c);
                 if (now.rate > kNothing) first = smallest(first, -now.overlap / now.rate);
                 continue;
             }

@@ -34,7 +34,7 @@ struct Work {
     // opened.
     double *d, *d_stage, *rate[kStages], *inverse;
     // Normal at the start of the step, the speed at which it turns, and the curvature 1/(2 R) by which it
-    // turns: less than that of the balls if it turns less (settle()).
+    // turns: less than that of the balls if it turns less (update_turning()).
     double *nx, *ny, *turn, *bend;
     double* share;  // of the turning, while the contact is closed
     // Per contact that overlaps: n_x, n_y, F, the friction along t and upwards, and minus friction divided by
@@ -136,7 +136,7 @@ CAROM_INLINE Four turning(const Work& w, int c, const Four (&dv)[4], const Four&
 }
 
 // Rates and turning of a state that is not the result of a step.
-CAROM_INLINE void look(Work& w) {
+CAROM_INLINE void update_rates(Work& w) {
     for (int c = 0; c < w.lanes; c += 4) {
         Four dv[4];
         closing(w, w.y, c, dv);
