@@ -142,7 +142,7 @@ const Scene& scene_of(const NativeRecord& r, const NativeScene* other) {
             "the record comes from a file, which has no physics: give the scene that was played");
     if (!std::equal(scene->ball.begin(), scene->ball.end(), r.record->tracks.begin(), r.record->tracks.end(),
                     [](const BallStart& ball, const BallTrack& track) { return ball.id == track.id; }))
-        throw nb::value_error("the scene has other balls than the record");
+        throw nb::value_error("the scene and the record have different balls");
     return *scene;
 }
 

@@ -154,8 +154,8 @@ def test_what_does_not_fit_is_refused(draw_scene):
         (dict(cue=np.zeros((3, 4))), r"cue: expected the shape \(n, 5\), not \(3, 4\)"),
         (dict(cue=np.zeros((3, 5)), shots=4), "cue: 3 values for 4 shots"),
         (dict(xy=np.zeros((3, two + 1, 2))), "xy: expected the shape"),
-        (dict(params={"cue.sped": [1.0]}), "cue.sped: it names no number"),
-        (dict(params={"cue.speed": [1.0]}, cue=np.zeros((1, 5))), "cue.speed: the key is there twice"),
+        (dict(params={"cue.sped": [1.0]}), "cue.sped: there is no such number"),
+        (dict(params={"cue.speed": [1.0]}, cue=np.zeros((1, 5))), "cue.speed: this key appears twice"),
         (dict(shots=1, threads=-1), "threads=-1"),
         (dict(shots=-1), "shots=-1"),
     )

@@ -162,7 +162,7 @@ def test_shots_that_fail_are_rows_and_are_counted(tmp_path):
     assert [progress.done for progress in told] == [0, 1, 2, 3]
     rows = sweep.open(tmp_path).to_table().to_pylist()
     assert [row["outcome"] == "failed" for row in rows] == [
-        "did not end within its bound" in row["message"] for row in rows]
+        "reached its limit of steps" in row["message"] for row in rows]
     assert all((row["duration"] is None) == (row["outcome"] == "failed") for row in rows)
     assert sweep.check(tmp_path).outcomes == done.outcomes
 
