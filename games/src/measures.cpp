@@ -23,7 +23,7 @@ namespace {
 
 using Texts = std::vector<std::string>;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-// [m] How near `near` asks for if it is not told.
+// [m] The distance of `near` if none is given.
 constexpr double kNear = 0.1;
 
 /// The arguments of a measure, checked against the scene.
@@ -91,7 +91,7 @@ std::optional<std::size_t> cushion(const Played& played, double number) {
     return index < events.size() ? std::optional(events[index]) : std::nullopt;
 }
 
-/// Sums or compares over the pieces of a ball's motion: f(segment, seconds that it is in force).
+/// Sums or compares over the pieces of a ball's motion: f(segment, seconds for which it applies).
 template <class F>
 void pieces(const Record& record, int ball, F&& f) {
     const std::vector<Segment>& segments = record.tracks[static_cast<std::size_t>(ball)].segments;
@@ -138,25 +138,25 @@ struct Row {
     MeasureValue (*value)(const Played&, const Arguments&);
 };
 
-// Names of arguments: BALL, X, Y, R, K (a number from 1 on), GAME.
+// Names of arguments: BALL, X, Y, R, K (a number from 1), GAME.
 const Row kRows[] = {
-    {{"pocketed", "", "list", "balls that fell, in this order"},
+    {{"pocketed", "", "list", "balls that fell, in order"},
      [](const Played& p, const Arguments&) -> MeasureValue {
          return listed(p, EventType::kBallPocket, false);
      }},
-    {{"pockets", "", "list", "pockets into which they fell, in the same order"},
+    {{"pockets", "", "list", "pockets they fell into, in the same order"},
      [](const Played& p, const Arguments&) -> MeasureValue {
          return listed(p, EventType::kBallPocket, true);
      }},
-    {{"balls_pocketed", "", "", "number of balls that fell, without the struck ball"},
+    {{"balls_pocketed", "", "", "number of balls that fell, except the struck ball"},
      [](const Played& p, const Arguments&) -> MeasureValue {
          return count(p, EventType::kBallPocket, false);
      }},
-    {{"any_pocketed", "", "truth", "whether a ball fell that was not struck"},
+    {{"any_pocketed", "", "truth", "whether a ball other than the struck one fell"},
      [](const Played& p, const Arguments&) -> MeasureValue {
          return double(count(p, EventType::kBallPocket, false) > 0.0);
      }},
-    {{"pocket_of", "BALL", "text", "pocket that holds the ball, out if it left the table, else empty"},
+    {{"pocket_of", "BALL", "text", "pocket that holds the ball; out if it left the table, else empty"},
      [](const Played& p, const Arguments& of) -> MeasureValue {
          for (const Event& event : p.record.events) {
              if (event.a == of.ball && event.type == EventType::kBallPocket)
@@ -171,35 +171,35 @@ const Row kRows[] = {
      [](const Played& p, const Arguments&) -> MeasureValue {
          return double(count(p, EventType::kBallPocket, true) + count(p, EventType::kBallOut, true) > 0.0);
      }},
-    {{"first_hit", "", "list", "ball that the struck ball meets first; several if it meets them at once"},
+    {{"first_hit", "", "list", "ball that the struck ball hits first; several if it hits them at once"},
      [](const Played& p, const Arguments&) -> MeasureValue {
          Texts texts;
          for (const int ball : p.shot().first_hits) texts.push_back(p.id(ball));
          return texts;
      }},
-    {{"cushions", "", "list", "cushions and jaws to which the struck ball is driven, in this order"},
+    {{"cushions", "", "list", "cushions and jaws that the struck ball is driven to, in order"},
      [](const Played& p, const Arguments&) -> MeasureValue {
          Texts texts;
          for (const std::size_t i : driven(p)) texts.push_back(p.record.partner_id(p.record.events[i]));
          return texts;
      }},
-    {{"cushion_x", "K", "m", "where the struck ball touches its K-th cushion"},
+    {{"cushion_x", "K", "m", "x where the struck ball touches its K-th cushion"},
      [](const Played& p, const Arguments& of) -> MeasureValue {
          const auto i = cushion(p, of.numbers[0]);
          return i ? details_of(p.record, *i).point.x() : kNone;
      }},
-    {{"cushion_y", "K", "m", "the same along y"},
+    {{"cushion_y", "K", "m", "y where it does"},
      [](const Played& p, const Arguments& of) -> MeasureValue {
          const auto i = cushion(p, of.numbers[0]);
          return i ? details_of(p.record, *i).point.y() : kNone;
      }},
-    {{"cushion_diamond", "K", "", "the same in diamonds: 0 to 4 on short rails, 0 to 8 on long ones"},
+    {{"cushion_diamond", "K", "", "the place in diamonds: 0 to 4 on short rails, 0 to 8 on long ones"},
      [](const Played& p, const Arguments& of) -> MeasureValue {
          const auto i = cushion(p, of.numbers[0]);
          return i ? details_of(p.record, *i).diamond : kNone;
      }},
     {{"driven", "", "",
-      "number of balls driven to a rail, pocketed or off the table, without the struck ball"},
+      "number of balls driven to a rail, pocketed or off the table, except the struck ball"},
      [](const Played& p, const Arguments&) -> MeasureValue {
          const std::vector<int> balls = p.shot().driven_after(p.shot().first_time);
          return double(balls.size()) - double(std::count(balls.begin(), balls.end(), p.struck()));
@@ -210,13 +210,13 @@ const Row kRows[] = {
      [](const Played& p, const Arguments& of) -> MeasureValue { return fouls(p, of, true); }},
     {{"foul", "GAME", "list", "fouls of the shot in the middle of a game; in eight-ball with an open table"},
      [](const Played& p, const Arguments& of) -> MeasureValue { return fouls(p, of, false); }},
-    {{"x", "BALL", "m", "place at the end"},
+    {{"x", "BALL", "m", "final x"},
      [](const Played& p, const Arguments& of) -> MeasureValue { return last(p, of.ball).position.x(); }},
-    {{"y", "BALL", "m", "place at the end"},
+    {{"y", "BALL", "m", "final y"},
      [](const Played& p, const Arguments& of) -> MeasureValue { return last(p, of.ball).position.y(); }},
-    {{"distance", "BALL, X, Y", "m", "from the ball's place at the end to (X, Y); empty if it is gone"},
+    {{"distance", "BALL, X, Y", "m", "from the ball's final position to (X, Y); empty if it is gone"},
      [](const Played& p, const Arguments& of) -> MeasureValue { return distance(p, of); }},
-    {{"travel", "BALL", "m", "length of the ball's path over the table"},
+    {{"travel", "BALL", "m", "length of the ball's path on the table"},
      [](const Played& p, const Arguments& of) -> MeasureValue {
          double sum = 0.0;
          pieces(p.record, of.ball, [&sum](const Segment& s, double time) { sum += length_of(s, time); });
@@ -250,7 +250,7 @@ const Row kRows[] = {
          });
          return sum;
      }},
-    {{"duration", "", "s", "of the shot"},
+    {{"duration", "", "s", "duration of the shot"},
      [](const Played& p, const Arguments&) -> MeasureValue { return p.record.duration; }},
 };
 
@@ -284,7 +284,7 @@ bool is_number(const Node& node) {
     return unit != "text" && unit != "list";
 }
 
-/// Reads an expression by recursive descent, a function for each level of precedence.
+/// Reads an expression by recursive descent, one function per level of precedence.
 class Reader {
   public:
     Reader(const std::string& text, const Scene& scene, std::optional<Game> game)
@@ -389,7 +389,7 @@ class Reader {
         return node;
     }
     Node compared() {
-        // A ball that is named before `near` is no measure.
+        // A ball named before `near` is not a measure.
         if (kind_ == Kind::kName || kind_ == Kind::kText || kind_ == Kind::kNumber) {
             const std::size_t here = at_;
             const auto kind = kind_;
@@ -495,7 +495,7 @@ class Reader {
         node.kind = Node::Kind::kMeasure;
         node.row = row(token_);
         if (node.row == nullptr)
-            fail("expected a measure of the list that carom describe measures prints; texts stand in quotes");
+            fail("expected a measure that carom describe measures lists; texts need quotes");
         const std::string_view expected = node.row->info.arguments;
         std::string how = node.row->info.name;
         how.append("(").append(expected).append(")");
@@ -550,7 +550,7 @@ class Reader {
         fail("expected one of the games " + known + ", not \"" + word + "\"");
     }
 
-    // [levels] Deeper ones would use up the stack.
+    // [levels] Deeper ones could overflow the stack.
     static constexpr int kDeepest = 100;
     const std::string& text_;
     const Scene& scene_;

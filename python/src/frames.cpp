@@ -20,7 +20,7 @@
 namespace carom::python {
 namespace {
 
-/// Draws one record, frame after frame. OpenGL belongs to the thread that made it, and to one at a time.
+/// Draws one record, frame by frame. OpenGL belongs to the thread that made it, and to one at a time.
 class Frames {
   public:
     Frames(std::shared_ptr<const Record> record, const std::string& camera, int width, int height,
@@ -43,7 +43,7 @@ class Frames {
 
     void draw(double time, const Flat<std::uint8_t>& out) {
         if (std::this_thread::get_id() != maker_)
-            throw render::RenderError("frames are drawn by the thread that asked for the first one");
+            throw render::RenderError("frames must be drawn by the thread that drew the first one");
         const nb::gil_scoped_release no_gil;
         renderer_->draw(stage_->at(time));
         renderer_->read(image_);

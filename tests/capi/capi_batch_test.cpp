@@ -182,7 +182,7 @@ TEST(CApiBatch, SegmentsAndStatesAreThoseOfTheRecord) {
     EXPECT_EQ(carom_record_segment_count(nullptr, 0), 0u);
     carom_segment segment;
     EXPECT_EQ(carom_record_segments(record.get(), 2, &segment), CAROM_BAD_ARGUMENT);
-    EXPECT_STREQ(carom_last_error(), "there is no ball 2; there are 2");
+    EXPECT_STREQ(carom_last_error(), "ball 2 is out of range; there are 2");
     EXPECT_EQ(carom_record_segments(record.get(), 0, nullptr), CAROM_BAD_ARGUMENT);
     const double nan = std::nan("");
     EXPECT_EQ(carom_record_states(record.get(), 1, &nan, rvw.data(), nullptr), CAROM_BAD_ARGUMENT);

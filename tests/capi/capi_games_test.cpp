@@ -88,7 +88,7 @@ TEST(CApiGames, AShotIsJudgedAndTheNextOneFollows) {
     cue.speed = 2.0;
     carom_scene* next = nullptr;
     EXPECT_EQ(carom_next_shot(record.get(), verdict.get(), 0, &cue, nullptr, &next), CAROM_BAD_ARGUMENT);
-    EXPECT_STREQ(carom_last_error(), "the cue ball is in hand; say where it is placed");
+    EXPECT_STREQ(carom_last_error(), "the cue ball is in hand; give its place");
     EXPECT_EQ(next, nullptr);
     const double place[2] = {0.7, 0.5};
     ASSERT_EQ(carom_next_shot(record.get(), verdict.get(), 0, &cue, place, &next), CAROM_OK)
@@ -113,7 +113,8 @@ TEST(CApiGames, AVerdictIsOfOneRecord) {
     const double place[2] = {0.7, 0.5};
     carom_scene* next = nullptr;
     EXPECT_EQ(carom_next_shot(other.get(), verdict.get(), 0, &cue, place, &next), CAROM_BAD_ARGUMENT);
-    EXPECT_STREQ(carom_last_error(), "the verdict is of another record; give the record that was judged");
+    EXPECT_STREQ(carom_last_error(),
+                 "the verdict belongs to another record; give the record that was judged");
 }
 
 TEST(CApiGames, ABallComesBackToItsSpot) {
@@ -169,7 +170,7 @@ TEST(CApiGames, NoiseIsThatOfTheLibrary) {
 TEST(CApiGames, BadArgumentsAreNamed) {
     carom_game_state state;
     EXPECT_EQ(carom_game_new(static_cast<carom_game>(7), 0, 0, &state), CAROM_BAD_ARGUMENT);
-    EXPECT_STREQ(carom_last_error(), "game is 7; it is 0 to 4");
+    EXPECT_STREQ(carom_last_error(), "game is 7; expected 0 to 4");
     EXPECT_EQ(carom_game_new(CAROM_SNOOKER, 2, 0, &state), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_game_new(CAROM_SNOOKER, 0, 0, nullptr), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_game_new(CAROM_THREE_CUSHION, 0, INT_MAX, &state), CAROM_BAD_ARGUMENT);

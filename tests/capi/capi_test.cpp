@@ -117,7 +117,7 @@ TEST(CApi, ABadImpactIsNamedAndTheOthersAreSolved) {
     for (const double tolerance : {0.0, 1.0, std::nan("")})
         EXPECT_EQ(carom_collide_balls(cue, object, &kParams, tolerance, after1, after2), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_collide_balls(nullptr, object, &kParams, 1e-6, after1, after2), CAROM_BAD_ARGUMENT);
-    EXPECT_STREQ(carom_last_error(), "a pointer is NULL that must not be");
+    EXPECT_STREQ(carom_last_error(), "a required pointer is NULL");
     EXPECT_EQ(carom_collide_balls_batch(2, cue, object, &kParams, 3, 1e-6, after1, after2, nullptr),
               CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_collide_balls_batch(0, nullptr, nullptr, nullptr, 0, 1e-6, nullptr, nullptr, nullptr),
@@ -167,7 +167,7 @@ TEST(CApi, AShotIsTheShotOfTheEngine) {
     carom_event event;
     EXPECT_EQ(carom_record_event(h.record, record.events.size(), &event), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_record_state(h.record, 16, 0.0, rvw, nullptr), CAROM_BAD_ARGUMENT);
-    EXPECT_STREQ(carom_last_error(), "there is no ball 16; there are 16");
+    EXPECT_STREQ(carom_last_error(), "ball 16 is out of range; there are 16");
     EXPECT_EQ(carom_record_state(h.record, 0, std::nan(""), rvw, nullptr), CAROM_BAD_ARGUMENT);
 }
 

@@ -175,11 +175,11 @@ TEST(Aim, SaysWhyThereIsNone) {
     EXPECT_EQ(games::aim_pot(scene, center_ball(3.0), "1", "p3").why, "the cut would be 90 degrees or more");
     const Scene rail = pool_scene({0.3, 0.3}, {0.03, 0.5});
     EXPECT_EQ(games::aim_pot(rail, center_ball(3.0), "1", "p2").why,
-              "no straight way of ball 1 into the pocket passes the jaws");
+              "no straight path of ball 1 into the pocket clears the jaws");
     // Too slow to arrive.
     const Scene far = pool_scene({0.635, 0.4}, {0.635, 0.8});
     EXPECT_EQ(games::aim_pot(far, center_ball(0.3), "1", "p3").why,
-              "the ball runs towards the pocket and does not fall");
+              "the ball runs towards the pocket but does not fall");
     // Something between cue ball and ball.
     Scene hidden = pool_scene({0.4, 0.4}, {0.7, 1.4});
     add_ball(hidden, "2", 0.55, 0.9);

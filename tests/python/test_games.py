@@ -113,7 +113,7 @@ def test_a_shot_is_judged_and_the_next_scene_follows():
     assert verdict.fouls == [games.Foul("cue ball pocketed", "WPA 6.1")] and verdict.chooser == -1
     assert verdict.next.turn == 1 and verdict.next.in_hand == "anywhere" and verdict.next.fouls == (1, 0)
     assert [option.decision for option in verdict.options] == ["take in hand"]
-    with pytest.raises(ValueError, match="say where it is placed"):
+    with pytest.raises(ValueError, match="give its place"):
         games.next_scene(record, verdict)
     assert not games.may_place(record, verdict.options[0], (0.7, 1.02))
     with pytest.raises(ValueError, match="not free"):

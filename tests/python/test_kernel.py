@@ -109,7 +109,7 @@ def test_what_cannot_be_computed_is_refused():
         (lambda: kernel.ball_ball(rvw, e_b=1.5), "impact 0: "),
         (lambda: kernel.ball_ball(rvw, mu_b=[0.1, 0.2]), "mu_b: 2 numbers for 3 impacts"),
         (lambda: kernel.ball_ball(rvw, tolerance=1.0), "tolerance: expected"),
-        (lambda: kernel.ball_ball(rvw, model="march"), 'no ball-ball model "march"; there are: mathavan'),
+        (lambda: kernel.ball_ball(rvw, model="march"), 'no ball-ball model "march"; expected one of mathavan'),
         (lambda: kernel.ball_ball(rvw, out=np.empty(3)), "out: expected"),
         (lambda: kernel.ball_cushion(rvw[:, 0], [1, 1]), "normal: expected vectors of length 1"),
         (lambda: kernel.ball_cushion(rvw[:, 0], [[1, 0], [1, 0]]), "normal: 2 vectors for 3 impacts"),

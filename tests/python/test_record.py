@@ -109,7 +109,7 @@ def test_a_record_saves_and_loads(break_scene, tmp_path):
     again = carom.Record.load(tmp_path / "p.json")
     assert again.hash() == record.hash() and again.event_list() == record.event_list()
     assert again.final_scene(scene=break_scene) == record.final_scene()
-    with pytest.raises(ValueError, match="has no physics: give the scene"):
+    with pytest.raises(ValueError, match="has no physics; give the scene"):
         again.final_scene()
     with pytest.raises(ValueError, match="saved as .json"):
         record.save(tmp_path / "r.png")

@@ -65,7 +65,7 @@ def test_another_thread_does_not_draw(draw_scene):
     thread = threading.Thread(target=go_on)
     thread.start()
     thread.join()
-    assert raised == ["frames are drawn by the thread that asked for the first one"]
+    assert raised == ["frames must be drawn by the thread that drew the first one"]
 
 
 def test_drawings_side_by_side_and_dropped_elsewhere(draw_scene):

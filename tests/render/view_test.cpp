@@ -123,7 +123,7 @@ TEST(Cameras, FreeViewAndBadOnes) {
         const Stage stage(record, options);
         FAIL();
     } catch (const RenderError& error) {
-        EXPECT_STREQ(error.what(), "no ball '17' to follow; there are cue, 8");
+        EXPECT_STREQ(error.what(), "no ball '17' to follow; expected one of cue, 8");
     }
     // Ids of a record come from a file.
     Record hostile = record;
@@ -135,7 +135,7 @@ TEST(Cameras, FreeViewAndBadOnes) {
     } catch (const RenderError& error) {
         const std::string what = error.what();
         EXPECT_EQ(what.find('\x1b'), std::string::npos) << what;
-        EXPECT_NE(what.find("there are cue, ?[2J, ?[2J"), std::string::npos) << what;
+        EXPECT_NE(what.find("expected one of cue, ?[2J, ?[2J"), std::string::npos) << what;
         EXPECT_NE(what.find(" and 12 more"), std::string::npos) << what;
     }
 }

@@ -268,7 +268,7 @@ TEST(Export, RefusesWhatItCannotDo) {
         EXPECT_TRUE(contains(result.err, message)) << result.err;
     };
     refused({"-o", folder.file("shot.obj")},
-            "what is exported is binary glTF; give it a name that ends in .glb");
+            "the export is binary glTF; give a name that ends in .glb");
     refused({"--interpolation", "step"}, "--interpolation");
     refused({"--fps", "0", "-o", folder.file("a.glb")}, "--fps 0: expected a number greater than 0");
     EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});

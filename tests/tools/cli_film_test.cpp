@@ -193,10 +193,10 @@ TEST_F(CliFilm, WhatGoesNotTogetherIsRefused) {
     } kCases[] = {
         {"shot.mp4", {"--size", "161x90"}, "--size 161x90: .mp4 needs an even width and height"},
         {"shot.mp4", {"--resume"}, "a film cannot be resumed"},
-        {"shot.webm", {"--at", "0.1"}, "one frame is no film"},
-        {"shot.webp", {"--frame", "3"}, "one frame is no film"},
-        {"shot.webp", {"--png-writer", "libpng"}, "--png-writer is of PNG files"},
-        {"shot.gif", {"--fps", "60"}, "--fps 60: .gif has at most 50 frames per second"},
+        {"shot.webm", {"--at", "0.1"}, "a film needs more than one frame"},
+        {"shot.webp", {"--frame", "3"}, "a film needs more than one frame"},
+        {"shot.webp", {"--png-writer", "libpng"}, "--png-writer applies only to PNG files"},
+        {"shot.gif", {"--fps", "60"}, "--fps 60: .gif allows at most 50 frames per second"},
         {"shot.avi", {}, "shot.avi"},
     };
     for (const auto& c : kCases) {

@@ -96,7 +96,7 @@ TEST_F(CliGames, StatesThatAreNoneAreRefused) {
     refused(R"({"game": "nine_ball", "points": [1]})", "points: expected one whole number for each player");
     refused(R"({"game": "nine_ball", "fouls": [1, 4000000000]})", "fouls: expected a whole number from 0");
     refused(R"({"game": "nine_ball", "group": ["open", "red"]})", "group: expected one of open");
-    refused(R"({"game": "nine_ball", "shots": 3})", "there is no key \"shots\"");
+    refused(R"({"game": "nine_ball", "shots": 3})", "unknown key \"shots\"");
     refused(R"({"game": "nine_ball", "over": true})", "over");
     EXPECT_EQ(carom({"judge", break_, "--state", file("none.json")}).status, 2);
     EXPECT_EQ(carom({"judge", break_}).status, 2);

@@ -92,7 +92,7 @@ TEST(CliImpact, AnErrorDoesNotStopTheRunAndExits1) {
     const std::vector<std::string> lines = lines_of(result.out);
     ASSERT_EQ(lines.size(), 3u);
     EXPECT_TRUE(Json::parse(lines[0]).contains("v1"));
-    EXPECT_EQ(lines[1], "{\"error\":\"this is not JSON (at byte 2)\"}");
+    EXPECT_EQ(lines[1], "{\"error\":\"not valid JSON (at byte 2)\"}");
     EXPECT_TRUE(Json::parse(lines[2]).contains("v1"));
 }
 

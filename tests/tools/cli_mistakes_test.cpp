@@ -40,10 +40,10 @@ class Mistakes : public testing::Test {
 };
 
 TEST_F(Mistakes, AMistypedCommandNamesTheNearest) {
-    refused("there is no command \"simulat\"; did you mean simulate?", {"simulat", scene_});
-    refused("there is no command \"rendr\"; did you mean render?", {"rendr"});
-    refused("there is no command \"fly-away\"; there are simulate, render, view", {"fly-away"});
-    refused("name a command before the file, as in carom simulate " + scene_, {scene_});
+    refused("unknown command \"simulat\"; did you mean simulate?", {"simulat", scene_});
+    refused("unknown command \"rendr\"; did you mean render?", {"rendr"});
+    refused("unknown command \"fly-away\"; expected simulate, render, view", {"fly-away"});
+    refused(": no command before the file; try carom simulate " + scene_, {scene_});
 }
 
 TEST_F(Mistakes, MistypedKeysAndValuesNameTheNearest) {
@@ -76,16 +76,16 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     const std::string before = read_file(scene_), same = folder_.file("same");
     const std::string link = folder_.file("link.toml");
     fs::create_symlink(scene_, link);
-    refused("-o \"" + scene_ + "\" would replace what is read", {"simulate", scene_, "-o", scene_});
-    refused("would replace what is read", {"simulate", scene_, "-o", link});
-    refused("would replace what is read", {"simulate", scene_, "-o", folder_.path().string() + "/./s.toml"});
-    refused("would replace what is read", sweep(scene_));
-    refused("would replace what is read", {"margin", scene_, "--no-render", "--csv", scene_});
+    refused("-o \"" + scene_ + "\" would overwrite the input", {"simulate", scene_, "-o", scene_});
+    refused("would overwrite the input", {"simulate", scene_, "-o", link});
+    refused("would overwrite the input", {"simulate", scene_, "-o", folder_.path().string() + "/./s.toml"});
+    refused("would overwrite the input", sweep(scene_));
+    refused("would overwrite the input", {"margin", scene_, "--no-render", "--csv", scene_});
     refused("-o -: give a name", sweep("-"));
     refused("--csv -: give a name", {"margin", scene_, "--no-render", "--csv", "-"});
     refused("--events and --samples name the same file",
             {"simulate", scene_, "--events", same, "--samples", same, "--sample-dt", "0.1"});
-    refused("-o: a file without a name", sweep(""));
+    refused("-o: empty file name", sweep(""));
     // Files that are not there yet, under two names.
     fs::create_symlink(same, folder_.file("to_same"));
     fs::create_symlink("to_same", folder_.file("to_link"));
@@ -101,7 +101,7 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     fs::current_path(folder_.path());
     refused("name the same file", {"simulate", scene_, "-o", "a.json", "--events", "./a.json"});
     refused("name the same file", {"simulate", scene_, "-o", "a.json", "--events", folder_.file("a.json")});
-    refused("would replace what is read", {"render", "./s.toml", "-o", "s.toml"});
+    refused("would overwrite the input", {"render", "./s.toml", "-o", "s.toml"});
     fs::current_path(cwd);
     EXPECT_EQ(read_file(scene_), before);
     EXPECT_EQ(carom({"simulate", scene_, "-o", "/dev/null", "--events", "/dev/null"}).status, 0);
@@ -111,10 +111,10 @@ TEST_F(Mistakes, PicturesHaveNamesOfPictures) {
     refused("pictures are PNG files", {"render", scene_, "-o", folder_.file("f%d.jpg")});
     refused("pictures are PNG files", {"render", scene_, "--at", "0.1", "-o", folder_.file("f.jpg")});
     refused("or the name of a film", {"render", scene_, "-o", folder_.file("movie.avi")});
-    refused("--at 99: the shot is over after", {"render", scene_, "--at", "99", "-o", folder_.file("f.png")});
+    refused("--at 99: the shot ends at", {"render", scene_, "--at", "99", "-o", folder_.file("f.png")});
     for (const char* option : {"--at", "--from"})
         for (const char* late : {"99", "1e16", "1e17", "1e300"})
-            refused(": the shot is over after",
+            refused(": the shot ends at",
                     {"render", scene_, option, late, "-o", folder_.file("%d.png")});
     EXPECT_EQ(folder_.names(), std::vector<std::string>{"s.toml"});
     const std::string one = folder_.file("f.png");
@@ -132,18 +132,18 @@ TEST_F(Mistakes, ResumeKnowsWhichShotFramesAreOf) {
         return carom(all);
     };
     folder_.write("f1.png", "of nobody");
-    EXPECT_TRUE(contains(render({"--resume"}).err, "nothing says which shot the frames there are of"));
+    EXPECT_TRUE(contains(render({"--resume"}).err, "nothing says which shot the existing frames show"));
     fs::remove(folder_.file("f1.png"));
     ASSERT_EQ(render({"--resume"}).status, 0);  // all of it
     ASSERT_EQ(render({}).status, 0);
-    EXPECT_TRUE(contains(render({"--resume"}).out, "0 frames: all are there"));
+    EXPECT_TRUE(contains(render({"--resume"}).out, "all frames already exist"));
     const std::vector<std::vector<std::string>> others = {
         {"--camera", "rail"}, {"--trails"}, {"--from", "0.1"}, {"--eye", "1,1,1", "--target", "0,0,0"}};
     for (std::vector<std::string> other : others) {
         other.push_back("--resume");
         const ProcessResult result = render(other);
         EXPECT_EQ(result.status, 1) << other[0];
-        EXPECT_TRUE(contains(result.err, "of another shot, camera, overlay or size; render without --resume"))
+        EXPECT_TRUE(contains(result.err, "show another shot, camera, overlay or size; render without --resume"))
             << result.err;
     }
     std::ofstream(scene_, std::ios::app) << "[balls]\nmu_r = 0.02\n";
@@ -192,7 +192,7 @@ TEST_F(Mistakes, NumbersOfAnotherUnitAreWarnedAbout) {
 TEST_F(Mistakes, StandardOutputIsAFileToo) {
     const ProcessResult samples = carom({"simulate", scene_, "--samples", "-", "--sample-dt", "0.5"});
     EXPECT_EQ(lines_of(samples.out)[0].substr(0, 10), "time,ball,") << samples.out;
-    EXPECT_FALSE(contains(samples.out, "balls at the end"));
+    EXPECT_FALSE(contains(samples.out, "final positions"));
     EXPECT_FALSE(fs::exists("-"));
     refused("-o -: give a name", sweep("-"));
     refused("--csv -: give a name", {"margin", scene_, "--no-render", "--csv", "-"});

@@ -67,8 +67,8 @@ TEST_F(CliRenderOptions, BadViewsAreRefused) {
     expect_refused(2, "--eye: expected three numbers", {"--eye", "0.6,-0.5", "--target", "0,1,0"});
     expect_refused(2, "--target: expected three numbers", {"--eye", "0.6,-0.5,1", "--target", "0,1,nan"});
     expect_refused(2, "--eye needs --target", {"--eye", "0.6,-0.5,1"});
-    expect_refused(2, "--target is where the eye is", {"--eye", "0,1,1", "--target", "0,1,1"});
-    expect_refused(2, "exclude each other", {"--eye", "0,1,1", "--target", "0,1,0", "--camera", "rail"});
+    expect_refused(2, "--target and --eye are the same point", {"--eye", "0,1,1", "--target", "0,1,1"});
+    expect_refused(2, "--camera and --eye cannot be combined", {"--eye", "0,1,1", "--target", "0,1,0", "--camera", "rail"});
     expect_refused(1, "'9'", {"--camera", "follow", "--ball", "9"});
 }
 
@@ -123,8 +123,8 @@ TEST_F(CliRenderOptions, RawFramesAreRgbInOrder) {
     const ProcessResult last = carom({"render", record_, "--raw", "--at", "0.5", "--size", "64x36"});
     EXPECT_TRUE(last.out == result.out.substr(2 * kFrame));
     EXPECT_EQ(folder_.names().size(), 2u);  // no file
-    expect_refused(2, "--raw goes with neither", {"--raw", "--resume"});
-    expect_refused(2, "--raw goes with neither", {"--raw", "--sheet", "2x2"});
+    expect_refused(2, "--raw cannot be combined", {"--raw", "--resume"});
+    expect_refused(2, "--raw cannot be combined", {"--raw", "--sheet", "2x2"});
 }
 
 TEST_F(CliRenderOptions, AClosedPipeEndsRawFrames) {

@@ -116,7 +116,7 @@ TEST_F(CliSimulate, SummarySaysWhatHappened) {
     ASSERT_EQ(result.status, 0) << result.err;
     for (const char* part :
          {": 3 balls, ", " events; everything is at rest", " s  cue is struck: ", " s  cue meets 1, cut ",
-          "\npocketed\n", "\nballs at the end (m)\n", "\n  cue ", "\n  1 "}) {
+          "\npocketed\n", "\nfinal positions (m)\n", "\n  cue ", "\n  1 "}) {
         EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
     }
 }
@@ -134,8 +134,8 @@ TEST_F(CliSimulate, ALongShotIsToldByItsLandmarksAndWholeWithList) {
 
 TEST_F(CliSimulate, InchesAndMilesPerHourOnRequest) {
     const std::string metric = run().out, inch = run({"--units", "inch"}).out;
-    EXPECT_TRUE(contains(metric, " m/s\n") && contains(metric, "balls at the end (m)")) << metric;
-    EXPECT_TRUE(contains(inch, " mph\n") && contains(inch, "balls at the end (in)")) << inch;
+    EXPECT_TRUE(contains(metric, " m/s\n") && contains(metric, "final positions (m)")) << metric;
+    EXPECT_TRUE(contains(inch, " mph\n") && contains(inch, "final positions (in)")) << inch;
     // Files stay in SI.
     run({"--units", "inch", "--events", folder_.file("i.csv")});
     run({"--events", folder_.file("m.csv")});
@@ -175,15 +175,14 @@ TEST_F(CliSimulate, StopsAfterItsEvents) {
     const std::string scene = folder_.write("e.toml", std::string(kSmallScene) + "[stop]\nevents = 3\n");
     const ProcessResult result = carom({"simulate", scene});
     EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_NE(result.out.find(" 3 events; stopped at its number of events\n"), std::string::npos)
-        << result.out;
+    EXPECT_NE(result.out.find(" 3 events; stopped at the event limit\n"), std::string::npos) << result.out;
 }
 
 TEST_F(CliSimulate, UntilStops) {
     const Json json = Json::parse(run({"--json", "--until", "0.125"}).out);
     EXPECT_EQ(json.at("duration").get<double>(), 0.125);
     EXPECT_EQ(json.at("balls")[0].at("state"), "sliding");
-    EXPECT_NE(run({"--until", "0.125"}).out.find("stopped at its time"), std::string::npos);
+    EXPECT_NE(run({"--until", "0.125"}).out.find("stopped at the time limit"), std::string::npos);
 }
 
 TEST_F(CliSimulate, MotionWithoutEndGoesOnToTheStopTime) {
@@ -193,7 +192,7 @@ TEST_F(CliSimulate, MotionWithoutEndGoesOnToTheStopTime) {
     const ProcessResult result =
         carom({"simulate", scene, "--verify", "--samples", folder_.file("s.csv"), "--sample-dt", "0.02"});
     EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_NE(result.out.find("1 ball, 0.1000 s, 0 events; stopped at its time\n"), std::string::npos)
+    EXPECT_NE(result.out.find("1 ball, 0.1000 s, 0 events; stopped at the time limit\n"), std::string::npos)
         << result.out;
     EXPECT_NE(result.out.find("cue    sliding       1.100000   1.000000\n"), std::string::npos) << result.out;
     EXPECT_EQ(lines_of(read_file(folder_.file("s.csv"))).size(), 1u + 6u);
@@ -209,7 +208,7 @@ TEST_F(CliSimulate, MotionWithoutEndGoesOnToTheStopTime) {
         "[balls]\nmu_sp = 0\n[[ball]]\nposition = [0.6, 0.5]\nspin = [0, 0, 5]\n[stop]\nevents = 4\n");
     const ProcessResult endless = carom({"simulate", events, "--verify", "-o", folder_.file("r.json")});
     EXPECT_EQ(endless.status, 0) << endless.err;
-    EXPECT_NE(endless.out.find("1 ball, 0.0000 s, 0 events; nothing more happens, but balls move for ever\n"),
+    EXPECT_NE(endless.out.find("1 ball, 0.0000 s, 0 events; no more events, but balls move forever\n"),
               std::string::npos)
         << endless.out;
     EXPECT_EQ(read_record(folder_.file("r.json")).stopped, StopReason::kEndless);

@@ -135,7 +135,7 @@ TEST(CliSweep, GoesOnAfterAKill) {
     std::ofstream(parts + "/.carom.1.0.tmp") << "123,90.0";
     const ProcessResult result = carom(command);
     expect_ok(result);
-    EXPECT_NE(result.err.find("going on with " + parts), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("continuing with " + parts), std::string::npos) << result.err;
     EXPECT_EQ(folder.names(), std::vector<std::string>{"killed.csv"});
     expect_ok(carom(breaks(1200, whole)));
     EXPECT_EQ(read_file(killed), read_file(whole));
@@ -156,7 +156,7 @@ TEST(CliSweep, AnInterruptLeavesWhatWasDone) {
     process.interrupt();
     const ProcessResult result = process.finish("");
     EXPECT_EQ(result.status, 130);
-    EXPECT_EQ(result.err, "carom: stopped; the same command goes on with " + parts + "\n");
+    EXPECT_EQ(result.err, "carom: stopped; run the same command to continue with " + parts + "\n");
     // No table, no lock, no temporary file.
     EXPECT_EQ(folder.names().size(), files_in(parts).size());
 }
@@ -200,7 +200,7 @@ TEST(CliSweep, APartIsLookedAt) {
     for (const std::string& file : files_in(parts))
         if (file != part) fs::remove(file);
     signed_again(rows.substr(0, rows.size() - 1) + "9\n" + said);
-    refused("its last row is not what this program computes; remove it to begin anew");
+    refused("its last row is not what this program computes; remove it to start again");
 
     // A part that is removed is made again.
     fs::remove(part);
@@ -218,7 +218,7 @@ TEST(CliSweep, ALinkIsNotFollowed) {
     const auto refused = [&] {
         const ProcessResult result = carom(command);
         EXPECT_EQ(result.status, 1);
-        EXPECT_EQ(result.err, "carom: " + parts + ": this is no folder; remove it\n");
+        EXPECT_EQ(result.err, "carom: " + parts + ": this is not a folder; remove it\n");
         fs::remove(parts);
     };
     fs::create_directory_symlink(elsewhere.path(), parts);
@@ -330,7 +330,7 @@ TEST(CliSweep, FailuresThatAreThereCount) {
     const std::string table = read_file(output);
     int failed = 0;
     for (std::size_t at = 0; (at = table.find(",0.6,failed,", at)) != table.npos; ++at) ++failed;
-    EXPECT_NE(result.err.find("going on with "), result.err.npos) << result.err;
+    EXPECT_NE(result.err.find("continuing with "), result.err.npos) << result.err;
     EXPECT_NE(result.err.find(std::to_string(failed) + " shots failed while running"), result.err.npos)
         << result.err;
 }

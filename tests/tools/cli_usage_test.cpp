@@ -18,10 +18,10 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "a command is missing: simulate, render, view, diagram, next, judge, export, compare, margin, "
+         "no command given: expected simulate, render, view, diagram, next, judge, export, compare, margin, "
          "accuracy, sweep, check, "
          "impact or describe; see carom --help"},
-        {{"accuracy"}, "accuracy: a scene file is required; see --help"},
+        {{"accuracy"}, "accuracy: no scene file given; see --help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
         {{"simulate"}, "SCENE is required; see carom simulate --help"},
@@ -50,7 +50,7 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         {{"render", scene, "--png-level", "1"}, "--png-level"},
         {{"render", scene, "--png-writer", "paint"}, "paint"},
         {{"render", scene, "--raw", "--y4m"}, "--raw"},
-        {{"render", scene, "--y4m", "--sheet", "2x2"}, "--y4m goes with neither"},
+        {{"render", scene, "--y4m", "--sheet", "2x2"}, "--y4m cannot be combined"},
         {{"render", scene, "--camera", "from the moon"}, "from the moon"},
         {{"margin", scene, "--repeat", "0"}, "--repeat"},
         {{"margin", scene, "--sweep"}, "--sweep"},
@@ -144,7 +144,7 @@ TEST(CliUsage, AClosedOutputIsAnErrorAndGetsNoFilesNumber) {
         {"/bin/sh", "-c", "exec \"$0\" simulate \"$1\" -o \"$2\" >&-", CAROM_PROGRAM, scene, record});
     EXPECT_EQ(result.status, 1);
     EXPECT_EQ(read_file(record).substr(0, 10), "{\"format\":");
-    EXPECT_FALSE(contains(read_file(record), "balls at the end"));
+    EXPECT_FALSE(contains(read_file(record), "final positions"));
 }
 
 TEST(CliIsa, UnknownAndUnavailableAreErrors) {

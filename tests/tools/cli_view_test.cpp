@@ -202,7 +202,7 @@ TEST(View, ARecordIsShownAsItIs) {
     const ProcessResult plain = carom({"view", json, scene, "-o", page});
     EXPECT_EQ(plain.status, 0) << plain.err;
     EXPECT_TRUE(
-        contains(plain.err, "shot.json: the record is not profiled, so the page has no chart of frames"));
+        contains(plain.err, "shot.json: the record is not profiled, so the page has no frame chart"));
     EXPECT_TRUE(contains(read_file(page), "id=\"second\""));
     EXPECT_TRUE(contains(read_file(page), "\"margin\":null"));
     ASSERT_EQ(carom({"simulate", scene, "-o", json, "--profile"}).status, 0);
@@ -242,7 +242,7 @@ TEST(View, RefusesWhatItCannotDoBeforeItBegins) {
         EXPECT_EQ(result.status, 2) << message;
         EXPECT_TRUE(contains(result.err, message)) << result.err;
     };
-    refused({"-o", folder.file("shot.htm5")}, "a page is an HTML file; give it a name that ends in .html");
+    refused({"-o", folder.file("shot.htm5")}, "pages are HTML; give a name that ends in .html");
     refused({folder.file("none.json"), "-o", folder.file("a.html")}, "none.json");
     EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});
 }

@@ -1,5 +1,5 @@
-// carom-lab accuracy: the report of `carom accuracy` as a
-// plot or a page, beside Box2D, and that of one impact.
+// carom-lab accuracy: the report of `carom accuracy` as a plot or a page, with Box2D beside it, and the same
+// for one impact.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 
 struct LabAccuracyArgs : AccuracySceneArgs {
     bool box2d = false;
-    /// File names; empty: not asked for.
+    /// File names; empty: not written.
     std::string plot, html;
 };
 

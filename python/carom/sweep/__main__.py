@@ -213,7 +213,7 @@ def main() -> int:
     except (SweepError, ImportError, OSError) as error:
         return _complain(error, 1)
     except KeyboardInterrupt:
-        return _complain("stopped; the same command goes on", 130)
+        return _complain("stopped; run the same command to continue", 130)
 
 
 if __name__ == "__main__":

@@ -44,8 +44,7 @@ namespace {
 // [bytes] Limit for all images in flight together; it bounds the memory of a run with many threads.
 constexpr double kMemory = 64e6;
 
-// For each thread one image in work and one waiting, and
-// one image being filled; fewer if the images are large.
+// One image in work and one waiting per thread, and one being filled; fewer if the images are large.
 std::size_t image_limit(FrameSize size, int threads) {
     const double fit = kMemory / (4.0 * size.width * size.height);
     return static_cast<std::size_t>(std::max(2.0, std::min(2.0 * threads + 1.0, fit)));

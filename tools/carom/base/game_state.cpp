@@ -21,10 +21,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 using games::State;
 
-// [bytes] A state is some three hundred.
+// [bytes] A state takes about three hundred.
 constexpr std::uintmax_t kLargestState = 1 << 16;
 
-/// A reader of one key, which says what it expected.
+/// Reads one key, and says what it expected.
 struct Reader {
     const std::string& path;
     const Json& json;
@@ -103,14 +103,14 @@ State read_state(const std::string& path) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) throw UsageError(shown + ": there is no such file");
     if (std::filesystem::file_size(path, error) > kLargestState)
-        throw UsageError(fmt::format("{}: expected a state of a game, of less than 64 kB", shown));
+        throw UsageError(fmt::format("{}: expected a state of a game of less than 64 kB", shown));
     std::ifstream stream(path);
     const Json json = Json::parse(stream, nullptr, false);
     if (!json.is_object())
         throw UsageError(shown + ": expected a state of a game, as carom judge --state-out writes it");
     for (const auto& [key, value] : json.items()) {
         if (std::find(std::begin(kKeys), std::end(kKeys), key) == std::end(kKeys))
-            throw UsageError(fmt::format("{}: there is no key {}; expected {}", shown, in_quotes(key),
+            throw UsageError(fmt::format("{}: unknown key {}; expected one of {}", shown, in_quotes(key),
                                          fmt::join(kKeys, ", ")));
     }
     const Reader read{shown, json};

@@ -9,7 +9,7 @@
 
 namespace carom::tools {
 
-/// @throws UsageError naming the option and the games there are
+/// @throws UsageError naming the option and the known games
 games::Game game_of(const std::string& name);
 /// The choices of --game.
 std::vector<std::string> game_names();

@@ -1,4 +1,4 @@
-// Units of what people read. Files are in SI always.
+// Units of what people read. Files are always in SI.
 #pragma once
 
 #include <fmt/format.h>

@@ -16,7 +16,7 @@
 namespace carom::tools {
 namespace {
 
-/// 1e9 rows are more than 100 GB, which is taken for a typing error.
+/// 1e9 rows are more than 100 GB: taken for a typing error.
 constexpr double kMostRows = 1e9;
 
 }  // namespace
@@ -42,7 +42,7 @@ void write_events_csv(const Record& record, const std::string& path) {
         }
         event_row(record, i, numbers);
         for (const double number : numbers) row += std::isnan(number) ? "," : fmt::format(",{}", number);
-        // Names of cushions hold commas.
+        // Names of cushions contain commas.
         row += fmt::format(",\"{}\",", met_name(record, event));
         if (event.type == EventType::kBallCluster) {
             const char* between = "";
@@ -58,7 +58,8 @@ void write_samples_csv(const Record& record, double dt, const std::string& path)
     OutputFile file(path);
     const double rows = (record.duration / dt + 1.0) * static_cast<double>(record.tracks.size());
     if (!(rows <= kMostRows)) {
-        throw UsageError(fmt::format("--sample-dt {}: that would be more than {:.0f} rows", dt, kMostRows));
+        throw UsageError(
+            fmt::format("--sample-dt {}: that is more than {:.0f} rows; use a larger step", dt, kMostRows));
     }
     file.write("time,ball,state,x,y,z,vx,vy,vz,wx,wy,wz\n");
     for (long k = 0; static_cast<double>(k) * dt <= record.duration; ++k) {

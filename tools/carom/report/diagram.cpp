@@ -34,10 +34,10 @@ using Color = look::Color;
 // All in points of the page.
 constexpr double kDrawingWidth = 640.0, kMargin = 20.0, kTitleHeight = 26.0, kInsetHeight = 74.0;
 constexpr double kTitleSize = 15.0, kTextSize = 8.0;
-// [pixels per point] Of a PNG.
+// [pixels per point] In a PNG.
 constexpr double kPngScale = 2.5;
 constexpr Color kBlack{0.0, 0.0, 0.0}, kWhite{1.0, 1.0, 1.0}, kGray{0.55, 0.55, 0.55};
-// [m/s] Slower contacts have no speed beside them.
+// [m/s] Slower contacts are drawn without a speed.
 constexpr double kLeastSpeed = 0.05;
 // [m] Below this a path is a dot.
 constexpr double kLeastPath = 1e-4;
@@ -180,7 +180,7 @@ class Drawing {
             render::ball_style(record_.tracks[ball].id, record_.table.preset, ball).color;
         return {c[0], c[1], c[2]};
     }
-    /// A path has to be seen on the cloth: the white ball's is black.
+    /// A path must be visible on the cloth: the white ball's is black.
     Color path_color(int ball) const {
         if (!style_.color) return kBlack;
         const Color c = ball_color(ball);
@@ -415,7 +415,7 @@ cairo_status_t append(void* to, const unsigned char* data, unsigned int length) 
     return CAIRO_STATUS_SUCCESS;
 }
 
-/// A context of cairo's that is released.
+/// A cairo context that releases itself.
 struct Context {
     explicit Context(cairo_surface_t* made) : surface(made), cr(cairo_create(made)) {}
     ~Context() {
@@ -459,7 +459,7 @@ std::string diagram_format(const std::string& path) {
 
 std::string draw_diagram(const std::vector<DiagramShot>& shots, const DiagramStyle& style,
                          const std::string& format) {
-    // The size is known when everything has been drawn once, into nothing.
+    // The size is known once everything has been drawn, so the first pass draws into nothing.
     std::pair<double, double> size;
     {
         const Context nowhere(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, nullptr));

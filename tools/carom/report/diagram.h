@@ -1,5 +1,4 @@
-// Shots as a drawing for a page of a book: the table to scale, the balls where they begin, the paths they
-// take.
+// Shots as a drawing for a printed page: the table to scale, the balls where they begin, the paths they take.
 #pragma once
 
 #include <optional>
@@ -25,7 +24,7 @@ struct DiagramStyle {
     Units units = Units::kMetric;
 };
 
-/// The formats, by the ending of the file's name.
+/// The formats, by file extension.
 inline constexpr const char* kDiagramFormats[] = {".svg", ".pdf", ".png"};
 
 /// Which of them a file has. @throws UsageError for another ending, and in a build without cairo

@@ -181,9 +181,9 @@ struct StopWords {
 };
 inline constexpr std::array<StopWords, 4> kStopWords = {{
     {"at_rest", "at rest", "everything is at rest"},
-    {"time", "stop time", "stopped at its time"},
-    {"events", "number of events", "stopped at its number of events"},
-    {"endless", "endless motion", "nothing more happens, but balls move for ever"},
+    {"time", "stop time", "stopped at the time limit"},
+    {"events", "number of events", "stopped at the event limit"},
+    {"endless", "endless motion", "no more events, but balls move forever"},
 }};
 constexpr const StopWords& words(StopReason why) {
     return kStopWords[static_cast<std::size_t>(why)];

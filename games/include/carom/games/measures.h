@@ -1,10 +1,10 @@
-// Measures of a shot by name, and expressions over them: the columns that a sweep adds, and what a search
-// wants.
+// Measures of a shot by name, and expressions over them: the columns that a sweep adds, and the goal of a
+// search.
 //
-//   pocketed                     the balls that fell, in this order
-//   travel(cue)                  the length of a ball's path [m]
+//   pocketed the balls that fell, in this order
+//   travel(cue) the length of a ball's path [m]
 //   "9" in pocketed and not scratch
-//   cue near (0.6, 1.2, 0.05)    at rest within 5 cm of this place
+//   cue near (0.6, 1.2, 0.05) at rest within 5 cm of this place
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@
 
 namespace carom::games {
 
-/// A measure that the list has: `carom describe measures`.
+/// A measure in the list that `carom describe measures` prints.
 struct MeasureInfo {
     const char* name;
     const char* arguments;  ///< "", "BALL", "BALL, X, Y", "GAME"
@@ -29,23 +29,23 @@ struct MeasureInfo {
 };
 std::span<const MeasureInfo> measures();
 
-/// A number (NaN: there is none), or texts: a text is a list of one.
+/// A number (NaN if there is none), or texts: a single text is a list of one.
 using MeasureValue = std::variant<double, std::vector<std::string>>;
-/// As tables write it: "" for no number, texts with semicolons between them.
+/// As tables write it: "" if there is no number, semicolons between texts.
 std::string text_of(const MeasureValue& value);
 
-/// An expression that cannot be read. what() says where and what was expected.
+/// An expression that cannot be read. what() says where, and what was expected.
 class MeasureError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/// An expression, read once and asked of many shots. In order of precedence: `or`, `and`, `not`, one of
+/// An expression, read once and evaluated for many shots. In order of precedence: `or`, `and`, `not`, one of
 /// == != < <= > >= in near, + and -, * and /. An empty text, an empty list, 0 and NaN are false.
 class Measure {
   public:
-    /// @param scene  that of the shots: it has the balls and pockets that the expression names
-    /// @param game   that `foul`, `break_foul` and `legal_break` judge by without an argument
+    /// @param scene that of the shots, with the balls and pockets that the expression names
+    /// @param game the rules for `foul`, `break_foul` and `legal_break` without an argument
     /// @throws MeasureError
     Measure(const std::string& text, const Scene& scene, std::optional<Game> game = std::nullopt);
     ~Measure();

@@ -16,11 +16,11 @@
 namespace carom::tools {
 namespace {
 
-/// A ToleranceFunction in form: the power series of the tests, rounded to double.
+/// A ToleranceFunction that calls the power series of the tests, rounded to double.
 void by_power_series(const kernel::Ball& ball1, const kernel::Ball& ball2, const kernel::ImpactParams& params,
                      double tolerance, kernel::ImpactResult& result) noexcept {
     const reference::ImpactTruth truth = reference::reference_impact(ball1, ball2, params);
-    if (!truth.ok) {  // separating or bad: the kernel has the words for it
+    if (!truth.ok) {  // separating or bad: the kernel reports it
         kernel::tolerance_function(kernel::Isa::kScalar)(ball1, ball2, params, tolerance, result);
         if (result.status == kernel::ImpactStatus::kOk) result.status = kernel::ImpactStatus::kStepLimit;
         return;
@@ -71,7 +71,7 @@ FinalError final_error(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
 
 double gain_of(const Plan& plan, const Record& record) {
     const int struck = struck_ball(plan.scene);
-    if (struck < 0) return 1.0;  // nothing moves: every ball stays as far off as it is put
+    if (struck < 0) return 1.0;  // nothing moves: an offset stays as it is
     const std::vector<Vec2> end = final_positions(record);
     const auto ball = static_cast<std::size_t>(struck);
     double gain = 0.0;
@@ -80,7 +80,7 @@ double gain_of(const Plan& plan, const Record& record) {
         Vec3& position = twin.scene.ball[ball].position;
         const double before = position[axis];
         position[axis] = before + kTwinStep;
-        const double step = position[axis] - before;  // as far as a double can tell
+        const double step = position[axis] - before;  // the step after rounding
         if (step == 0.0) continue;
         gain =
             std::max(gain, final_error(final_positions(simulate(twin, interruptible())), end).largest / step);

@@ -1,5 +1,4 @@
-// carom judge: what a shot is worth in a game. carom next: the table as it rests, as the scene of the next
-// shot.
+// carom judge: the verdict on a shot in a game. carom next: the final table, as the scene of the next shot.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,7 +49,7 @@ struct NextArgs {
     GameArgs game;
 };
 
-/// What a shot came to: the verdict, and the option that is taken.
+/// The outcome of a shot: the verdict, and the option that is taken.
 struct Judged {
     Verdict verdict;
     Option option;
@@ -62,7 +61,7 @@ void write_text(const std::string& path, const std::string& text) {
     file.commit();
 }
 
-/// Calls a function of the games and turns what it refuses into a message about the shot.
+/// Calls a function of the games, and turns its refusals into messages about the shot.
 template <class F>
 auto asked(const std::string& shot, F&& f) {
     try {
@@ -125,7 +124,7 @@ std::string verdict_text(const Judged& judged) {
         if (verdict.options.size() > 1) text += fmt::format("  {}  {}: ", i + 1, name(option.decision));
         text += next_text(option.state) + "\n";
         for (const games::Respot& back : option.respots)
-            text += fmt::format("{}{} comes back to {:.4f}, {:.4f} m\n",
+            text += fmt::format("{}{} is respotted at {:.4f}, {:.4f} m\n",
                                 verdict.options.size() > 1 ? "     " : "", back.ball, back.place.x(),
                                 back.place.y());
     }
@@ -164,14 +163,15 @@ int run_judge(const JudgeArgs& args) {
     return kOk;
 }
 
-/// The place of the cue ball that is asked for, or the free one nearest to the head spot, or none.
+/// The requested place of the cue ball, else the free one nearest to the head spot, or none.
 std::optional<Vec2> place_of(const NextArgs& args, const Record& record, const Option& option) {
     if (!args.place.empty()) {
         const auto numbers = numbers_in<double, 2>(args.place, ',');
         if (!numbers) throw UsageError(fmt::format("--place {}: expected X,Y in m", args.place));
         const Vec2 place((*numbers)[0], (*numbers)[1]);
         if (!asked(args.scene, [&] { return games::may_place(record, option, place); }))
-            throw UsageError(fmt::format("--place {}: the cue ball may not lie there", args.place));
+            throw UsageError(
+                fmt::format("--place {}: the cue ball may not lie there; choose another place", args.place));
         return place;
     }
     if (option.state.in_hand == InHand::kNo) return std::nullopt;
@@ -191,7 +191,8 @@ std::optional<Vec2> place_of(const NextArgs& args, const Record& record, const O
     throw UsageError(fmt::format("{}: there is no free place for the cue ball", harmless(args.scene)));
 }
 
-/// The cue of the shot before, at the nearest ball that may be met first, at its height without side.
+/// The cue of the previous shot, aimed at the nearest ball that may be hit first, at its height and without
+/// side.
 Cue next_cue(const Scene& table, const Cue& before, const std::string& ball,
              const std::vector<std::string>& first) {
     Cue cue = before;
@@ -294,14 +295,13 @@ void add_judge(Options& program) {
 
 void add_next(Options& program) {
     auto [command, args] = program.command<NextArgs>(
-        "next", "Write the table as it rests as the scene of the next shot, by the rules of a game if named",
+        "next", "Write the scene of the next shot: the table as it rests, by the rules of a game if named",
         run_next);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
-    command.option("-o,--output", &args.output, "FILE.toml", "The scene to write");
+    command.option("-o,--output", &args.output, "FILE.toml", "Scene file to write");
     add_game(command, args.game);
-    command.option(
-        "--place", &args.place, "X,Y",
-        "Where the cue ball in hand goes, in m (default: the free place nearest to the head spot)");
+    command.option("--place", &args.place, "X,Y",
+                   "Place of the cue ball in hand, in m (default: the free place nearest to the head spot)");
 }
 
 }  // namespace carom::tools

@@ -1,4 +1,4 @@
-// carom simulate: runs a scene and says what happened.
+// carom simulate: runs a scene and reports what happened.
 #include <fmt/format.h>
 
 #include <array>
@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 struct SimulateArgs {
     std::string scene;
-    std::string record;  ///< file names; empty: not asked for
+    std::string record;  ///< file names; empty: not written
     std::string events;
     std::string samples;
     std::optional<double> sample_dt;  ///< [s]
@@ -36,10 +36,10 @@ struct SimulateArgs {
     bool json = false;
     bool list = false;  ///< tell every event
     std::string units = kUnits[0];
-    bool verify = false;  ///< check the laws after every event
+    bool verify = false;  ///< check the physical laws after every event
 };
 
-/// What the events of a profiled run cost, by kind: the sums. The text shows the means.
+/// The total cost of a profiled run's events, by kind. The text shows the means.
 Table costs_by_kind(const Record& record) {
     Table table(Column("type", "", "<24"), Column("count", "count", ">6"),
                 Column("detect_ns", "detect", ">12"), Column("resolve_ns", "resolve", ">12"),
@@ -115,11 +115,11 @@ std::string summary(const Record& record, const std::string& scene, const Simula
     for (const Event& event : record.events) {
         if (event.type != EventType::kBallOut) continue;
         const Vec3 there = record.state_at(event.a, event.time).position * length.factor;
-        fmt::format_to(line, "{}  {:<6} left at {:.6f}, {:.6f}, {:.6f} high, at {:.4f} s\n",
+        fmt::format_to(line, "{}  {:<6} left at {:.6f}, {:.6f}, {:.6f} (height), at {:.4f} s\n",
                        std::exchange(off, true) ? "" : title, record.tracks.at(event.a).id, there.x(),
                        there.y(), there.z(), event.time);
     }
-    fmt::format_to(line, "\nballs at the end ({})\n", length.name);
+    fmt::format_to(line, "\nfinal positions ({})\n", length.name);
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         const BallState s = record.state_at(static_cast<int>(i), record.duration);
         fmt::format_to(line, "  {:<6} {:<11}{:>11.6f}{:>11.6f}\n", record.tracks[i].id, name(s.state),
@@ -142,9 +142,8 @@ std::string profile_report(const Record& record) {
                      cost.kernel_ns, cost.steps, fmt::format("  {}", cost.method)});
     }
     return fmt::format(
-        "\ncost by kind of event (mean ns; kernel is a part of resolve)\n{}"
-        "  first detection of all pairs: {:.0f} ns; all together: {:.3f} ms\n"
-        "\nkernel by ball-ball event and cluster\n{}",
+        "\ncost by kind of event (mean ns; resolve includes kernel)\n{}  first search of all pairs: {:.0f} "
+        "ns; total: {:.3f} ms\n\nkernel by ball-ball event and cluster\n{}",
         table_text(costs_by_kind(record)), record.setup_detect_ns, total * 1e-6, table_text(kernels));
 }
 
@@ -170,7 +169,7 @@ void write_files(const SimulateArgs& args, const Record& record) {
     if (!args.samples.empty()) write_samples_csv(record, *args.sample_dt, file(args.samples));
 }
 
-/// Names the first law that the run broke, if any.
+/// Reports the first law that the run broke, if any.
 int verified(const Record& record, const Plan& plan) {
     const std::optional<Violation> violation = verify(record, plan);
     if (!violation) return kOk;
@@ -193,7 +192,7 @@ int run(const SimulateArgs& args) {
     const Record record = simulate_plan(plan, options);
     write_files(args, record);
     const int status = args.verify ? verified(record, plan) : kOk;
-    // --hash replaces the summary, so that the output is one line. The JSON contains the hash in any case.
+    // --hash replaces the summary, so that the output is one line. JSON always contains the hash.
     if (args.json) {
         print(result_json(record));
         return status;
@@ -212,16 +211,15 @@ int run(const SimulateArgs& args) {
 
 void add_simulate(Options& program) {
     auto [command, args] = program.command<SimulateArgs>(
-        "simulate", "Run a scene: what happened, events, record, sampled states, hash", run);
+        "simulate", "Simulate a scene: print what happened, write events, record or samples", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
     command
         .option("-o,--output", &args.record, "FILE.json",
-                "Write the record, for carom render (default: not written)")
+                "Write the record, which carom render reads (default: not written)")
         .to_stdout = true;
     command
         .option("--events", &args.events, "FILE.csv",
-                "Write the events; - is standard output, in place of the summary, as below (default: not "
-                "written)")
+                "Write the events; - prints them instead of the summary (default: not written)")
         .to_stdout = true;
     command
         .option("--samples", &args.samples, "FILE.csv",
@@ -237,12 +235,12 @@ void add_simulate(Options& program) {
     command.flag("--hash", args.hash,
                  "Print the hash of all bits of the record instead of the summary (default: off)");
     command.flag("--profile", args.profile,
-                 "Time every event: cost by kind, kernel by ball-ball event, columns in the events file "
-                 "(default: off)");
+                 "Time every event: cost by kind, kernel cost by ball-ball event, extra columns in the "
+                 "events file (default: off)");
     command.flag("--json", args.json, "Print JSON (default: off)");
-    command.flag(
-        "--verify", args.verify,
-        "Check the laws after every event; a broken one is named, and the exit status is 1 (default: off)");
+    command.flag("--verify", args.verify,
+                 "Check the physical laws after every event; report the first one broken, with exit status 1 "
+                 "(default: off)");
 }
 
 }  // namespace carom::tools

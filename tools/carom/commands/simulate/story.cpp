@@ -14,9 +14,9 @@
 namespace carom::tools {
 namespace {
 
-// [lines] A shot with more contacts is told by its landmarks.
+// [lines] A shot with more contacts is summarised by its landmarks.
 constexpr std::size_t kMostLines = 24;
-// [-] Contacts of the struck ball that a long shot is told by.
+// [-] Contacts of the struck ball that the summary of a long shot includes.
 constexpr int kStruckContacts = 3;
 
 /// ", cut 31 deg, 2.1 m/s"
@@ -39,7 +39,7 @@ std::string sentence(const Record& record, std::size_t index, Units units) {
         case EventType::kCueStrike:
             return fmt::format("{} is struck: {}", ball, speed(a.after));
         case EventType::kBallBall: {
-            // The one that moves meets the other.
+            // The ball that moves meets the other one.
             const bool other_moves = a.before.velocity.norm() < d.balls[1].before.velocity.norm();
             return fmt::format("{} meets {}{}", other_moves ? met : ball, other_moves ? ball : met,
                                contact(d, units));

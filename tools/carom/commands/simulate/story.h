@@ -9,10 +9,10 @@
 namespace carom::tools {
 
 /// One line per event. A long shot is told by its landmarks: the strike, the first contacts of the struck
-/// ball, what falls or leaves the table; a line counts the contacts between two landmarks.
+/// ball, and what falls or leaves the table. A line counts the contacts between two landmarks.
 std::string story(const Record& record, Units units);
 
-/// A line for every event, however many there are.
+/// One line per event, however many there are.
 std::string all_events(const Record& record, Units units);
 
 }  // namespace carom::tools

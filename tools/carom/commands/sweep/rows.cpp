@@ -17,7 +17,7 @@
 namespace carom::tools {
 namespace {
 
-/// The value of one column and shot. What a shot without a result has not is empty.
+/// The value of one column and shot. It is empty if a shot without a result does not have it.
 void append_value(std::string& row, const SweepColumn& column, const ColumnValues& values, std::size_t shot,
                   bool has_result) {
     if (column.of_result && !has_result)
@@ -69,7 +69,7 @@ SweepRows play_part(const Sweep& sweep, std::uint64_t first, std::size_t shots) 
     for (std::size_t shot = 0; shot < shots; ++shot) {
         ++rows.outcomes[static_cast<std::size_t>(batch.status[shot])];
         for (std::size_t k = 0; k < columns.size(); ++k) {
-            // A key's value stands as it was drawn.
+            // A key's value is written as it was drawn.
             if (k >= 1 && k <= keys)
                 append_csv(rows.text, std::string_view(draws[shot * keys + k - 1]));
             else

@@ -1,4 +1,4 @@
-// The table that a sweep writes: its header, and a row for each shot.
+// The table that a sweep writes: its header, and one row per shot.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
-// carom sweep: simulates many shots of one scene and writes one row for each shot.
+// carom sweep: simulates many shots of one scene and writes one row per shot.
 //
-// A row depends only on the scene, the rules, the seed and its number. The engine
-// plays a block of shots on all threads, and their rows are written in order.
+// A row depends only on the scene, the rules, the seed and its number. The engine plays a block of shots on
+// all threads, and their rows are written in order.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,10 +48,10 @@ struct SweepArgs {
 
 using Clock = std::chrono::steady_clock;
 
-/// Doubles, and what reads tables as doubles, count to there.
+/// Doubles, and programs that read tables as doubles, count this far.
 constexpr std::uint64_t kMostShots = std::uint64_t{1} << 53;
 constexpr std::uint64_t kMostShards = 1000000;
-/// A block of shots grows until it takes this long: how often the progress moves.
+/// A block of shots grows until it takes this long, which is how often the progress moves.
 constexpr std::chrono::milliseconds kBlockTime(100);
 /// [shots] Limits the memory of a block.
 constexpr std::uint64_t kLargestBlock = std::uint64_t{1} << 16;
@@ -66,7 +66,7 @@ ShotRange shard_range(const std::string& text, std::uint64_t count) {
     if (text.empty()) return {0, count, true};
     if (const auto part = numbers_in<std::uint64_t, 2>(text, '/')) {
         const auto [i, n] = *part;
-        // count * k / n, without the product of the two, which may be too large.
+        // count * k / n without the product, which may overflow.
         const auto begin = [count, n = n](std::uint64_t k) { return count / n * k + count % n * k / n; };
         if (i >= 1 && i <= n && n <= kMostShards) return {begin(i - 1), begin(i), i == 1};
     }
@@ -77,8 +77,8 @@ std::uint64_t failures(const Outcomes& outcomes) {
     return outcomes[static_cast<std::size_t>(ShotStatus::kFailed)];
 }
 
-/// Runs the shots that the table lacks, block by block, and writes their rows. The next block is played while
-/// one is waited for and written, so that no thread stands idle.
+/// Runs the missing shots of the table, block by block, and writes their rows. The next block is played while
+/// one is awaited and written, so that no thread is idle.
 Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& range, SweepStatus& status,
                     std::vector<Tally>& tallies) {
     Outcomes outcomes{};
@@ -126,7 +126,7 @@ std::string summary(const Outcomes& outcomes, const std::vector<Tally>& tallies,
         return json.dump() + "\n";
     }
     std::string text =
-        fmt::format("{}: {} in {:.2f} s on {}, {:.0f} a second\n", args.output, counted(shots, "shot"),
+        fmt::format("{}: {} in {:.2f} s on {}, {:.0f} per second\n", args.output, counted(shots, "shot"),
                     seconds, counted(static_cast<std::size_t>(jobs), "thread"),
                     static_cast<double>(shots) / std::max(seconds, 1e-9));
     for (int i = 0; i < kShotStatuses; ++i) {
@@ -175,7 +175,7 @@ int run(const SweepArgs& args) {
                              (range.last * 0xbf58476d1ce4e5b9u);
     if (!args.shard.empty() && std::filesystem::is_regular_file(args.output))
         throw UsageError(fmt::format(
-            "-o {}: this file is there, perhaps of another shard; give each its own, or remove it",
+            "-o {}: this file exists, perhaps from another shard; give each shard its own, or remove it",
             args.output));
     const int jobs =
         args.jobs > 0 ? args.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -187,9 +187,9 @@ int run(const SweepArgs& args) {
         // Another build may have other bits.
         if (!table.ends_with(play_rows(sweep, from - 1, 1).text))
             throw std::runtime_error(
-                fmt::format("{}: its last row is not what this program computes; remove it to begin anew",
+                fmt::format("{}: its last row is not what this program computes; remove it to start again",
                             table.folder()));
-        message(fmt::format("going on with {}: {} of {} shots are there", table.folder(), from - range.first,
+        message(fmt::format("continuing with {}: {} of {} shots are done", table.folder(), from - range.first,
                             range.last - range.first));
     }
     const Clock::time_point start = Clock::now();
@@ -205,7 +205,7 @@ int run(const SweepArgs& args) {
         table.keep();
         status.end("stopped");
         if (!table.folder().empty())
-            message(fmt::format("stopped; the same command goes on with {}", table.folder()));
+            message(fmt::format("stopped; run the same command to continue with {}", table.folder()));
         throw;
     }
     table.commit();
@@ -222,12 +222,11 @@ int run(const SweepArgs& args) {
 
 void add_sweep(Options& program) {
     auto [command, args] = program.command<SweepArgs>(
-        "sweep", "Many shots of one scene with values that vary: a row a shot", run);
+        "sweep", "Simulate many shots of one scene with varied values, one row per shot", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
-    Option& vary = command.option(
-        "--vary", &args.vary, "KEY=DISTRIBUTION",
-        "What varies and how, once per key: uniform(a,b), normal(sd) around the scene's value, "
-        "normal(mean,sd), integer(a,b) or list(v,...)");
+    Option& vary = command.option("--vary", &args.vary, "KEY=DISTRIBUTION",
+                                  "What varies and how, once per key: uniform(a,b), normal(sd) around the "
+                                  "scene's value, normal(mean,sd), integer(a,b) or list(v,...)");
     vary.required = true;
     command.option("--measure", &args.measures, "EXPRESSION",
                    "A column more, and a line of the summary: any measure or expression that carom describe "
@@ -240,14 +239,13 @@ void add_sweep(Options& program) {
     command.option("--jobs", &args.jobs, "J", "Threads; 0: one per core; the rows do not depend on it")
         .in(0, 256);
     command.option("--shard", &args.shard, "I/N",
-                   "Only the I-th of N parts; the files of all parts, one behind the other, are the whole "
+                   "Play only the I-th of N parts; the files of all parts, concatenated, are the whole table "
                    "(default: all)");
     command.option("--status", &args.status, "FILE",
-                   "How far it is, every second, as JSON (default: not written)");
+                   "Write the progress every second, as JSON (default: not written)");
     command.option("-o,--output", &args.output, "FILE.csv", "Table to write").required = true;
     command.footer =
-        "A sweep that was stopped or killed goes on when the same command is given again "
-        "(docs/guide/sweep.md).";
+        "To continue a sweep that was stopped or killed, run the same command again (docs/guide/sweep.md).";
 }
 
 }  // namespace carom::tools

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A kill loses no more than the last wait. The first ones are shorter, each twice the one before.
+/// A kill loses no more than the last interval. The first ones are shorter; each is twice the one before.
 constexpr std::chrono::milliseconds kFirstWait(50), kLongestWait(1000);
 
 std::string hash_line(std::string_view text) {
@@ -36,11 +36,11 @@ TableInParts::TableInParts(const std::string& path, std::uint64_t id, std::strin
     whole_.write(header);
     if (whole_.is_direct()) return;
     const std::string folder = fmt::format("{}.{:016x}.parts", file_of(path), id);
-    // Others may be able to write beside the table, and they can tell the name: links are not followed.
+    // Others may be able to write beside the table and guess the name, so links are not followed.
     std::error_code error;
     const fs::file_status there = fs::symlink_status(folder, error);
     if (fs::exists(there) && !fs::is_directory(there))
-        throw std::runtime_error(folder + ": this is no folder; remove it");
+        throw std::runtime_error(folder + ": this is not a folder; remove it");
     if (fs::create_directory(folder, error); error)
         throw std::runtime_error(folder + ": cannot make this folder: " + error.message());
     folder_ = folder;
@@ -52,7 +52,7 @@ TableInParts::TableInParts(const std::string& path, std::uint64_t id, std::strin
 TableInParts::~TableInParts() {
     lock_.reset();
     std::error_code ignored;
-    if (!folder_.empty()) fs::remove(folder_, ignored);  // unless there are parts in it
+    if (!folder_.empty()) fs::remove(folder_, ignored);  // unless it holds parts
 }
 
 std::string TableInParts::part(std::uint64_t first) const {
@@ -75,9 +75,9 @@ bool TableInParts::take_up() {
         throw std::runtime_error(
             path + ": its rows are not those that were written; remove it, and it is made again");
     if (const std::string version = said.value("version", ""); version != program_version())
-        throw std::runtime_error(
-            fmt::format("{}: this is carom {}, and the part is of carom {}; use that one, or remove {}", path,
-                        program_version(), version, folder_));
+        throw std::runtime_error(fmt::format(
+            "{}: this is carom {}, and the part was written by carom {}; use that version, or remove {}",
+            path, program_version(), version, folder_));
     found_ = text.substr(0, about);
     whole_.write(found_);
     next_ = kept_ = said.at("last");

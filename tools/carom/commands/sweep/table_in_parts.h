@@ -13,12 +13,9 @@
 namespace carom::tools {
 
 /// The table appears when it is complete. Until then its rows are kept in a folder, `path`.<id>.parts, by the
-/// rules of all sweeps (docs/guide/clusters.md, "What a resumed sweep relies on"). A part has the name of its
-/// first shot. Behind its rows it says what it holds, and the last line is the hash of all before. The next
-/// run with this path and id goes on behind them. A lock keeps two programs from doing the same work.
-///
-/// If `path` is not a regular file (/dev/null, a pipe, the process's own stream), rows are written there at
-/// once, and nothing is kept. Every failure is a std::runtime_error that names the file and the reason.
+/// rules of all sweeps (docs/guide/clusters.md, "What a resumed sweep relies on"). A part is named after its
+/// first shot. After its rows it says what it holds, and the last line is the hash of everything before. The
+/// next run with this path and id continues after them. A lock keeps two programs from doing the same work.
 class TableInParts {
   public:
     /// @param first  number of the first shot
@@ -28,14 +25,14 @@ class TableInParts {
     TableInParts& operator=(const TableInParts&) = delete;
 
     const std::string& folder() const { return folder_; }  ///< empty: nothing is kept
-    std::uint64_t next() const { return next_; }           ///< the first shot that is missing
-    std::uint64_t failed() const { return failed_; }       ///< shots before it
+    std::uint64_t next() const { return next_; }           ///< the first missing shot
+    std::uint64_t failed() const { return failed_; }       ///< failed shots before it
     /// Whether the parts that were found end with this row.
     bool ends_with(std::string_view row) const { return found_.ends_with(row); }
 
     /// Rows of the next shots, with their line ends.
     void add(std::string_view rows, std::uint64_t shots, std::uint64_t failed);
-    /// Makes a part of what was added since the last one. add() does it now and then.
+    /// Makes a part of what was added since the last one. add() also does it from time to time.
     void keep();
     void commit();
 
