@@ -626,6 +626,12 @@ Measure::~Measure() = default;
 Measure::Measure(Measure&&) noexcept = default;
 Measure& Measure::operator=(Measure&&) noexcept = default;
 
+bool Measure::is_truth() const {
+    using Kind = Node::Kind;
+    if (root_->kind == Kind::kMeasure) return std::string_view(root_->row->info.unit) == "truth";
+    return root_->kind != Kind::kValue && root_->kind != Kind::kSum;
+}
+
 bool Measure::is_number() const {
     return games::is_number(*root_);
 }

@@ -122,7 +122,7 @@ TEST(CApiBatch, BadArgumentsAreNamed) {
     const double values[] = {1.0};
     const double nan = std::nan("");
     EXPECT_EQ(carom_simulate_many(scene.get(), 1, 1, keys, values, -1.0, 1, 0, &batch), CAROM_BAD_ARGUMENT);
-    EXPECT_STREQ(carom_last_error(), "cue.sped: it names no number in [cue]; did you mean speed?");
+    EXPECT_STREQ(carom_last_error(), "cue.sped: there is no such number in [cue]; did you mean speed?");
     EXPECT_EQ(batch, nullptr);
     EXPECT_EQ(carom_simulate_many(nullptr, 1, 0, nullptr, nullptr, -1.0, 1, 0, &batch), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_simulate_many(scene.get(), 1, 1, nullptr, values, -1.0, 1, 0, &batch),

@@ -202,7 +202,7 @@ TEST(CApi, SaysWhatIsWrongWithAScene) {
     const double low[9] = {0, 0, 0}, fine[9] = {0, 0, kR};
     ASSERT_EQ(carom_scene_set_ball(h.scene, "cue", low), CAROM_OK);
     EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_BAD_SCENE);
-    EXPECT_NE(std::string(carom_last_error()).find("z has to be the sum of the two"), std::string::npos)
+    EXPECT_NE(std::string(carom_last_error()).find("set z to the sum of the two"), std::string::npos)
         << carom_last_error();
     ASSERT_EQ(carom_scene_set_ball(h.scene, "cue", fine), CAROM_OK);
     carom_cue cue;

@@ -269,18 +269,18 @@ TEST(Unequal, ModelsWithoutAFormulaAreErrorsAtTheBall) {
     };
     EXPECT_EQ(error_of(heavy), "");
     EXPECT_EQ(error_of(heavy + "[physics]\nsubsteps = 1000\n"),
-              refused("marched in substeps takes balls of one mass"));
-    EXPECT_EQ(error_of(heavy + "[balls]\nmass = 0.01\n"), refused("takes masses of a ratio up to 10"));
+              refused("with substeps needs balls of equal mass"));
+    EXPECT_EQ(error_of(heavy + "[balls]\nmass = 0.01\n"), refused("accepts mass ratios up to 10"));
     EXPECT_EQ(error_of(heavy + "[balls]\nmass = 0.1\nmu_s = 0.8\n"),
-              refused("takes balls.mu_s up to 0.75 with these masses"));
+              refused("accepts balls.mu_s up to 0.75 with these masses"));
     EXPECT_EQ(error_of(heavy + "[physics]\nball_ball = \"inelastic\"\n"), "");
     EXPECT_EQ(error_of(heavy + "[balls]\nmu_b = 0\n"), "");
     EXPECT_EQ(error_of(big + "[balls]\nmu_b = 0\n"), "");
     EXPECT_EQ(error_of(big + "[physics]\nball_ball = \"elastic\"\n"), "");
     EXPECT_EQ(
         error_of(heavy + "[[ball]]\nid = \"c\"\nposition = [0.9, 0.9]\n[physics]\nball_ball = \"elastic\"\n"),
-        "s.toml:4:1: balls \"a\" and \"b\" differ in size: clusters = \"compliant\" takes balls that are "
-        "alike; set physics.clusters = \"sequential\"");
+        "s.toml:4:1: balls \"a\" and \"b\" differ in size: clusters = \"compliant\" needs balls of equal "
+        "size; set physics.clusters = \"sequential\"");
     // The overlap is that of two spheres on one cloth.
     const std::string near =
         "[balls]\nmu_b = 0\n[[ball]]\nposition = [0.3, 0.5]\nradius = 0.04\n[[ball]]\nid = \"b\"\n"

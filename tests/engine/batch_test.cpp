@@ -531,13 +531,14 @@ TEST(Batch, BadColumnsSayWhatToDo) {
     };
     EXPECT_EQ(error("cue.speed"), "");
     EXPECT_EQ(error("cue.speed", 1), "cue.speed: there are 1 values for 2 shots; give one for each");
-    EXPECT_EQ(error("cue.sped"), "cue.sped: it names no number in [cue]; did you mean speed?");
-    EXPECT_EQ(error("cue.preset"), "cue.preset: it names no number in [cue]");
-    EXPECT_EQ(error("cue.offset"), "cue.offset: it names no number in [cue]");
-    EXPECT_EQ(error("cue.offset.z"), "cue.offset.z: it names no number in [cue]");
-    EXPECT_EQ(error("ball.cue.position.z"), "ball.cue.position.z: it names no number in [ball]");
-    EXPECT_EQ(error("ball.9.position.x"),
-              "ball.9.position.x: it names no ball; write ball.ID.position.x with one of these ids: cue, 1");
+    EXPECT_EQ(error("cue.sped"), "cue.sped: there is no such number in [cue]; did you mean speed?");
+    EXPECT_EQ(error("cue.preset"), "cue.preset: there is no such number in [cue]");
+    EXPECT_EQ(error("cue.offset"), "cue.offset: there is no such number in [cue]");
+    EXPECT_EQ(error("cue.offset.z"), "cue.offset.z: there is no such number in [cue]");
+    EXPECT_EQ(error("ball.cue.position.z"), "ball.cue.position.z: there is no such number in [ball]");
+    EXPECT_EQ(
+        error("ball.9.position.x"),
+        "ball.9.position.x: there is no such ball; write ball.ID.position.x with one of these ids: cue, 1");
     EXPECT_EQ(error("ball.1.radius"),
               "ball.1.radius: the ball has no size of its own; give it one, then vary it");
     EXPECT_EQ(error("table.pocket.p9.radius"), "table.pocket.p9.radius: the table has no such part");

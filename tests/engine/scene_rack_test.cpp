@@ -280,10 +280,10 @@ TEST(Rack, PlaceAndAngle) {
 TEST(Rack, RefusesWhatHasNoPlace) {
     const auto error = [](const std::string& keys) { return carom::test::error_of("[rack]\n" + keys); };
     EXPECT_EQ(error("game = \"nine_ball\"\nspot_ball = 10\n"),
-              "s.toml:3:13: rack.spot_ball = 10: the balls of this rack are 1 to 9; name one of them");
+              "s.toml:3:13: rack.spot_ball = 10 is not in this rack; choose 1 to 9");
     EXPECT_EQ(error("game = \"snooker\"\nposition = [0.5, 0.5]\n"),
-              "s.toml:3:12: rack.position moves a rack, and the balls of this game stand on spots of the "
-              "table; leave it out");
+              "s.toml:3:12: rack.position moves a rack, but the balls of this game have spots of their own; "
+              "leave it out");
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ TEST(Scenes, FilesThatCannotBeRead) {
 
 TEST(Scenes, TooLargeFile) {
     const std::string large = "#" + std::string(carom::kMaxFileSize, 'x');
-    EXPECT_EQ(error_of(large), "s.toml: is larger than 4 MiB; a scene file is a few lines");
+    EXPECT_EQ(error_of(large), "s.toml: is larger than 4 MiB; check that it is a scene file");
     EXPECT_EQ(error_of(kBall + "#" + std::string(carom::kMaxFileSize - kBall.size() - 1, 'x')), "");
 }
 

@@ -173,7 +173,7 @@ TEST(Validate, ChecksASceneBuiltInCode) {
     scene.ball.push_back({"1", Vec3(0.5, 0.51, scene.balls.R), Vec3::Zero(), Vec3::Zero(), 0.0, {}});
     EXPECT_NE(error().find("my scene: balls \"cue\" and \"1\" overlap"), std::string::npos) << error();
     scene.ball[1].position = Vec3(0.5, 1.5, 0.0);
-    EXPECT_NE(error().find("z has to be the sum of the two"), std::string::npos) << error();
+    EXPECT_NE(error().find("set z to the sum of the two"), std::string::npos) << error();
     scene.ball[1].position = Vec3(0.5, std::nan(""), scene.balls.R);
     EXPECT_NE(error().find("must be a finite number"), std::string::npos) << error();
     scene.ball[1].position = Vec3(0.5, 1.5, scene.balls.R);

@@ -57,8 +57,8 @@ TEST(BoxSearch, FindsEveryOverlap) {
             } else {
                 place(i);
             }
-            direct.settle();
-            tree.settle();
+            direct.rebuild_if_due();
+            tree.rebuild_if_due();
             const Box asked = random_box(rng);
             std::vector<int> a, b;
             direct.overlapping(asked, [&a](int k) { a.push_back(k); });

@@ -153,9 +153,9 @@ TEST(Stop, ARunWithoutEndHasALimitOfEvents) {
         std::optional<std::int64_t> events;
         const char *at, *why;
     } kCases[] = {
-        {std::nullopt,
-         " s after 1000000 events: ", "add [stop] with events if more shall come, or with time"},
-        {INT64_MAX, " s after 10000000 events: ", "no run may have more events"},
+        {std::nullopt, " s after 1000000 events: ",
+         "too many events; allow more with [stop] events, or end the run earlier with [stop] time"},
+        {INT64_MAX, " s after 10000000 events: ", "a run cannot have more events"},
     };
     for (const auto& c : kCases) {
         scene.stop.events = c.events;

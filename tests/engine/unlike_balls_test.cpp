@@ -62,8 +62,8 @@ TEST(UnlikeBalls, ThatRestOnEachOtherAreAnErrorByName) {
         ADD_FAILURE() << "no error";
     } catch (const std::exception& error) {
         EXPECT_NE(std::string(error.what())
-                      .find("balls 1 and 2 meet so slowly that they stay in contact, and "
-                            "differ in size"),
+                      .find("balls 1 and 2 differ in size and stay in contact, which "
+                            "is not modelled; give them the same size"),
                   std::string::npos)
             << error.what();
     }

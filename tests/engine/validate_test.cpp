@@ -346,13 +346,13 @@ TEST(Validate, SaysOfRandomMistakesWhatTheTextSays) {
 TEST(Validate, RefusesWhatNoFileCanSay) {
     Scene scene = good();
     scene.physics.ball_ball = nullptr;
-    EXPECT_EQ(by_struct(scene), "physics.ball_ball is no model; choose one");
+    EXPECT_EQ(by_struct(scene), "physics.ball_ball is not a model; choose one");
     scene = good();
     scene.effects = {{"pockets", true, {}}, {"pockets", true, {}}};
-    EXPECT_EQ(by_struct(scene), "effects.pockets is there already; keep one of the two");
+    EXPECT_EQ(by_struct(scene), "effects.pockets appears twice; keep one of the two");
     scene = good();
     scene.ball[1].id = "\xff";
-    EXPECT_EQ(by_struct(scene), "the ball id \"?\" is not UTF-8; write it so");
+    EXPECT_EQ(by_struct(scene), "the ball id \"?\" is not UTF-8; convert it");
     scene = good();
     scene.table.cloth = "sand";
     EXPECT_EQ(by_struct(scene), by_text(scene));

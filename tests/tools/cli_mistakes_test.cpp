@@ -163,8 +163,8 @@ TEST_F(Mistakes, ARecordIsNoScene) {
     ASSERT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
     for (const char* command : {"simulate", "check", "margin"})
         refused(
-            "this is JSON, and a scene is TOML; if it is a record, carom render, view, export and compare "
-            "take it",
+            "this is JSON, but a scene is TOML; if it is a record, pass it to carom render, view, export or "
+            "compare",
             {command, record});
 }
 
@@ -173,8 +173,8 @@ TEST_F(Mistakes, NumbersOfAnotherUnitAreWarnedAbout) {
         const char *scene, *warning;
     } kCases[] = {
         {"[[ball]]\nposition = [50, 45]\n",
-         "warning: ball \"cue\" lies 48.7 m beside the table; positions are in m"},
-        {"[[ball]]\nposition = [2.0, 0.45]\n", "warning: ball \"cue\" lies 0.73 m beside the table"},
+         "warning: ball \"cue\" lies 48.7 m outside the table; positions are in m"},
+        {"[[ball]]\nposition = [2.0, 0.45]\n", "warning: ball \"cue\" lies 0.73 m outside the table"},
         {"[[ball]]\n[cue]\nspeed = 2500\n[stop]\nevents = 3\n", "warning: the cue moves at 2500 m/s"},
         {"[[ball]]\nvelocity = [300, 0]\n[stop]\nevents = 3\n", "warning: ball \"cue\" starts at 300 m/s"},
         {"[table]\ncushion = []\n[balls]\nradius = 28.575\n[[ball]]\n",

@@ -31,7 +31,7 @@ const Malformed kScenes[] = {
     {"[render]\nfps = 0\n[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n",
      ":2:7: render.fps = 0 is out of range; it must be more than 0 and at most 100000 frames per second"},
     {"[table]\npreset = \"nine_foot\"\npreset = \"carom\"\n",
-     ":3:10: this key or section is there already; keep one of the two (Error while parsing key-value pair: "
+     ":3:10: this key or section appears twice; keep one of the two (Error while parsing key-value pair: "
      "cannot "
      "redefine existing string 'preset')"},
 };

@@ -161,8 +161,8 @@ TEST_F(CliSimulate, ARunThatCannotGoOnSaysWhereItStood) {
     const std::vector<std::string> lines = lines_of(result.err);
     ASSERT_EQ(lines.size(), 4u) << result.err;
     EXPECT_EQ(lines[0].rfind("carom: simulation stopped at t = 0.00", 0), 0u) << lines[0];
-    EXPECT_NE(lines[0].find("after 0 events: the impact of a and b could not be computed: the march did not "
-                            "end within its bound on steps"),
+    EXPECT_NE(lines[0].find("after 0 events: the impact of a and b could not be computed: the integration "
+                            "reached its limit of steps"),
               std::string::npos)
         << lines[0];
     EXPECT_EQ(lines[1], "last events:");

@@ -152,7 +152,7 @@ TEST(CliSweep, AnInterruptLeavesWhatWasDone) {
     const ProcessResult second = carom(breaks(100000, output));
     EXPECT_EQ(second.status, 1);
     EXPECT_EQ(second.err,
-              "carom: " + parts + "/lock: another program is writing the files that this is for\n");
+              "carom: " + parts + "/lock: another program is writing the files that this lock protects\n");
     process.interrupt();
     const ProcessResult result = process.finish("");
     EXPECT_EQ(result.status, 130);
@@ -307,7 +307,7 @@ TEST(CliSweep, AShotThatFailsIsARowAndAnExitStatus) {
     int failed = 0, stopped = 0;
     for (const std::string& line : lines_of(read_file(output))) {
         failed +=
-            line.find(",0.6,failed,") != line.npos && line.find("did not end within its bound") != line.npos;
+            line.find(",0.6,failed,") != line.npos && line.find("reached its limit of steps") != line.npos;
         stopped += line.find(",0,time,1,") != line.npos;
     }
     EXPECT_GT(failed, 0);

@@ -311,7 +311,7 @@ TEST(ImpactLine, SaysWhatIsWrong) {
     Json stuck = line;
     stuck["params"].update({{"mu_s1", 0.6}, {"mu_s2", 0.6}, {"mu_b", 4.0}});
     stuck.update({{"v1", {1, 0, 0}}, {"w1", {0, 1e6, 0}}});
-    EXPECT_EQ(error_of(stuck.dump()), "the march did not end within its bound on steps");
+    EXPECT_EQ(error_of(stuck.dump()), "the integration reached its limit of steps");
     for (const Json& whole : {line, cushion}) {
         for (const auto& item : whole.items()) {
             Json less = whole;

@@ -21,6 +21,8 @@ void add_compare(Options& program);
 void add_margin(Options& program);
 void add_accuracy(Options& program);
 void add_sweep(Options& program);
+void add_solve(Options& program);
+void add_break(Options& program);
 void add_check(Options& program);
 void add_impact(Options& program);
 void add_describe(Options& program);
@@ -59,6 +61,8 @@ int run(int argc, char** argv) {
     add_margin(program);
     add_accuracy(program);
     add_sweep(program);
+    add_break(program);
+    add_solve(program);
     add_check(program);
     add_impact(program);
     add_describe(program);

@@ -9,7 +9,7 @@
 
 namespace carom {
 
-// The motion of a ball from the time `from` on, with its height.
+// The motion of a ball from the time `from`, with its height.
 Flight Detector::flight(int ball, double from) const {
     const Segment& s = balls_.segment(ball);
     const double tau = from - s.start;
@@ -21,7 +21,7 @@ Flight Detector::flight(int ball, double from) const {
                 (length3(placed.velocity) + mover_[ball].surface)};
 }
 
-// [s] Time from `from` on until two balls meet, one of which flies, or falls into a pocket.
+// [s] Time from `from` until two balls meet, at least one of which flies or falls into a pocket.
 double Detector::time_to_flight(int a, int b, double from) const {
     const Flight one = flight(a, from), two = flight(b, from);
     const Flight relative{two.r - one.r, two.v - one.v, two.a - one.a, std::min(one.horizon, two.horizon),
@@ -29,7 +29,7 @@ double Detector::time_to_flight(int a, int b, double from) const {
     return flight_to_ball(relative, balls_.radius(a) + balls_.radius(b));
 }
 
-// [s] Time until a ball that flies over a pocket leaves its circle where there is no cloth.
+// [s] Time until a ball that flies over a pocket leaves its circle on the side without cloth.
 double Detector::time_over_pocket(int index, const Path& path, double R) const {
     const Pocket& pocket = plan_.geometry.pockets[index];
     const double enters = time_to_pocket(path, pocket.center, pocket.radius);
@@ -46,8 +46,8 @@ bool Detector::over_pocket(const Vec2& here) const {
                        [&here](const Pocket& p) { return length(here - p.center) < p.radius; });
 }
 
-// It meets noses at their height, flies over them and is then out (where the table has an end), and meets a
-// pocket only at its far side. Where it lands is its own transition.
+// A flying ball meets noses at their height. Once over them it is out (if the table has an end), and it meets
+// a pocket only at its far side. Landing is its own transition.
 void Detector::search_table_in_air(int ball) {
     Candidate& first = mover_[ball].table;
     const double start = balls_.segment(ball).start, R = balls_.radius(ball);

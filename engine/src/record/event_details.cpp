@@ -38,7 +38,7 @@ BallAtEvent around(const Record& record, std::size_t index, int ball) {
     const auto later = [](double t, const Segment& s) { return t < s.start; };
     auto first = std::lower_bound(segments.begin(), segments.end(), time, earlier);
     const auto end = std::upper_bound(first, segments.end(), time, later);
-    // No event made the motion that a ball begins with.
+    // No event caused a ball's initial motion.
     if (first == segments.begin()) ++first;
     std::size_t begin = index, last = index;
     while (begin > 0 && record.events[begin - 1].time == time) --begin;
@@ -187,7 +187,7 @@ EventDetails details_of(const Record& record, std::size_t event) {
     }
     if (!whole) return d;
     d.lost = 0.0;
-    // ball_energy() is in J over the mass of a ball without a mass of its own.
+    // ball_energy() is divided by the mass in [balls].
     for (const BallAtEvent& ball : d.balls)
         d.lost += record.balls.m *
                   (ball_energy(record, ball.ball, ball.before) - ball_energy(record, ball.ball, ball.after));

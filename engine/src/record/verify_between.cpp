@@ -19,9 +19,9 @@
 namespace carom {
 namespace {
 
-// [-] Where in a piece of motion balls are looked at besides its start.
+// [-] Points of a piece of motion at which balls are checked, besides its start.
 constexpr double kShares[] = {0.25, 0.5, 0.75};
-// [m] A centre that crosses a cushion so near to its end may go round it.
+// [m] A centre that crosses a cushion this close to its end may move around it.
 constexpr double kCrossingEnd = 1e-9;
 
 /// A ball in the present piece of motion.
@@ -29,7 +29,7 @@ struct Piece {
     std::size_t segment = 0;
     bool moves = false, pocketed = false;
     Vec2 r;               ///< [m] at the start
-    double reach = 0.0;   ///< [m] no way in this piece is longer
+    double reach = 0.0;   ///< [m] longest possible path in this piece
     double energy = 0.0;  ///< [J/kg] at the start
 };
 
@@ -96,7 +96,7 @@ class Between {
         return ball_energy(record_, static_cast<int>(ball), state);
     }
 
-    // [J/kg] One slow contact of every ball, at the speed of the largest.
+    // [J/kg] One slow contact of every ball, at the speed for the largest.
     double slow_contacts() const {
         double masses = 0.0, parting = 0.0;
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -146,8 +146,8 @@ class Between {
             middle += still ? pieces_[i].energy : energy(i, half);
         }
         if (from == times_.front()) first_energy_ = last_energy_ = start;
-        // At the start stands what slow contacts of balls in the
-        // air have added; each of them is judged at its event.
+        // At the start, allow for what slow contacts of balls in the air have added; each of them is checked
+        // at its event.
         double added = plan_.in_force(Effect::kAirborne) ? slow_contacts() : 0.0;
         for (const auto& [t, now] : {std::pair{from, start}, std::pair{half, middle}}) {
             if (now > last_energy_ + 1e-12 * first_energy_ + rounding_ + std::exchange(added, 0.0))
@@ -198,7 +198,7 @@ class Between {
         }
     }
 
-    // A fast ball may be through a cushion between two looks.
+    // A fast ball may pass through a cushion between two checks.
     void check_crossing(std::size_t ball, const CushionLine& line, double from, double to) {
         const Segment& s = segment(ball);
         const double tau = std::min(from - s.start, s.duration),

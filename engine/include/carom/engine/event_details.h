@@ -19,7 +19,7 @@ struct BallAtEvent {
     bool before_known = true, after_known = true;  ///< whether it is that of this event alone
 };
 
-/// NaN stands for whatever an event of this kind does not have, or the record does not tell.
+/// NaN marks what an event of this kind does not have, or what the record does not contain.
 struct EventDetails {
     static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -35,7 +35,7 @@ struct EventDetails {
     double closing = kNone;  ///< speed at which the two approach along the normal [m/s]
     double impulse = kNone;  ///< that ball a received [N s]
     double lost = kNone;     ///< energy that the balls of this event lost [J]
-    /// Place along the rail: 0 to 4 on short rails and 0 to 8 on long ones, from the table's corner of
+    /// Position along the rail: 0 to 4 on short rails and 0 to 8 on long ones, from the table's corner of
     /// smallest x and y. Only for cushions of a table with a width and a length.
     double diamond = kNone;
 };
@@ -47,7 +47,7 @@ EventDetails details_of(const Record& record, std::size_t event);
 /// name, and "" for nothing.
 std::string met_name(const Record& record, const Event& event);
 
-/// The point of the cushion, or the centre of the jaw, of this event that is nearest to a place.
+/// The point of the cushion, or the centre of the jaw, of this event that is nearest to a position.
 Vec2 nearest_point(const Table& table, const Event& event, const Vec2& place);
 
 /// A number of an event in tables: `carom simulate --events`, Python's Record.event_details.
@@ -58,7 +58,7 @@ struct EventColumn {
 };
 std::span<const EventColumn> event_columns();
 
-/// The numbers of event_columns() for one event. @param row  one place for each; receives NaN for nothing
+/// The numbers of event_columns() for one event. @param row  one element for each; NaN if there is no value
 void event_row(const Record& record, std::size_t event, std::span<double> row);
 
 }  // namespace carom

@@ -54,6 +54,7 @@ class Measure {
 
     const std::string& text() const { return text_; }
     bool is_number() const;  ///< whether its values are numbers
+    bool is_truth() const;   ///< whether these are 0 or 1
 
     /// @throws std::invalid_argument for a shot that the game cannot judge (games::judge)
     MeasureValue of(const Record& record) const;

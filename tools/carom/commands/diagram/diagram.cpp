@@ -10,7 +10,7 @@
 #include "base/output_file.h"
 #include "base/setup.h"
 #include "carom/engine/printable.h"
-#include "commands/diagram/drawing.h"
+#include "report/diagram.h"
 
 namespace carom::tools {
 namespace {
@@ -25,16 +25,8 @@ struct DiagramArgs {
     bool speeds = true;
 };
 
-std::string format_of(const std::string& path) {
-    for (const char* format : kDiagramFormats)
-        if (path.ends_with(format)) return format;
-    throw UsageError(fmt::format("-o {}: expected a name that ends with .svg, .pdf or .png", path));
-}
-
 int run(const DiagramArgs& args) {
-    const std::string format = format_of(args.output);
-    if (!can_draw_diagrams())
-        throw UsageError("this build of carom has no diagrams; install libcairo2-dev and build it again");
+    const std::string format = diagram_format(args.output);
     if (args.titles.size() > args.shots.size())
         throw UsageError(fmt::format("--title: {} for {}; give at most one for each",
                                      counted(args.titles.size(), "title"),

@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <future>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -18,11 +20,14 @@
 #include <vector>
 
 #include "base/console.h"
+#include "base/game_state.h"
 #include "base/options.h"
 #include "base/setup.h"
+#include "carom/engine/printable.h"
 #include "commands/sweep/rows.h"
 #include "commands/sweep/status.h"
 #include "commands/sweep/table_in_parts.h"
+#include "commands/sweep/tally.h"
 
 namespace carom::tools {
 namespace {
@@ -36,6 +41,9 @@ struct SweepArgs {
     std::string shard;  ///< "2/4"; empty: all
     std::string output;
     std::string status;  ///< a file; empty: none
+    std::vector<std::string> measures;
+    std::string game;
+    bool json = false;
 };
 
 using Clock = std::chrono::steady_clock;
@@ -65,20 +73,14 @@ ShotRange shard_range(const std::string& text, std::uint64_t count) {
     throw UsageError(fmt::format("--shard {}: expected I/N with 1 <= I <= N, as in 2/4", text));
 }
 
-/// What makes the rows.
-struct Sweep {
-    const Variation& variation;
-    kernel::Isa isa;
-    int threads;
-};
-
 std::uint64_t failures(const Outcomes& outcomes) {
     return outcomes[static_cast<std::size_t>(ShotStatus::kFailed)];
 }
 
 /// Runs the missing shots of the table, block by block, and writes their rows. The next block is played while
 /// one is awaited and written, so that no thread is idle.
-Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& range, SweepStatus& status) {
+Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& range, SweepStatus& status,
+                    std::vector<Tally>& tallies) {
     Outcomes outcomes{};
     ProgressLine line("sweep");
     auto block = 2 * static_cast<std::uint64_t>(sweep.threads);
@@ -88,8 +90,7 @@ Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& ra
         const std::uint64_t first = begun, shots = std::min(block, range.last - begun);
         begun += shots;
         next = std::async(std::launch::async, [&sweep, first, shots] {
-            return play_rows(sweep.variation, first, static_cast<std::size_t>(shots), sweep.isa,
-                             sweep.threads);
+            return play_rows(sweep, first, static_cast<std::size_t>(shots));
         });
     };
     if (begun < range.last) begin_next();
@@ -101,6 +102,7 @@ Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& ra
         const SweepRows rows = ready.get();
         table.add(rows.text, shots, failures(rows.outcomes));
         for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += rows.outcomes[i];
+        for (std::size_t i = 0; i < rows.values.size(); ++i) tallies[i % tallies.size()].add(rows.values[i]);
         if (Clock::now() - start < kBlockTime && block < kLargestBlock) block *= 2;
         status.show(table.next(), outcomes);
         line.show_bar(static_cast<long>(table.next() - range.first),
@@ -109,9 +111,20 @@ Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& ra
     return outcomes;
 }
 
-std::string summary(const Outcomes& outcomes, const SweepArgs& args, int jobs, double seconds) {
+/// What the shots that this run has played came to.
+std::string summary(const Outcomes& outcomes, const std::vector<Tally>& tallies, const SweepArgs& args,
+                    int jobs, double seconds) {
     std::uint64_t shots = 0;
     for (const std::uint64_t n : outcomes) shots += n;
+    if (args.json) {
+        nlohmann::ordered_json json = {
+            {"file", harmless(args.output)}, {"shots", shots}, {"seconds", seconds}};
+        for (int i = 0; i < kShotStatuses; ++i)
+            json["outcomes"][name(static_cast<ShotStatus>(i))] = outcomes[i];
+        json["measures"] = nlohmann::ordered_json::array();
+        for (const Tally& tally : tallies) json["measures"].push_back(tally.json());
+        return json.dump() + "\n";
+    }
     std::string text =
         fmt::format("{}: {} in {:.2f} s on {}, {:.0f} per second\n", args.output, counted(shots, "shot"),
                     seconds, counted(static_cast<std::size_t>(jobs), "thread"),
@@ -120,7 +133,20 @@ std::string summary(const Outcomes& outcomes, const SweepArgs& args, int jobs, d
         const std::uint64_t n = outcomes[i];
         if (n > 0) text += fmt::format("  {:<8}{:>10}\n", name(static_cast<ShotStatus>(i)), n);
     }
+    for (const Tally& tally : tallies) text += tally.text();
     return text;
+}
+
+std::vector<games::Measure> read_measures(const SweepArgs& args, const Scene& scene) {
+    std::optional<games::Game> game;
+    if (!args.game.empty()) game = game_of(args.game);
+    std::vector<games::Measure> measures;
+    try {
+        for (const std::string& text : args.measures) measures.emplace_back(text, scene, game);
+    } catch (const games::MeasureError& error) {
+        throw UsageError(fmt::format("--measure {}", error.what()));
+    }
+    return measures;
 }
 
 Variation read_variation(const SweepArgs& args) {
@@ -139,21 +165,27 @@ int run(const SweepArgs& args) {
     const Variation variation = read_variation(args);
     for (const std::string& warning : make_plan(variation.base(), isa).warnings)
         message("warning: " + warning);
-    // Each range of shots has its own parts.
-    const std::uint64_t id =
-        variation.fingerprint() ^ (range.first * 0x9e3779b97f4a7c15u) ^ (range.last * 0xbf58476d1ce4e5b9u);
+    const std::vector<games::Measure> measures = read_measures(args, variation.base());
+    std::uint64_t columns = 0;
+    for (const games::Measure& measure : measures)
+        for (const char c : measure.text() + args.game + '\n')
+            columns = (columns ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    // Each range of shots has parts of its own.
+    const std::uint64_t id = variation.fingerprint() ^ columns ^ (range.first * 0x9e3779b97f4a7c15u) ^
+                             (range.last * 0xbf58476d1ce4e5b9u);
     if (!args.shard.empty() && std::filesystem::is_regular_file(args.output))
         throw UsageError(fmt::format(
             "-o {}: this file exists, perhaps from another shard; give each shard its own, or remove it",
             args.output));
     const int jobs =
         args.jobs > 0 ? args.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    const Sweep sweep{variation, isa, jobs};
-    TableInParts table(args.output, id, range.header ? sweep_header(variation) : "", range.first);
+    const Sweep sweep{variation, measures, isa, jobs};
+    std::vector<Tally> tallies(measures.begin(), measures.end());
+    TableInParts table(args.output, id, range.header ? sweep_header(sweep) : "", range.first);
     const std::uint64_t from = table.next();
     if (from > range.first) {
-        // Another build may give other bits.
-        if (!table.ends_with(play_rows(variation, from - 1, 1, isa).text))
+        // Another build may have other bits.
+        if (!table.ends_with(play_rows(sweep, from - 1, 1).text))
             throw std::runtime_error(
                 fmt::format("{}: its last row is not what this program computes; remove it to start again",
                             table.folder()));
@@ -164,7 +196,7 @@ int run(const SweepArgs& args) {
     Outcomes outcomes{};
     SweepStatus status(args.status, args.output, range.first, range.last, from);
     try {
-        outcomes = write_rows(table, sweep, range, status);
+        outcomes = write_rows(table, sweep, range, status, tallies);
     } catch (const std::system_error& error) {
         throw std::runtime_error(fmt::format("not all of {} could be started ({}); use fewer with --jobs",
                                              counted(static_cast<std::size_t>(jobs), "thread"),
@@ -178,7 +210,8 @@ int run(const SweepArgs& args) {
     }
     table.commit();
     status.end("done");
-    print(summary(outcomes, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
+    print(
+        summary(outcomes, tallies, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
     if (table.failed() == 0) return kOk;
     message(fmt::format("{} failed while running; {} why", counted(table.failed(), "shot"),
                         table.failed() == 1 ? "its row says" : "their rows say"));
@@ -195,6 +228,12 @@ void add_sweep(Options& program) {
                                   "What varies and how, once per key: uniform(a,b), normal(sd) around the "
                                   "scene's value, normal(mean,sd), integer(a,b) or list(v,...)");
     vary.required = true;
+    command.option("--measure", &args.measures, "EXPRESSION",
+                   "A column more, and a line of the summary: any measure or expression that carom describe "
+                   "measures explains, as often as wanted (default: none)");
+    command.option("--game", &args.game, "GAME", "What measures such as foul judge by (default: none)")
+        .one_of(game_names());
+    command.flag("--json", args.json, "Print the summary as JSON (default: off)");
     command.option("--count", &args.count, "N", "Number of shots").required = true;
     command.option("--seed", &args.seed, "S", "Seed of all draws");
     command.option("--jobs", &args.jobs, "J", "Threads; 0: one per core; the rows do not depend on it")

@@ -27,8 +27,8 @@ struct DiagramStyle {
 /// The formats, by file extension.
 inline constexpr const char* kDiagramFormats[] = {".svg", ".pdf", ".png"};
 
-/// Whether this build can draw: it was built with cairo.
-bool can_draw_diagrams();
+/// Which of them a file has. @throws UsageError for another ending, and in a build without cairo
+std::string diagram_format(const std::string& path);
 
 /// @param format  one of kDiagramFormats  @return the file's bytes  @throws std::runtime_error
 std::string draw_diagram(const std::vector<DiagramShot>& shots, const DiagramStyle& style,

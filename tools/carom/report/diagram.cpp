@@ -1,6 +1,6 @@
 // The long side of the table runs to the right: x of the page is y of the table, and y of the page, which
 // points down, is x of the table. Each piece of a ball's motion is a parabola, which is a Bezier curve.
-#include "commands/diagram/drawing.h"
+#include "report/diagram.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
@@ -16,7 +16,9 @@
 #include <string_view>
 #include <utility>
 
+#include "base/console.h"
 #include "carom/engine/event_details.h"
+#include "carom/engine/printable.h"
 #include "carom/render/draw_list.h"
 #include "carom/render/look.h"
 #include "carom/render/table_mesh.h"
@@ -449,8 +451,10 @@ std::pair<double, double> draw_page(cairo_t* cr, const std::vector<DiagramShot>&
 
 }  // namespace
 
-bool can_draw_diagrams() {
-    return true;
+std::string diagram_format(const std::string& path) {
+    for (const char* format : kDiagramFormats)
+        if (path.ends_with(format)) return format;
+    throw UsageError(fmt::format("{}: expected a name that ends with .svg, .pdf or .png", harmless(path)));
 }
 
 std::string draw_diagram(const std::vector<DiagramShot>& shots, const DiagramStyle& style,

@@ -1,14 +1,15 @@
-// Stands in for drawing.cpp in a build without cairo.
+// Stands in for diagram.cpp in a build without cairo.
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "commands/diagram/drawing.h"
+#include "base/console.h"
+#include "report/diagram.h"
 
 namespace carom::tools {
 
-bool can_draw_diagrams() {
-    return false;
+std::string diagram_format(const std::string&) {
+    throw UsageError("this build of carom has no diagrams; install libcairo2-dev and build it again");
 }
 
 std::string draw_diagram(const std::vector<DiagramShot>&, const DiagramStyle&, const std::string&) {
