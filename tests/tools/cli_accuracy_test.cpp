@@ -98,7 +98,7 @@ TEST_F(CliAccuracyScene, RefusesBadUsage) {
         {{"accuracy", scene_, "--march", "0"}, "--march"},
         {{"accuracy", scene_, "--repeat", "0"}, "--repeat"},
         {{"accuracy", scene_, "--plot", "a.svg"}, "--plot"},
-        {{"accuracy", elastic}, "is one formula"},
+        {{"accuracy", elastic}, "is a closed formula"},
         {{"accuracy", "kernel"}, "carom-lab accuracy kernel"},
         {{"bench", "kernel"}, "run carom-lab bench"},
         {{"validate"}, "run carom-lab validate"},

@@ -155,7 +155,7 @@ TEST(ImpactLine, EveryModelOfTheEnginesTableIsThere) {
         EXPECT_TRUE(answer_impact(of_model.dump(), settings()).ok) << info->name;
     }
     const std::string error = Json::parse(answer_impact(line.dump(), settings()).json)["error"];
-    EXPECT_EQ(error.substr(error.find(": han") + 2), known);
+    EXPECT_EQ(error.substr(error.find(" han") + 1), known);
 }
 
 Json answer_of(const Json& line) {
@@ -332,14 +332,14 @@ TEST(ImpactLine, HostileLinesAreErrors) {
     std::string deep;
     for (int i = 0; i < 100000; ++i) deep += "{\"a\":";
     EXPECT_EQ(error_of(deep), "more than 8 levels of nesting");
-    EXPECT_NE(error_of("NaN").find("not JSON"), std::string::npos);
-    EXPECT_NE(error_of("{\"kind\":\"\xff\xfe\"}").find("not JSON"), std::string::npos);
-    EXPECT_NE(error_of(std::string("{\"kind\":\0\"x\"}", 13)).find("not JSON"), std::string::npos);
+    EXPECT_NE(error_of("NaN").find("not valid JSON"), std::string::npos);
+    EXPECT_NE(error_of("{\"kind\":\"\xff\xfe\"}").find("not valid JSON"), std::string::npos);
+    EXPECT_NE(error_of(std::string("{\"kind\":\0\"x\"}", 13)).find("not valid JSON"), std::string::npos);
     EXPECT_EQ(error_of("{\"kind\":1e999}"), "a number is too large");
     std::string nan = whole;
     nan.replace(nan.find("0.95"), 4, "NaN");
-    EXPECT_NE(error_of(nan).find("not JSON"), std::string::npos);
-    EXPECT_NE(error_of(whole + whole).find("not JSON"), std::string::npos);
+    EXPECT_NE(error_of(nan).find("not valid JSON"), std::string::npos);
+    EXPECT_NE(error_of(whole + whole).find("not valid JSON"), std::string::npos);
     // Finite, but its square is not: the answer is an error or finite, never NaN.
     const std::string huge = changed(ball_ball_line(), "/v1/0", 1e300);
     const ImpactAnswer answer = answer_impact(huge, settings());
