@@ -90,7 +90,7 @@ TEST_F(CliAccuracyScene, RefusesBadUsage) {
         std::vector<std::string> arguments;
         const char* message;
     } kCases[] = {
-        {{"accuracy"}, "a scene file is required"},
+        {{"accuracy"}, "no scene file given"},
         {{"accuracy", folder_.file("none.toml")}, "none.toml: "},
         {{"accuracy", scene_, "--target", "0"}, "--target 0: expected"},
         {{"accuracy", scene_, "--target", "nan"}, "--target nan: expected"},
