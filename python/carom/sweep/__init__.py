@@ -18,6 +18,5 @@ from carom.sweep._plan import Plan, SweepError, plan
 from carom.sweep._run import Progress, reduce, run
 from carom.sweep._shard import run_shard
 
-__all__ = [
-    "Check", "Plan", "Progress", "Status", "SweepError", "check", "columns", "open", "plan", "reduce", "run",
-    "run_shard", "status", "table"]
+__all__ = ["Check", "Plan", "Progress", "Status", "SweepError", "check", "columns", "open", "plan", "reduce",
+           "run", "run_shard", "status", "table"]

@@ -162,12 +162,10 @@ def arrow_schema(types: Mapping[str, tuple[str, str]], about: Mapping[str, str])
     """The columns with their units, and the table's metadata."""
     import pyarrow
 
-    kinds = {
-        "int64": pyarrow.int64(), "float64": pyarrow.float64(), "uint64": pyarrow.uint64(),
-        "text": pyarrow.string()}
-    fields = [
-        pyarrow.field(name, kinds[kind], metadata={"unit": unit} if unit else None)
-        for name, (kind, unit) in types.items()]
+    kinds = {"int64": pyarrow.int64(), "float64": pyarrow.float64(), "uint64": pyarrow.uint64(),
+             "text": pyarrow.string()}
+    fields = [pyarrow.field(name, kinds[kind], metadata={"unit": unit} if unit else None) for name,
+              (kind, unit) in types.items()]
     return pyarrow.schema(fields, metadata=dict(about))
 
 

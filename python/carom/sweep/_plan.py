@@ -197,9 +197,8 @@ def plan(
     player = Player(scene, vary, seed)
     name = os.path.basename(scene.file)
     probe = _probe(player, shots)
-    made = Plan(
-        scene.source, name, tuple(player.rules), int(seed), int(shots), int(shard), hashes, _carom.VERSION,
-        probe)
+    made = Plan(scene.source, name, tuple(player.rules), int(seed), int(shots), int(shard), hashes,
+                _carom.VERSION, probe)
     if "record_hash" in player.types():
         raise ValueError("vary: record_hash is the name of a column of its own")
     return made

@@ -95,9 +95,8 @@ class ContentHash:
 
 def about_rows(plan: Plan, first: int, last: int) -> dict[str, str]:
     """The metadata that every file and dataset of a plan holds about itself."""
-    own = {
-        "carom.plan": plan.id, "carom.version": plan.version, "carom.scene": plan.scene,
-        "carom.scene_sha256": sha256(plan.scene.encode())}
+    own = {"carom.plan": plan.id, "carom.version": plan.version, "carom.scene": plan.scene,
+           "carom.scene_sha256": sha256(plan.scene.encode())}
     return own | provenance(plan.scene, plan.vary, plan.seed, first, last)
 
 
