@@ -27,9 +27,8 @@ def test_a_record_has_the_bits_of_the_program(path):
 
 
 def test_states_are_those_of_the_samples(break_scene, tmp_path):
-    carom_program(
-        "simulate", SOURCE / "scenes/eight_ball_break.toml", "--samples", tmp_path / "s.csv", "--sample-dt",
-        0.25)
+    carom_program("simulate", SOURCE / "scenes/eight_ball_break.toml", "--samples", tmp_path / "s.csv",
+                  "--sample-dt", 0.25)
     record = carom.simulate(break_scene)
     header, *lines = rows_of(tmp_path / "s.csv")
     rows = [dict(zip(header, line)) for line in lines]
