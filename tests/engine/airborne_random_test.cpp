@@ -39,8 +39,8 @@ void add_if_valid(Scene& scene, const BallStart& ball) {
     if (!is_valid(scene)) scene.ball.pop_back();
 }
 
-/// Three to six balls that touch or nearly do, and one or two
-/// that come down on them; those that have no room are left out.
+/// Three to six balls that touch or nearly do, and one or two that come down on them; balls without room are
+/// left out.
 void add_pile(Scene& scene, Generator& random) {
     const double R = scene.balls.R, apart = 2.0 * R + (random.next() % 3) * random.uniform(0.0, 2e-4);
     const double x = random.uniform(0.2, scene.table.width - 0.2),
@@ -116,7 +116,7 @@ Scene flying_scene(std::uint64_t seed) {
     return scene;
 }
 
-/// Flights, pockets anywhere, racks and odd numbers at once: what the families of one kind each leave out.
+/// Flights, pockets anywhere, racks and odd numbers together, which the families of one kind each leave out.
 Scene mixed_scene(std::uint64_t seed) {
     Scene scene = flying_scene(seed);
     Generator random(seed + 1000000007);
@@ -195,7 +195,7 @@ TEST(Airborne, TheOrderOfTheBallsDoesNotMatter) {
     }
 }
 
-// Where nothing calls for it, forcing the effect on changes no bit.
+// If nothing calls for it, forcing the effect on changes no bit.
 TEST(Airborne, ForcedOnWithoutNeedItChangesNothing) {
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         Scene scene = RandomScene(seed).make();
@@ -262,14 +262,14 @@ TEST(Airborne, MixedScenesKeepTheLaws) {
     EXPECT_GT(ran, static_cast<int>(count / 2));
 }
 
-// A run that stopped goes on with the same bits, from any event.
+// A run that was stopped continues with the same bits, from any event.
 TEST(Airborne, ResumesWithTheSameBits) {
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         const Scene scene = seed % 2 == 0 ? mixed_scene(seed) : flying_scene(seed);
         if (scene.ball.empty() || !is_valid(scene)) continue;
         const Plan whole = plan_of(scene);
         const Record all = simulate(whole);
-        // After every event, or after a hundred of them where a pile trembles.
+        // After every event, or after every hundredth if a pile trembles.
         const auto events = static_cast<std::int64_t>(all.events.size());
         for (std::int64_t after = 0; after < events; after += std::max<std::int64_t>(1, events / 100)) {
             Scene cut = scene;

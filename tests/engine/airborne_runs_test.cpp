@@ -79,8 +79,8 @@ TEST(Airborne, SlowContactsOfLargeBalls) {
     }
 }
 
-// One falls into the pocket while the other comes down on it: they overlapped
-// by 9 mm, as the pair was looked at again when the upper one lay.
+// One falls into the pocket while the other comes down on it. They overlapped by 9 mm, because the pair was
+// checked again only when the upper one lay still.
 TEST(Airborne, DownOnABallThatFalls) {
     Scene scene = empty_scene();
     scene.table.pockets = {{"hole", {0.5, 0.0}, 0.2, 0.08}};
@@ -97,8 +97,7 @@ TEST(Airborne, DownOnABallThatFalls) {
     EXPECT_GT(met, 10);
 }
 
-// mathavan_2010 keeps more of the speed than the law in
-// space that throws the ball up: 15 % came from nowhere.
+// mathavan_2010 keeps more speed than the law in space that throws the ball up: 15 % came from nowhere.
 TEST(Airborne, AHopTakesNoMoreThanTheCushionLost) {
     int hops = 0;
     for (const char* model : {"mathavan_2010", "han_2005", "impulse", "stronge", "smooth"}) {
@@ -124,8 +123,8 @@ TEST(Airborne, AHopTakesNoMoreThanTheCushionLost) {
     EXPECT_GT(hops, 10);
 }
 
-// A ball that bounces loses as much speed to the cloth as one that
-// slides all the time, but for what throwing it up would have taken.
+// A bouncing ball loses as much speed to the cloth as one that slides all the time, except what throwing it
+// up would take.
 TEST(Airborne, BouncesBrakeAsSlidingDoes) {
     Scene scene = empty_scene();
     add_ball(scene, "a", Vec3(0.0, 0.0, scene.balls.R), Vec3(4.0, 0.0, 1.5));
@@ -138,7 +137,7 @@ TEST(Airborne, BouncesBrakeAsSlidingDoes) {
                 2.0 * scene.balls.mu_s * bounce_end(scene.balls.R, 9.81));
 }
 
-// Of a fall from so low the rounding of the height is a share of the energy that shows.
+// In a fall from this low, rounding the height is a visible share of the energy.
 TEST(Airborne, FallsFromNextToNothingRaiseNoAlarm) {
     for (int k = 1; k <= 200; ++k) {
         Scene scene = empty_scene();
@@ -250,7 +249,7 @@ TEST(Airborne, ABallThatLeftTheTableComesToRestOnTheFloor) {
     EXPECT_TRUE(r.orientation_at(0, r.duration).isApprox(r.orientation_at(0, landed), 1e-12));
 }
 
-// An island in the middle: without a bed, whoever flies over a cushion of it is out.
+// An island in the middle: there is no bed, so a ball that flies over one of its cushions is out.
 TEST(Airborne, ABedSaysWhereTheTableEnds) {
     Scene scene = empty_scene();
     scene.table = Table();
@@ -285,7 +284,7 @@ TEST(Airborne, ABedNeedsNoCushions) {
     EXPECT_NEAR(first(r, EventType::kBallOut)->time, 0.25, 1e-15);
 }
 
-// Beyond the bed, but over a pocket: it is the pocket's far side that decides.
+// Beyond the bed but over a pocket, the pocket's far side decides.
 TEST(Airborne, APocketReachesBeyondTheBed) {
     Scene scene = empty_scene();
     scene.table.pockets = {{"", Vec2(0.99, 0.5), 0.06, 0.1}};
@@ -392,7 +391,7 @@ TEST(Airborne, Piles) {
     }
 }
 
-// The energy rises in marked events alone: without the marks the record breaks the law.
+// The energy rises only in marked events: without the marks the record breaks the law.
 TEST(Airborne, SlowContactsAreMarked) {
     const Scene scene = pile(0.0, 1e-3);
     Record r = run_verified(scene);
@@ -406,7 +405,7 @@ TEST(Airborne, SlowContactsAreMarked) {
     EXPECT_EQ(violation->law, "U4");
 }
 
-// Exactly above each other, or above a nose, they tremble for ever, however many there are: an error says so.
+// Exactly above each other, or above a nose, any number of balls trembles forever: an error says so.
 TEST(Airborne, WhatBalancesIsAnError) {
     const double D = 2.0 * scene_radius();
     struct Case {

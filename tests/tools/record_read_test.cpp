@@ -1,4 +1,4 @@
-// The reader of records: what it says about a file that is wrong, old or hostile. No file crashes it.
+// The reader of records: what it says about a wrong, old or hostile file. No file crashes it.
 #include <gtest/gtest.h>
 #include <pthread.h>
 
@@ -164,7 +164,7 @@ TEST(RecordFile, Version1IsReadWithANote) {
     const Record old = parse_record(version_1().dump(), "old.json", &notes);
     ASSERT_EQ(notes.size(), 1u);
     EXPECT_NE(notes[0].find("version 1 of the format lacks mu_b_fit"), std::string::npos) << notes[0];
-    // All else is there.
+    // Everything else is present.
     Record expected = sample_record();
     BallParams& balls = expected.balls;
     balls.mu_b_more = balls.mu_b_fall = 0.0;
