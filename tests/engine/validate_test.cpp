@@ -161,6 +161,12 @@ const std::map<std::string, Mistake>& mistakes() {
              s.ball[0].height = 0.1;
              s.ball[0].position.z() += 0.1;
          }},
+        {"ball_behind_rail",
+         [](Scene& s) {
+             place(s, 0, -0.05, 1.0);
+             s.ball[0].height = 0.2;
+             s.ball[0].position.z() += 0.2;
+         }},
         {"bed_without_surface", [](Scene& s) { s.table.bed = Rectangle(0.0, 1.0, 2.0, 1.0); }},
         {"bed_of_planar_scene",
          [](Scene& s) {

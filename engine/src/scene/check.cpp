@@ -227,6 +227,29 @@ void check_bed(const Section& top, const Scene& scene) {
     }
 }
 
+/// Refuses balls in the air behind the cushions of a table by name: they would come down on its rail.
+void check_rails(const Section& top, const Scene& scene) {
+    const Table& table = scene.table;
+    if (table.preset.empty() || table.bed) return;
+    const Vec2 low = table.corner, high = low + Vec2(table.width, table.length);
+    // Exactly above a nose it is behind it if it moves there.
+    const auto next = [](double x, double v) {
+        constexpr double kFar = std::numeric_limits<double>::infinity();
+        return v == 0.0 ? x : std::nextafter(x, v > 0.0 ? kFar : -kFar);
+    };
+    for (const BallStart& ball : scene.ball) {
+        const Vec2 p(next(ball.position.x(), ball.velocity.x()), next(ball.position.y(), ball.velocity.y()));
+        if (!ball.flies() || is_inside(Rectangle(low.x(), low.y(), high.x(), high.y()), p)) continue;
+        // Between two jaws there is cloth, at most R beyond the line of the noses, and then the pocket.
+        const double R = scene.size_of(ball).R;
+        const bool in_mouth = std::any_of(table.pockets.begin(), table.pockets.end(), [&](const Pocket& k) {
+            return length(p - k.center) < k.radius + 2.0 * R;
+        });
+        if (in_mouth) continue;
+        top.fail(ball.where, "ball {} starts in the air behind the cushions; move it", in_quotes(ball.id));
+    }
+}
+
 /// Whether a ball of the scene may ever leave the cloth.
 bool may_fly(const Scene& scene) {
     const bool impacts = scene.physics.ball_ball->free || scene.balls.e_h > 0.0;
@@ -296,6 +319,7 @@ void check_numbers(const Section& top, const Scene& scene, Change change) {
     check_cloth(top, scene);
     check_vertical(top, scene);
     check_bed(top, scene);
+    check_rails(top, scene);
     check_noses(top, scene);
     check_sizes(top, scene);
     check_cushion_model(top, scene);
