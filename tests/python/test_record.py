@@ -155,7 +155,7 @@ def test_the_final_scene_is_the_next_shot(break_scene):
         assert all((place == end[ball]).all() for ball, place in zip(after.ids, after.positions))
         assert after == record.final_scene().replace(cue={"speed": 0.5, "aim_deg": 50 * shot})
     other = carom.Scene(ball=[{"id": "x"}])
-    with pytest.raises(ValueError, match="other balls"):
+    with pytest.raises(ValueError, match="different balls"):
         record.final_scene(scene=other)
     with pytest.raises(carom.SceneError, match=r'no ball "nobody"'):
         record.final_scene(cue={"ball": "nobody"})
