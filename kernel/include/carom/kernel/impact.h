@@ -1,7 +1,8 @@
 // Ball-ball impact: the types that every kernel shares.
 //
 // Units are SI. The frame is right-handed, z up from the cloth. An impact is planar: both centres are at one
-// height and the vertical velocities are left as they are.
+// height and the vertical velocities are left as they are. If the radii differ, the larger ball stands
+// higher.
 #pragma once
 
 namespace carom::kernel {
@@ -19,9 +20,9 @@ enum class ClothSlip : unsigned char {
     kAsPublished,  ///< u = (v_x + R w_y, v_y - R w_x): the published code; feeds energy in; for parity only
 };
 
-/// Parameters of one impact between balls of equal radius.
+/// Parameters of one impact.
 struct ImpactParams {
-    double R;      ///< radius of both balls [m], > 0
+    double R;      ///< radius of ball 1 [m], > 0
     double m;      ///< mass of ball 1 [kg], > 0
     double mu_s1;  ///< sliding friction of ball 1 on the cloth, >= 0
     double mu_s2;  ///< sliding friction of ball 2 on the cloth, >= 0
@@ -29,9 +30,12 @@ struct ImpactParams {
     /// Coefficient of restitution, 0..1 (mathavan: energetic, W_restitution = e_b^2 W_compression)
     double e_b;
     ClothSlip cloth_slip = ClothSlip::kConsistent;
-    /// Mass of ball 2 over that of ball 1. ToleranceFunction takes 1/kLargestMassRatio to kLargestMassRatio
-    /// (tolerance.h); to every other kernel one that is not 1 is kBadParameter.
+    /// Mass and radius of ball 2 over those of ball 1. The impacts by tolerance and the marches take them up
+    /// to kLargestMassRatio and kLargestRadiusRatio (tolerance.h), or over those; to the closed forms one
+    /// that is not 1 is kBadParameter. Of two radii the larger ball's centre is as much higher as it is
+    /// larger.
     double mass_ratio = 1.0;
+    double radius_ratio = 1.0;
 };
 
 enum class ImpactStatus : unsigned char {

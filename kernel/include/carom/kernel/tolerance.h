@@ -18,18 +18,25 @@ inline constexpr double kLoosestTolerance = 1e-1;
 /// during an impact, as the equations that are solved assume.
 inline constexpr double kLargestFriction = 1.0;
 
-/// The mass of one ball may be this multiple of the other's: so far the bound on the error is tested.
-inline constexpr double kLargestMassRatio = 10.0;
+/// The mass of one ball may be this multiple of the other's, and the radius that one.
+inline constexpr double kLargestMassRatio = 1e6, kLargestRadiusRatio = 2.0;
+/// Balls of one radius are solved by the fast methods up to this ratio of their masses: so far their bound on
+/// the error is tested.
+inline constexpr double kFastMassRatio = 10.0;
 
 /// [-] What an impulse does to a ball of mass m, as a share of what it does to one of two equal balls with
 /// the reduced mass that m and `other` have: 2 other/(m + other), from 0 to 2. The friction of the pressed
-/// ball on the cloth acts with it: its product with mu_s may be kLargestFriction at most.
+/// ball on the cloth acts with it.
 constexpr double impulse_share(double m, double other) {
     return 2.0 / (1.0 + m / other);
 }
 
-/// Solves one impact between balls of one radius; the masses
-/// may differ (docs/reference/physics.md, equation 12).
+/// Whether the masses, radii and frictions of an impact have a solution by tolerance and by the march; of
+/// `params` nothing else is read.
+bool sizes_have_solution(const ImpactParams& params) noexcept;
+
+/// Solves one impact of two balls of any masses and radii (docs/reference/physics.md, "Balls of different
+/// size"). Two radii cost some ten times as much.
 ///
 /// @param tolerance  largest error of any component of v and of R w after the impact, as a share of the
 /// approach speed; a tolerance looser than 1e-3 is solved as 1e-3. Rounding adds a few units in the last
