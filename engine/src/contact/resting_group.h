@@ -8,11 +8,13 @@
 // velocity with which it would roll, and u = v - s its slip:
 //   v' = v + P + f - d,  s' = s + 5/2 (C - f) - d,  u' = u + P - 5/2 C + 7/2 f
 // with the pushes P = sum of +-J n, the couples C = -sum of f_z J n of the vertical friction f_z J between
-// two balls, the friction of the cloth f, and the resistance d of a rolling ball. The friction opposes the
-// slip at the end: f = -mu_s g h u'/|u'|, or whatever ends the slip where less is enough; d likewise opposes
-// the velocity at the end. So a ball stops, rolls, or slides by what the whole interval does to it, and no
-// interval is too short for a direction that reverses. The impulses J >= 0 of the contacts fulfil J >= 0, gap
-// rate at the end >= 0, J x rate = 0.
+// two balls, the friction of the cloth f, and the resistance d of a rolling ball. J is per mass of the
+// lightest ball, and of what it does a heavier ball gets its share (Body::ease). The line of centres of two
+// balls of different radius is tilted, so that J loads the cloth under the smaller one. The friction opposes
+// the slip at the end: f = -mu_s g h u'/|u'|, or whatever ends the slip where less is enough; d likewise
+// opposes the velocity at the end. So a ball stops, rolls, or slides by what the whole interval does to it,
+// and no interval is too short for a direction that reverses. The impulses J >= 0 of the contacts fulfil J >=
+// 0, gap rate at the end >= 0, J x rate = 0.
 #pragma once
 
 #include <vector>
@@ -54,13 +56,15 @@ struct Body {
     bool guided = false;
     Vec2 guide = Vec2::Zero();
     double load = 1.0;  ///< share of the weight that the cloth supports
+    double R = 0.0;     ///< [m]
+    double ease = 1.0;  ///< mass of the lightest ball over that of this one: how much an impulse moves it
 
     // At the end.
     Mode mode = Mode::kResting;
     Vec2 v_end = Vec2::Zero(), s_end = Vec2::Zero();
     Vec2 push = Vec2::Zero(), couple = Vec2::Zero();  ///< P and C
     double lift = 0.0;                                ///< vertical impulse of the contacts
-    double impulses = 0.0;                            ///< sum of |J|, for rounding
+    double impulses = 0.0;                            ///< sum of |J| per mass, for rounding
     Matrix by_push, by_couple;                        ///< derivatives of v_end
     Vec2 by_lift = Vec2::Zero();                      ///< the same: less load, less friction
 
@@ -79,13 +83,14 @@ struct Link {
     bool walled = false;                ///< cannot be stabilised (between opposing fixed normals)
     double turning = 0.0;               ///< [m/s^2] what the turning normal adds to the gap's acceleration
     double friction_z = 0.0;            ///< f_z, on ball i
-    double J = 0.0;                     ///< [m/s] impulse per mass
+    double tilt = 0.0;                  ///< of the normal, upwards from i to j: vertical share over level one
+    double J = 0.0;                     ///< [m/s] level impulse per mass of the lightest ball
 };
 
 struct Group {
     RestingGroup& group;
     const RestingSurroundings& around;
-    const MotionParams& motion;
+    const MotionParams& motion;  ///< of the first ball: the frictions, which all balls share
     double now;
     std::vector<Body> bodies;  ///< as group.balls
     std::vector<Link> links;   ///< as group.contacts

@@ -1,7 +1,5 @@
 #include "loop/resting_contacts.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -109,11 +107,6 @@ bool RestingContacts::try_begin(const Approach& a, double restitution) {
         falls = true;
     }
     if (falls) return true;
-    if (partner >= 0 && plan_.sizes[c.ball] != plan_.sizes[partner])
-        log_.fail(
-            fmt::format("balls {} and {} meet so slowly that they stay in contact, and differ in size: that "
-                        "contact is not modelled; make the two alike",
-                        log_.id(c.ball), log_.id(partner)));
     contacts_.push_back({.contact = c, .n = a.n, .began = balls_.now()});
     log_.event(with_phase(EventPhase::kHold, c, plan_.geometry), c);
     return true;
@@ -247,8 +240,11 @@ RestingGroup RestingContacts::group_of(int ball, Transitions transitions) {
         }
     }
     RestingGroup group;
+    double lightest = plan_.sizes[ball].m;
+    for (const int b : members) lightest = std::min(lightest, plan_.sizes[b].m);
     for (const int b : members) {
-        RestingBall member{b, balls_.position(b), balls_.velocity(b), balls_.spin(b), {}};
+        RestingBall member{b,  balls_.position(b), balls_.velocity(b),         balls_.spin(b),
+                           {}, &balls_.motion(b),  plan_.sizes[b].m / lightest};
         const Segment& s = balls_.segment(b);
         if (transitions == Transitions::kDue && has_come_to_transition(s))
             end_transition(member, s.state, balls_.radius(b));
@@ -273,7 +269,7 @@ void RestingContacts::solve(int ball, Transitions transitions) {
     log_.note_long_round();
     RestingGroup group = group_of(ball, transitions);
     bool any_released = release_past_ends(group);
-    solve_resting(group, {plan_.geometry, plan_.balls, plan_.gravity}, balls_.motion(ball), balls_.now());
+    solve_resting(group, {plan_.geometry, plan_.balls, plan_.gravity}, balls_.now());
     if (transitions == Transitions::kDue) log_transitions(group);
     for (const RestingContact& c : group.contacts) {
         if (c.released) {

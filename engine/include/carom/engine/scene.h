@@ -469,6 +469,10 @@ struct Scene {
         return std::all_of(ball.begin(), ball.end(),
                            [&](const BallStart& b) { return size_of(b) == size_of(ball.front()); });
     }
+    bool of_one_radius() const {
+        return std::all_of(ball.begin(), ball.end(),
+                           [&](const BallStart& b) { return size_of(b).R == size_of(ball.front()).R; });
+    }
     bool operator==(const Scene&) const = default;
 };
 inline constexpr const char* kBallPresets[] = {"pool",         "snooker",         "carom",
