@@ -204,6 +204,9 @@ class Checker {
             Vec3 n3 = after2->r - after1->r;
             if (!free) n3.z() = 0.0;
             n3.normalize();
+            // Two radii on the cloth touch along a tilted line.
+            const double S = free ? 0.0 : (R2 - R1) / (R1 + R2), C = std::sqrt(1.0 - S * S);
+            const Vec3 line = S == 0.0 ? n3 : Vec3(C * n3.x(), C * n3.y(), S);
             // A slow contact holds a ball that lies on the cloth, and below bounce_end() a ball stays there.
             const bool lies = !flies(after1->state) || !flies(after2->state);
             if (free && lies) continue;
@@ -214,18 +217,20 @@ class Checker {
                 dv2(after2->v.x() - v2.x(), after2->v.y() - v2.y(), up2);
             const Vec3 change = m1 * dv1 + m2 * dv2;
             const Vec3 dw1 = m1 * R1 * (after1->w - w1), dw2 = m2 * R2 * (after2->w - w2);
-            // During the whole impact the friction of the cloth is at most mu_s times
-            // the vertical friction, which is at most mu_b times the normal impulse.
+            // During the whole impact the friction of the cloth is at most mu_s times the vertical impulse.
+            // That is the vertical friction, at most mu_b times the normal impulse, and the tilt's share of
+            // that impulse.
             const double J_n = std::max(m1 * std::abs(dv1.dot(n3)), m2 * std::abs(dv2.dot(n3)));
             const bool cloth = !free && plan_.balls.mu_s > 0.0 && plan_.ball_ball->reads_cloth;
+            const double mu_b = plan_.balls.ball_friction().most(), steep = std::abs(S);
             const double limit =
-                cloth ? plan_.balls.mu_s * (plan_.balls.mu_b + plan_.balls.mu_b_more) * J_n : 0.0;
+                cloth ? plan_.balls.mu_s * (C * mu_b + steep) * J_n / (C - steep * mu_b) : 0.0;
             // A straight shot meets that limit exactly, and an impact is solved to a tolerance.
             const double solved = cloth ? (m1 + m2) * velocity_error((v1 - v2).dot(n3)) : 0.0;
             if (change.norm() > limit + solved + 64.0 * kEpsilon * scale)
                 report("U5", "the impact changes the pair's momentum by {:.3g} m/s", change.norm());
             const double rounding = 1e-12 * scale;
-            if (!cloth && (std::abs(dw1.dot(n3)) > rounding || std::abs(dw2.dot(n3)) > rounding ||
+            if (!cloth && (std::abs(dw1.dot(line)) > rounding || std::abs(dw2.dot(line)) > rounding ||
                            (dw1 - dw2).norm() > rounding))
                 report(
                     "U6",
