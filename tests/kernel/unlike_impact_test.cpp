@@ -371,7 +371,7 @@ TEST(UnlikeImpact, ABatchSolvesThemOneByOne) {
 TEST(UnlikeImpact, RefusedWhereFrictionCouldHold) {
     Generator rng(88);
     Impact i = unlike(rng);
-    for (const double ratio : {0.0, 0.49, 2.01, std::numeric_limits<double>::quiet_NaN()}) {
+    for (const double ratio : {0.0, 0.249, 4.01, std::numeric_limits<double>::quiet_NaN()}) {
         i.params.radius_ratio = ratio;
         EXPECT_EQ(solve(i, 1e-6).status, ImpactStatus::kBadParameter) << ratio;
     }

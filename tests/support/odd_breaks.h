@@ -42,7 +42,7 @@ class OddBreak {
         Physics& physics = scene_.physics;
         if (kind < 0.1) physics.ball_ball = ball_ball_model("two_step");
         if (kind >= 0.1 && kind < 0.15) physics.ball_ball = ball_ball_model("elastic");
-        if (kind >= 0.15 && kind < 0.2) physics.substeps = 100;
+        if (kind >= 0.15 && kind < 0.2) physics.substeps = 1000;
         const double clusters = uniform(0.0, 1.0);
         if (clusters < 0.1) physics.clusters = ClusterModel::kSequential;
         if (clusters >= 0.1 && clusters < 0.15) physics.clusters = ClusterModel::kRigid;

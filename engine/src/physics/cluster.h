@@ -46,11 +46,11 @@ struct ClusterContact {
 
 struct ClusterSettings {
     double R;  ///< [m]
-    double mu_s, mu_b, e_b;
+    double mu_s = 0.0, mu_b = 0.0, e_b = 1.0;
     bool published_cloth_slip = false;
-    double epsilon;       ///< regularisation of the friction directions, in units of V
-    double longest_step;  ///< in units of L / V
-    kernel::ContactPhaseFunction integrate;
+    double epsilon = kClusterEpsilon;    ///< regularisation of the friction directions, in units of V
+    double longest_step = kClusterStep;  ///< in units of L / V
+    kernel::ContactPhaseFunction integrate = nullptr;  ///< not read where the balls are unlike or in space
     /// At a slip of u m/s the friction between balls is mu_b + mu_b_more exp(-mu_b_fall u).
     double mu_b_more = 0.0, mu_b_fall = 0.0;
     bool turns = true;    ///< false: all normals stay as the contacts give them

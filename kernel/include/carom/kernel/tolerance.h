@@ -19,7 +19,7 @@ inline constexpr double kLoosestTolerance = 1e-1;
 inline constexpr double kLargestFriction = 1.0;
 
 /// The mass of one ball may be this multiple of the other's, and the radius that one.
-inline constexpr double kLargestMassRatio = 1e6, kLargestRadiusRatio = 2.0;
+inline constexpr double kLargestMassRatio = 1e6, kLargestRadiusRatio = 4.0;
 /// Balls of one radius are solved by the fast methods up to this ratio of their masses: so far their bound on
 /// the error is tested.
 inline constexpr double kFastMassRatio = 10.0;
