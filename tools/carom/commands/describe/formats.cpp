@@ -239,6 +239,7 @@ std::string scene_schema() {
     table["properties"]["pocket"] = list_of(object_of(kPocketFields, {}, kScene), kMaxTableParts);
     Json balls = object_of(kBallPresetFields, Scene{}, kScene);
     add_properties(balls, kBallFields, make_ball_params(Scene{}.ball_preset), kScene);
+    balls["properties"]["cue"] = object_of(kSizeFields, {}, kScene);
     Json ball = object_of(kBallStartFields, BallStart{}, kScene);
     add_properties(ball, kSizeFields, {}, kScene);
     Json effects = object_schema();
