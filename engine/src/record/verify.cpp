@@ -9,6 +9,7 @@
 #include "carom/engine/airborne.h"
 #include "carom/engine/tolerances.h"
 #include "physics/motion.h"
+#include "plan/lossless.h"
 #include "record/gaps.h"
 #include "record/verify_between.h"
 #include "record/verify_effects.h"
@@ -51,6 +52,7 @@ class Checker {
         double last_time = 0.0, last_energy = energy_at(record_, 0.0);
         const double first_energy = std::max(last_energy, first_energy_after_cue());
         const double rounding = height_rounding(record_);
+        const bool lossless = loses_nothing(plan_) && !plan_.scene.physics.substeps;
         for (event_ = 0; event_ < record_.events.size() && !found_; ++event_) {
             const Event& e = record_.events[event_];
             if (!(e.time >= last_time))
@@ -69,6 +71,9 @@ class Checker {
             const double allowed = 1e-12 * first_energy + rounding + slow_contacts(e.time);
             if (keeps_energy(plan_) && energy > last_energy + allowed)
                 report("U4", "energy rises from {:.17g} to {:.17g} J/kg", last_energy, energy);
+            if (lossless && !errs_by_steps(e.time) && energy < last_energy - allowed)
+                report("U4", "energy falls from {:.17g} to {:.17g} J/kg, and nothing takes any", last_energy,
+                       energy);
             last_energy = energy;
         }
         check_impacts();
@@ -94,6 +99,15 @@ class Checker {
     double first_energy_after_cue() const {
         const bool cue = !record_.events.empty() && record_.events[0].type == EventType::kCueStrike;
         return cue ? energy_at(record_, record_.events[0].time) : 0.0;
+    }
+
+    // Whether the present instant has a cluster, whose contacts are integrated in steps, or the cue.
+    bool errs_by_steps(double time) const {
+        for (std::size_t k = event_ + 1; k-- > 0 && record_.events[k].time == time;) {
+            const EventType type = record_.events[k].type;
+            if (type == EventType::kBallCluster || type == EventType::kCueStrike) return true;
+        }
+        return false;
     }
 
     // [J/kg] What slow contacts of balls in the air may add at an instant: each parts at parting_speed().

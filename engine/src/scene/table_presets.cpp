@@ -144,8 +144,8 @@ PocketTable snooker_table() {
 PocketTable english_pool_table() {
     constexpr double kBalls = 0.0254 / 0.02625;
     PocketTable t = snooker_table();
-    t.length = 6.0 * 0.3048;
-    t.width = 3.0 * 0.3048;
+    t.length = 1.8288;  // 6 ft
+    t.width = 0.9144;
     for (double* length :
          {&t.nose_height, &t.corner_mouth, &t.corner_depth, &t.corner_radius, &t.corner_jaw_radius,
           &t.side_mouth, &t.side_depth, &t.side_radius, &t.side_jaw_radius})

@@ -21,7 +21,9 @@ struct Violation {
 /// Checks a record after every event, U3 and U4 between the events, too; the first violation, or nothing.
 ///   U1 every number finite                         U2 times never decrease
 ///   U3 no penetration deeper than 1e-12 m, and what the rounding of speeds has added up to
-///   U4 energy never rises (slack 1e-12 of the first)
+///   U4 energy never rises (slack 1e-12 of the first), and is kept where nothing takes any: without friction
+///   and
+///      pockets, with all restitutions 1, but for clusters and the march, which err by their steps
 ///   U5 a ball-ball impact keeps the pair's momentum up to the cloth's impulse and the tolerance to which the
 ///   impact is
 ///      solved; exactly where mu_s = 0
