@@ -120,6 +120,9 @@ class OddBreak {
         cue.velocity = {speed * std::cos(angle), speed * std::sin(angle), 0.0};
         if (chance(0.5)) cue.spin = rolling_spin(cue.velocity.x(), cue.velocity.y(), size.R);
         if (chance(0.3)) cue.spin.z() = uniform(-100.0, 100.0);
+        // Through the air, and hops at the cushions.
+        if (chance(0.1)) cue.velocity.z() = uniform(0.3, 2.0);
+        if (chance(0.1)) scene_.balls.e_h = 0.2;
     }
 
     reference::Generator rng_;

@@ -61,8 +61,7 @@ TableTouches table_touches(const Plan& plan, const Balls& balls, const Detector&
 /// Replaces velocity and spin of a ball by those after it has met all touches at once. One touch: its model.
 /// Two: the sum of their impulses, each from the incoming state, scaled so that the ball leaves either with
 /// the speed with which it would leave that one alone. Where this would add energy, and for more than two:
-/// the mean of the states after each, until none closes (docs/design/hard_cases.md, "Two contacts at one
-/// instant").
+/// the mean of the states after each, until none closes (docs/reference/physics.md, "Cushion impact").
 /// @return false where a model has no solution
 bool bounce(const Plan& plan, const TableTouches& touches, Vec3& v, Vec3& w);
 
