@@ -61,13 +61,12 @@ void read_ball_list(const Section& top, Scene& scene) {
     const auto tables = top.tables("ball");
     if (!tables) return;
     const auto keys = joined(keys_of(kBallStartFields, Files::kScene), keys_of(kSizeFields, Files::kScene));
-    Scene cue_only;
-    if (Cue cue; scene.cue_ball && top.read("cue", kCueFields, cue)) cue_only.cue = cue;
+    const std::string struck = top.peek("cue", "ball").value_or(Cue().ball);
     for (const toml::table* table : *tables) {
         const Section s(*table, top.file(), "ball", keys);
         if (scene.ball.size() == kMaxBalls)
             s.fail(s.where(), "more than {} balls; leave some out", kMaxBalls);
-        scene.ball.push_back(read_ball(s, scene.balls.size(), scene.cue_ball, cue_only.cue_ball_id()));
+        scene.ball.push_back(read_ball(s, scene.balls.size(), scene.cue_ball, struck));
     }
 }
 

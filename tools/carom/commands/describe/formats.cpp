@@ -198,6 +198,7 @@ std::string balls_lines() {
         }
         text += line_of(f, fmt::format("{}", fmt::join(standards, " | ")));
     }
+    text += "| `cue` | - | - | - | `radius`, `mass` as of a ball | `[balls.cue]`: size of the cue ball |\n";
     return text;
 }
 
