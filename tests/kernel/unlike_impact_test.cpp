@@ -201,6 +201,43 @@ TEST(UnlikeImpact, KeepsTheTolerance) {
     }
 }
 
+// Where slips end, begin at zero, or pass next to it, over many decades: straight on a ball at rest, rolling,
+// with hardly any spin, and with hardly any friction. Slips that pass exactly through zero were missed.
+TEST(UnlikeImpact, KeepsTheToleranceWhereSlipsVanish) {
+    Generator rng(89);
+    const auto decades = [&rng](double lowest) {
+        return rng.uniform(-1.0, 1.0) * std::pow(10.0, rng.uniform(lowest, 0.0));
+    };
+    for (int n = 0; n < 3000; ++n) {
+        Impact i = unlike(rng);
+        const double R = i.params.R;
+        i.params.mu_b = std::pow(10.0, rng.uniform(-4.0, -0.7));
+        if (n % 4 == 0) i.params.e_b = rng.next() % 2 == 0 ? 0.0 : 1.0;
+        i.ball2.r[0] = 0.0;
+        i.ball2.r[1] = 2.0 * R * std::sqrt(i.params.radius_ratio);
+        i.ball1.v[0] = 0.0;
+        i.ball1.v[1] = 1.0;
+        for (Ball* ball : {&i.ball1, &i.ball2})
+            for (double& w : ball->w) w = 0.0;
+        const int kind = n % 5;
+        if (kind >= 2) i.ball1.v[0] = decades(-8.0);
+        if (kind == 1 || kind == 3) {
+            i.ball1.w[0] = -1.0 / R;
+            i.ball1.w[1] = i.ball1.v[0] / R;
+        }
+        if (kind == 4) {
+            i.ball1.w[0] = 10.0 * decades(-8.0);
+            i.ball1.w[2] = 30.0 * decades(-8.0);
+            i.ball2.w[0] = 1e-5 * decades(-1.0);
+        }
+        const ImpactResult truth = solve(i, 1e-12);
+        ASSERT_EQ(truth.status, ImpactStatus::kOk);
+        for (const double tolerance : {1e-3, 1e-6, 1e-8})
+            EXPECT_LT(difference(solve(i, tolerance), truth, R), tolerance)
+                << n << " kind " << kind << " mu_b " << i.params.mu_b;
+    }
+}
+
 // Energy is never gained, momentum is kept without a cloth, and so is the difference of the spins' changes.
 TEST(UnlikeImpact, MomentumAndEnergy) {
     Generator rng(83);

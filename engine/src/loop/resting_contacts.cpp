@@ -8,7 +8,6 @@
 #include "contact/place.h"
 #include "contact/pocket_edge.h"
 #include "physics/motion.h"
-#include "plan/lossless.h"
 
 namespace carom {
 

@@ -1,7 +1,7 @@
-#include "plan/lossless.h"
-
+// Whether anything in a plan takes energy.
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
+#include "carom/engine/plan.h"
 
 namespace carom {
 

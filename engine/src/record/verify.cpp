@@ -9,7 +9,6 @@
 #include "carom/engine/airborne.h"
 #include "carom/engine/tolerances.h"
 #include "physics/motion.h"
-#include "plan/lossless.h"
 #include "record/gaps.h"
 #include "record/verify_between.h"
 #include "record/verify_effects.h"

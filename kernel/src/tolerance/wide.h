@@ -6,7 +6,7 @@
 #pragma once
 
 #include "tolerance/collocation.h"
-#include "tolerance/gauss.h"
+#include "gauss.h"
 
 namespace carom::kernel {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "carom/kernel/march.h"
 #include "carom/kernel/tolerance.h"
+#include "gauss.h"
 #include "simd.h"
-#include "tolerance/gauss.h"
 #include "unlike/tilted.h"
 
 namespace carom::kernel {
@@ -17,11 +17,17 @@ namespace {
 
 using Table = Gauss<8>;
 constexpr int kNodes = 8;
-constexpr int kSweeps = 24, kStretches = 4000;
+constexpr int kSweeps = 24;
+// Where a slip between the balls grows slowly from zero, the forces are stiff and stretches short. After so
+// many of them the rest is solved to ten times the tolerance, and so on; and after the last, without
+// friction.
+constexpr int kManyStretches = 400, kStretches = 4800;
 // [tolerances] What one stretch may leave, by its sweeps and by its nodes.
 constexpr double kSweepsLeave = 0.02, kNodesLeave = 0.1;
 // [tolerances] A slip between the balls below this has ended.
 constexpr double kStuck = 0.1;
+// A looser tolerance is solved as this one.
+constexpr double kLoosestSolved = 1e-3;
 // Of an error that is left, as a share of the friction: more could raise the energy.
 constexpr double kOfFriction = 0.03;
 // Shares of the slips' rounding, and of the tolerance, below which a slip on the cloth is zero.
@@ -77,11 +83,11 @@ class Solver {
           s_(start),
           tolerance_(smallest(tolerance, tilt.mu_b > 0.0 ? kOfFriction * tilt.mu_b : tolerance)) {}
 
-    // Returns whether the bound on stretches was kept.
-    bool run() {
+    void run() {
         double next = kFar;
         sticks_ = t_.mu_b > 0.0 && try_stick();
-        for (int n = 0; n < kStretches; ++n) {
+        for (int n = 1; n < kStretches; ++n) {
+            if (n % kManyStretches == 0) tolerance_ = smallest(10.0 * tolerance_, kLoosestSolved);
             const double end =
                 compressing_ ? s_.v / (t_.C * t_.C)
                              : 2.0 * left_ / (-s_.v + square_root(s_.v * s_.v + 2.0 * t_.C * t_.C * left_));
@@ -120,13 +126,13 @@ class Solver {
                 }
             } else {
                 left_ += stretch.work;
-                if (stretch.until == Until::kWorked) return true;
+                if (stretch.until == Until::kWorked) return;
             }
-            if (!compressing_ && !(left_ > 0.0)) return true;
+            if (!compressing_ && !(left_ > 0.0)) return;
             if (sticks_ && !can_stick(sticking_forces(t_, s_))) slip();
             if (!sticks_ && t_.mu_b > 0.0) sticks_ = try_stick();
         }
-        return false;
+        finish_frictionless();
     }
 
     double p = 0.0;
@@ -138,6 +144,16 @@ class Solver {
 
     Forces forces(const Slips& s) const { return sticks_ ? sticking_forces(t_, s) : sliding_forces(t_, s); }
     bool can_stick(const Forces& f) const { return f.xi * f.xi + f.zeta * f.zeta <= t_.mu_b * t_.mu_b; }
+
+    void finish_frictionless() {
+        const double r = t_.C * t_.C;
+        if (compressing_) {
+            p += s_.v / r;
+            left_ = t_.e_b * t_.e_b * (compressed_ + 0.5 * s_.v * s_.v / r);
+            s_.v = 0.0;
+        }
+        p += 2.0 * left_ / (-s_.v + square_root(s_.v * s_.v + 2.0 * r * left_));
+    }
 
     // Whether the slip between the balls has ended and friction can hold them.
     bool try_stick() {
@@ -228,9 +244,29 @@ class Solver {
         if (!(error <= kNodesLeave * tolerance_ + 0x1p-50 * h)) return false;
         done = times(h, mean);
         after = moved(t_, s_, h, done);
+        if (turns_round(at, after)) {
+            double most = sticks_ ? 0.0 : t_.mu_b;
+            for (const Forces& each : f)
+                most = largest(most, size(each.gx[0] + each.gx[1], each.gy[0] + each.gy[1]));
+            if (!(2.0 * h * most <= kNodesLeave * tolerance_ + 0x1p-50 * h)) return false;
+        }
         stretch.h = h;
         stretch.work = s_.v * h - h * h * late;
         return true;
+    }
+
+    // Whether a slip that has friction turns round between two nodes: then they see little of what it does
+    // between.
+    bool turns_round(const Slips* at, const Slips& after) const {
+        const Slips* before = &s_;
+        for (int i = 0; i <= kNodes; ++i) {
+            const Slips& now = i < kNodes ? at[i] : after;
+            if (!sticks_ && before->cx * now.cx + before->cz * now.cz < 0.0) return true;
+            for (int ball = 0; ball < 2; ++ball)
+                if (before->ux[ball] * now.ux[ball] + before->uy[ball] * now.uy[ball] < 0.0) return true;
+            before = &now;
+        }
+        return false;
     }
 
     double end_of(const Stretch& stretch, const Forces* f) const {
@@ -247,7 +283,7 @@ class Solver {
 
     const Tilt t_;
     Slips s_;
-    const double tolerance_;
+    double tolerance_;
     bool compressing_ = true, sticks_ = false;
     double compressed_ = 0.0, left_ = 0.0;
     int sweeps_of_last_ = 0;
@@ -261,9 +297,15 @@ bool friction_in_range(const Tilt& t) {
         const double down = t.S + t.C * t.mu_b;
         if (!(t.S * t.mu_b + t.share[ball] * t.mu_s[ball] * down <= kMostTaken * t.C)) return false;
         if (t.drag < 0.0) continue;
-        // Along the force that moves the slip of a ball: it is least at one end of the friction's range.
+        // Along the force that moves the slip of a ball, which is least at one end of the friction's range.
         const double still = 3.5 * t.mu_s[ball] * t.S, most = 3.5 * t.mu_s[ball] * down;
         if (!(still <= kMostTaken * t.C && most <= kMostTaken * (t.C + (2.5 - t.S) * t.mu_b))) return false;
+    }
+    // Friction upwards on ball 1 takes load off it, and turns it with the force.
+    if (t.drag > 0.0) {
+        const double up = smallest(t.mu_b, t.S / t.C);
+        const double force = t.C - (2.5 - t.S) * up, load = t.S - t.C * up;
+        if (!(3.5 * t.mu_s[0] * load <= kMostTaken * force)) return false;
     }
     return true;
 }
@@ -348,7 +390,6 @@ void solve_unlike(const Ball& ball1, const Ball& ball2, const ImpactParams& para
     FrameState state;
     if (enter(ball1, ball2, params, frame, state, result) != ImpactStatus::kOk) return;
     const double n = state.v1y - state.v2y, R1 = params.R, R2 = params.R * params.radius_ratio;
-    constexpr double kLoosestSolved = 1e-3;
     // A ball takes up to twice the error that the same impulse makes between equal ones, and stretches add
     // up.
     const double solved = 0.25 * smallest(tolerance, kLoosestSolved) / largest(tilt.share[0], tilt.share[1]);
