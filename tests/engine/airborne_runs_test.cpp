@@ -411,16 +411,19 @@ TEST(Airborne, TwoStepLiftsTheCueBallOfAFullHit) {
     EXPECT_FALSE(plan_of(scene).in_force(Effect::kAirborne)) << "without friction, and alike, nothing lifts";
 }
 
-TEST(Airborne, UnlikeBallsWithFrictionNeedTwoStep) {
+TEST(Airborne, UnlikeBallsWithFriction) {
     Scene scene = empty_scene();
     add_ball(scene, "cue", 0.0, 0.0, 2.0, 0.0);
     add_ball(scene, "1", 0.5, 0.0);
     scene.ball[0].own = BallSize{0.0301, 0.199};
     scene.ball[0].position.z() = 0.0301;
+    for (const char* model : {"mathavan", "two_step"}) {
+        scene.physics.ball_ball = ball_ball_model(model);
+        validate(scene);
+        run_verified(scene);
+    }
+    scene.physics.ball_ball = ball_ball_model("inelastic");
     EXPECT_THROW(validate(scene), SceneError);
-    scene.physics.ball_ball = ball_ball_model("two_step");
-    validate(scene);
-    run_verified(scene);
 }
 
 // A ball above the hollow of three.

@@ -262,7 +262,7 @@ Scene random_scene(SplitMix64& random) {
     Scene s;
     s.file = "s";
     s.table = make_table(kTables[random.below(4)]);
-    use_balls(s, kBallPresets[random.below(6)]);
+    use_balls(s, kBallPresets[random.below(std::size(kBallPresets))]);
     const int count = 1 + random.below(6);
     for (int i = 0; i < count; ++i) {
         BallStart ball;
