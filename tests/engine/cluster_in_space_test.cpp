@@ -216,7 +216,7 @@ TEST(ClusterInSpace, RigidKeepsBallsOnTheCloth) {
                                        ball(3, {0.0, 0.0, kPoolR + height}, {0.0, 0.0, -2.0})};
         const double before = energy(balls);
         ClusterMap map;
-        EXPECT_GT(map.rigid(balls, contacts_of(balls, 1e-6), e, kPoolR), 0);
+        EXPECT_GT(map.rigid(balls, contacts_of(balls, 1e-6), {.R = kPoolR, .e_b = e}), 0);
         EXPECT_LE(energy(balls), before * (1.0 + 1e-12));
         EXPECT_NEAR(length(planar(momentum(balls))), 0.0, 1e-12);
         for (int b = 0; b < 3; ++b) EXPECT_GE(balls[b].v.z(), -1e-12);

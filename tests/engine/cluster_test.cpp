@@ -200,7 +200,7 @@ TEST(Cluster, ThreeBalls) {  // H2
         // Rigid: the same by symmetry, momentum and restitution, to rounding.
         ClusterMap map;
         std::vector<ClusterBall> rigid = balls;
-        map.rigid(rigid, contacts_of(rigid), e[k], kR);
+        map.rigid(rigid, contacts_of(rigid), settings(0.0, 0.0, e[k]));
         EXPECT_NEAR(rigid[0].v.y(), 1.0 - 0.6 * (1.0 + e[k]), 1e-12) << e[k];
         EXPECT_NEAR(rigid[2].v.norm(), 0.2 * std::sqrt(3.0) * (1.0 + e[k]), 1e-12) << e[k];
         EXPECT_NEAR(rigid[1].v.x(), -rigid[2].v.x(), 1e-12) << e[k];

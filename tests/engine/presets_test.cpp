@@ -242,4 +242,43 @@ TEST(Presets, CuesByKind) {
               (std::vector<double>{0.5, 0.00844, 0.7}));
 }
 
+TEST(Presets, SomeCueBallsHaveASizeOfTheirOwn) {
+    const std::string balls =
+        "[[ball]]\nposition = [0.6, 0.5]\n[[ball]]\nid = \"1\"\nposition = [0.6, 1.0]\n";
+    const auto scene = [&](const std::string& text) {
+        const Scene read = parse_scene(balls + text, "preset.toml");
+        const std::string written = carom::scene_text(read);
+        EXPECT_EQ(carom::scene_text(parse_scene(written, "preset.toml")), written) << text;
+        return read;
+    };
+    const Scene bar = scene("[balls]\npreset = \"bar_box_oversized\"\n");
+    EXPECT_NEAR(bar.size_of(bar.ball[0]).R, 0.0603 / 2.0, 2e-5);
+    EXPECT_NEAR(bar.size_of(bar.ball[0]).m, 0.200, 1e-3);
+    EXPECT_EQ(bar.ball[0].position.z(), bar.size_of(bar.ball[0]).R);
+    EXPECT_FALSE(bar.ball[1].own);
+    const Scene heavy = scene("[balls]\npreset = \"bar_box_heavy\"\n");
+    EXPECT_EQ(heavy.size_of(heavy.ball[0]).R, heavy.balls.R);
+    EXPECT_NEAR(heavy.size_of(heavy.ball[0]).m, 0.191, 1e-3);
+    const Scene pub = scene("[balls]\npreset = \"english_pool\"\n");
+    EXPECT_NEAR(pub.balls.R, 0.0508 / 2.0, 1e-12);
+    EXPECT_NEAR(pub.size_of(pub.ball[0]).R, 0.0476 / 2.0, 2e-5);
+    EXPECT_LT(pub.size_of(pub.ball[0]).m, pub.balls.m);
+    // Any preset may have one, and of this one a part.
+    const Scene own = scene("[balls]\npreset = \"pool\"\n[balls.cue]\nmass = 0.2\n");
+    EXPECT_EQ(own.size_of(own.ball[0]), (carom::BallSize{own.balls.R, 0.2}));
+    const Scene part = scene("[balls]\npreset = \"bar_box_oversized\"\ncue = { mass = 0.21 }\n");
+    EXPECT_EQ(part.size_of(part.ball[0]), (carom::BallSize{bar.size_of(bar.ball[0]).R, 0.21}));
+    // It is the ball that the cue strikes.
+    const Scene other = scene("[balls]\npreset = \"bar_box_heavy\"\n[cue]\nball = \"1\"\n");
+    EXPECT_FALSE(other.ball[0].own);
+    EXPECT_TRUE(other.ball[1].own);
+    // What the ball itself says wins, and if that is the common size.
+    const Scene plain = parse_scene(
+        "[[ball]]\nradius = 0.028575\nmass = 0.170097\n"
+        "[balls]\npreset = \"bar_box_oversized\"\n",
+        "preset.toml");
+    EXPECT_FALSE(plain.ball[0].own);
+    EXPECT_FALSE(parse_scene(carom::scene_text(plain), "preset.toml").ball[0].own);
+}
+
 }  // namespace

@@ -161,6 +161,12 @@ const std::map<std::string, Mistake>& mistakes() {
              s.ball[0].height = 0.1;
              s.ball[0].position.z() += 0.1;
          }},
+        {"ball_behind_rail",
+         [](Scene& s) {
+             place(s, 0, -0.05, 1.0);
+             s.ball[0].height = 0.2;
+             s.ball[0].position.z() += 0.2;
+         }},
         {"bed_without_surface", [](Scene& s) { s.table.bed = Rectangle(0.0, 1.0, 2.0, 1.0); }},
         {"bed_of_planar_scene",
          [](Scene& s) {
@@ -256,7 +262,7 @@ Scene random_scene(SplitMix64& random) {
     Scene s;
     s.file = "s";
     s.table = make_table(kTables[random.below(4)]);
-    use_balls(s, kBallPresets[random.below(6)]);
+    use_balls(s, kBallPresets[random.below(std::size(kBallPresets))]);
     const int count = 1 + random.below(6);
     for (int i = 0; i < count; ++i) {
         BallStart ball;

@@ -166,6 +166,11 @@ TEST(Verify, LooksBetweenEvents) {
          [](Record& r) {
              for (Segment& s : r.tracks[0].segments) s.r.x() = -0.08;
          }},
+        // It rests there from the start.
+        {"U3", "deep in a cushion", true,
+         [](Record& r) {
+             for (Segment& s : r.tracks[1].segments) s.r.x() = -0.08;
+         }},
         {"U3", "passes through a cushion", true,
          [](Record& r) {
              for (Segment& s : r.tracks[0].segments)

@@ -106,12 +106,12 @@ TEST(RecordFile, HostileFilesAreErrors) {
     EXPECT_EQ(error_of("{\n  \"format\" 1}"), "2:12: this is not JSON, or the file was cut short");
     EXPECT_NE(error_of(cut.substr(0, cut.size() / 2)).find("cut short"), std::string::npos);
     EXPECT_NE(error_of(std::string(1000000, '[')).find("not JSON"), std::string::npos);
-    EXPECT_NE(error_of(std::string(1000000, '[') + std::string(1000000, ']')).find("no record"),
+    EXPECT_NE(error_of(std::string(1000000, '[') + std::string(1000000, ']')).find("not a carom record"),
               std::string::npos);
     EXPECT_NE(error_of("{\"format\":\"carom-record\",\"version\":1e999}").find("cannot be read"),
               std::string::npos);
     EXPECT_NE(error_of("{\"format\":\"\xff\"}").find("not JSON"), std::string::npos);
-    EXPECT_NE(error_of("null").find("no record"), std::string::npos);
+    EXPECT_NE(error_of("null").find("not a carom record"), std::string::npos);
     EXPECT_NE(error_of("{\"format\":\"carom-record\"}").find("the key \"version\" is missing"),
               std::string::npos);
     EXPECT_NE(error_of(std::string(64, '\0')).find("not JSON"), std::string::npos);
@@ -143,7 +143,7 @@ TEST(RecordFile, NestingNeedsNoStack) {
     pthread_attr_destroy(&small);
     ASSERT_EQ(messages.size(), 3u);
     EXPECT_EQ(messages[0], "1:1000001: this is not JSON, or the file was cut short");
-    EXPECT_NE(messages[1].find("no record"), std::string::npos);
+    EXPECT_NE(messages[1].find("not a carom record"), std::string::npos);
     EXPECT_EQ(messages[2], "no error");
 }
 

@@ -63,6 +63,10 @@ class Section {
         }
     }
     std::optional<bool> boolean(std::string_view key) const;
+    /// A text in a section inside this one that is read later, and checked then; nothing if there is none.
+    std::optional<std::string> peek(std::string_view section, std::string_view key) const {
+        return table_ != nullptr ? (*table_)[section][key].value<std::string>() : std::nullopt;
+    }
 
     /// Refuses values that a file could not have, in the order of the rows.
     template <class T, std::size_t kRows>
