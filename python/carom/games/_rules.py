@@ -74,12 +74,17 @@ class Respot(NamedTuple):
     place: tuple[float, float]
 
 
-class Option(NamedTuple):
-    """How the game may go on."""
-
+class _OptionFields(NamedTuple):
     decision: str  # "play on", "take in hand", "pass back", "rerack", "rerack for other", "spot the eight", "spot touching balls"
     state: State  # of the next shot
     respots: list[Respot]  # what comes back before it
+
+
+class Option(_OptionFields):
+    """How the game may go on."""
+
+    # The hash of the record that was judged; "" for an option that was made by hand.
+    _record: str = ""
 
     @property
     def rerack(self) -> bool:
@@ -145,16 +150,27 @@ def judge(state: State, record: Record, call: Call = Call()) -> Verdict:
     Raises ValueError for a record that does not end at rest, in which no cue strikes, that lacks the game's balls, and for a game that is over.
     """
     fouls, points, penalty, options, chooser = _carom.judge(state, record._native, call)
-    return Verdict([Foul(*foul) for foul in fouls], points, penalty, [_option(*option) for option in options], chooser)
+    return Verdict([Foul(*foul) for foul in fouls], points, penalty, [_option(record.hash(), *option) for option in options], chooser)
 
 
-def _option(decision: str, state: Any, respots: list[tuple[str, tuple[float, float]]]) -> Option:
-    return Option(decision, State(*state), [Respot(*respot) for respot in respots])
+def _option(record: str, decision: str, state: Any, respots: list[tuple[str, tuple[float, float]]]) -> Option:
+    option = Option(decision, State(*state), [Respot(*respot) for respot in respots])
+    option._record = record
+    return option
+
+
+def _check_record(option: Option, record: Record) -> None:
+    if option._record not in ("", record.hash()):
+        raise ValueError("the verdict is of another record; give the record that was judged")
 
 
 @checked
 def may_place(record: Record, option: Option, place: ArrayLike) -> bool:
-    """Whether the cue ball may be placed there [m] before the next shot: it is in hand there, lies between the cushions, and overlaps no ball."""
+    """Whether the cue ball may be placed there [m] before the next shot: it is in hand there, lies between the cushions, and overlaps no ball.
+
+    Raises ValueError for an option of another record.
+    """
+    _check_record(option, record)
     return _carom.may_place(record._native, option, _two(place))
 
 
@@ -169,9 +185,11 @@ def next_scene(
     place: of the cue ball [m]: needed where it is gone, allowed where it is in hand
     scene: the one that was played; needed for a record that was loaded from a file
 
-    Raises ValueError for a place that is missing or not allowed, for a new rack and for a game that is over; SceneError where the result is no scene.
+    Raises ValueError for a place that is missing or not allowed, for an option of another record, for a new rack and for a game that is over;
+        SceneError where the result is no scene.
     """
     taken = option.options[0] if isinstance(option, Verdict) else option
+    _check_record(taken, record)
     played, at = None if scene is None else as_scene(scene)._native, None if place is None else _two(place)
     return scene_with_cue(cue, lambda section: _carom.next_table(record._native, played, taken, at, section), ball=taken.state.cue_ball)
 
