@@ -185,7 +185,6 @@ TEST(UnlikeImpact, KeepsTheTolerance) {
     for (const ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
         Generator rng(82);
         for (const double tolerance : {1e-2, 1e-3, 1e-5, 1e-6, 1e-8, 1e-10}) {
-            double worst = 0.0;
             for (int n = 0; n < 1500; ++n) {
                 Impact i = unlike(rng);
                 i.params.cloth_slip = slip;
@@ -193,10 +192,8 @@ TEST(UnlikeImpact, KeepsTheTolerance) {
                 if (n % 5 == 1) i.params.e_b = n % 2;
                 const double error =
                     difference(solve(i, tolerance), solve(i, 1e-13), i.params.R) / approach_speed(i);
-                worst = std::max(worst, error / tolerance);
                 EXPECT_LT(error, tolerance) << n;
             }
-            RecordProperty("worst", std::to_string(worst));
         }
     }
 }

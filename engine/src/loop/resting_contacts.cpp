@@ -116,9 +116,9 @@ bool RestingContacts::find(const Contact& contact) const {
 //    contact already, as friction alone could press it. The bounces within a group lose a share of their
 //    speed each and come ten times for every power of ten down to rounding; their limit is the resting
 //    contact, which the group's solution then keeps or opens. Or if
-//  - it has chattered, and its closing speed has fallen (Zeno behaviour, as in a wedge with a plastic side,
-//  or where an impact goes back and forth through balls that rest on
-//    each other between two rails): the limit of such a sequence is the resting contact.
+//  - it has chattered (Zeno behaviour, as in a wedge with a plastic side, or where an impact goes back and
+//    forth through balls that rest on each other between two rails): the limit of such a sequence is the
+//    resting contact. Elastic bounces count only if the closing speed has in fact fallen.
 bool RestingContacts::try_begin(const Approach& a, double restitution) {
     const Contact& c = a.contact;
     const int partner = c.partner();

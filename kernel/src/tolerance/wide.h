@@ -5,8 +5,8 @@
 // bits therefore depend neither on the width of the registers nor on the impacts in the other lanes.
 #pragma once
 
-#include "tolerance/collocation.h"
 #include "gauss.h"
+#include "tolerance/collocation.h"
 
 namespace carom::kernel {
 namespace {
